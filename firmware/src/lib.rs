@@ -1,0 +1,13 @@
+//! Haptic servo firmware for one axis whose scenes are certified passive.
+//!
+//! The modules are in the order of the data's path: counts come in at [`encoder`], leave at
+//! [`dac`]; [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
+#![cfg_attr(not(test), no_std)]
+#![deny(unsafe_code)]
+
+pub mod environment;
+
+pub mod certificate;
+pub mod passivity;
+pub mod scene;
+pub mod text;

@@ -1,0 +1,1 @@
+//! Nothing is exported: everything is in the integration tests.
