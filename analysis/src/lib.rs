@@ -1,1 +1,9 @@
 //! Host side of the haptic servo.
+//!
+//! The modules are in the order in which a question passes through them: a [`file`] says what is
+//! asked, [`verdict`] what is answered; [`command`] is the program in front of both.
+
+pub mod batch;
+pub mod command;
+pub mod file;
+pub mod verdict;

@@ -1,0 +1,138 @@
+//! Many scenes, one a line: judged in parallel, answered in order, in bounded memory.
+
+use std::io::{BufRead, BufReader, Read, Write};
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::command::CommandError;
+use crate::file::{self, FileError, Format, Problem};
+use crate::verdict;
+
+/// Lines that are judged together. Enough to keep every core busy for a few milliseconds, few
+/// enough that a reader at the other end of a pipe sees progress.
+const CHUNK: usize = 1024;
+
+/// Bytes that are read ahead.
+const BUFFER: usize = 1 << 20;
+
+/// Longest line in bytes; a scene has a few hundred.
+const MAX_LINE: u64 = 1 << 16;
+
+/// A line as it was read.
+enum Line {
+    /// Its bytes, without the newline.
+    Bytes(Vec<u8>),
+    /// It was longer than [`MAX_LINE`], and the rest of it was passed over.
+    TooLong,
+}
+
+/// Answer to a line that could not be judged.
+#[derive(Serialize)]
+struct BadLine {
+    error: String,
+}
+
+/// Reads scenes from a JSON-lines file (`-` is standard input) and writes a result for each: as many
+/// lines as came in, in their order.
+pub fn certify(file: &str, out: &mut impl Write) -> Result<(), CommandError> {
+    if file == "-" {
+        return certify_lines("<stdin>", std::io::stdin().lock(), out);
+    }
+    let unreadable = |error: std::io::Error| {
+        FileError::whole(file, 1, 1, Problem::Unreadable(error.to_string()))
+    };
+    let source = std::fs::File::open(file).map_err(unreadable)?;
+    certify_lines(file, source, out)
+}
+
+/// The same from any source of lines.
+pub fn certify_lines(
+    file: &str,
+    source: impl Read,
+    out: &mut impl Write,
+) -> Result<(), CommandError> {
+    let mut source = BufReader::with_capacity(BUFFER, source);
+    let mut first_line = 1;
+    loop {
+        let lines = read_chunk(file, first_line, &mut source)?;
+        if lines.is_empty() {
+            return Ok(());
+        }
+        let answers: Vec<Vec<u8>> = lines
+            .par_iter()
+            .enumerate()
+            .map(|(index, line)| answer(file, first_line + index, line))
+            .collect();
+        for answer in &answers {
+            out.write_all(answer)?;
+        }
+        out.flush()?;
+        first_line += lines.len();
+    }
+}
+
+fn read_chunk(
+    file: &str,
+    first_line: usize,
+    source: &mut BufReader<impl Read>,
+) -> Result<Vec<Line>, CommandError> {
+    let mut lines = Vec::new();
+    // Only what has already arrived joins the first line: whoever writes one scene and waits for
+    // its answer gets it.
+    while lines.is_empty() || (lines.len() < CHUNK && source.buffer().contains(&b'\n')) {
+        let unreadable = |error: std::io::Error| {
+            let line = first_line + lines.len();
+            FileError::whole(file, line, 1, Problem::Unreadable(error.to_string()))
+        };
+        match read_line(source).map_err(unreadable)? {
+            Some(line) => lines.push(line),
+            None => break,
+        }
+    }
+    Ok(lines)
+}
+
+fn read_line(source: &mut impl BufRead) -> std::io::Result<Option<Line>> {
+    let mut bytes = Vec::new();
+    if source.by_ref().take(MAX_LINE).read_until(b'\n', &mut bytes)? == 0 {
+        return Ok(None);
+    }
+    if bytes.last() == Some(&b'\n') {
+        bytes.pop();
+    } else if bytes.len() as u64 == MAX_LINE {
+        pass_over(source)?;
+        return Ok(Some(Line::TooLong));
+    }
+    Ok(Some(Line::Bytes(bytes)))
+}
+
+/// Skips to the end of the line without keeping it.
+fn pass_over(source: &mut impl BufRead) -> std::io::Result<()> {
+    source.skip_until(b'\n').map(|_| ())
+}
+
+/// One line's answer with its newline.
+fn answer(file: &str, number: usize, line: &Line) -> Vec<u8> {
+    let judged = match line {
+        Line::Bytes(bytes) => judge(file, number, bytes),
+        Line::TooLong => {
+            Err(FileError::whole(file, number, 1, Problem::TooLong { bound: MAX_LINE }))
+        }
+    };
+    let text = match judged {
+        Ok(report) => serde_json::to_vec(&report),
+        Err(error) => serde_json::to_vec(&BadLine { error: error.to_string() }),
+    };
+    // Strings and numbers always have a JSON form; were it otherwise, the line still gets an answer.
+    let mut text =
+        text.unwrap_or_else(|error| format!("{{\"error\": {:?}}}", error.to_string()).into());
+    text.push(b'\n');
+    text
+}
+
+fn judge(file: &str, number: usize, bytes: &[u8]) -> Result<verdict::Report, FileError> {
+    let text = file::text_of(file, number, bytes)?;
+    let scene = file::parse_at(file, number, Format::Json, text)?;
+    Ok(verdict::judge(&scene.name, &scene.scene))
+}

@@ -1,0 +1,80 @@
+//! `haptic certify`: is a scene safe in every hand, and by how much?
+
+use std::io::{self, Write};
+
+use clap::Args;
+
+use super::{Answer, CommandError};
+use crate::verdict::{self, Enclosure, Report, Verdict};
+use crate::{batch, file};
+
+/// Arguments of `haptic certify`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file, TOML or JSON; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// FILE has a scene as JSON on each line; print a result a line, in the same order
+    #[arg(long)]
+    pub batch: bool,
+}
+
+/// Answers for a file or for a batch of scenes. A batch is answered with yes if it could be read:
+/// each of its lines has an answer of its own.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let mut out = io::stdout().lock();
+    if arguments.batch {
+        batch::certify(&arguments.file, &mut out)?;
+        return Ok(Answer::Yes);
+    }
+    let scene = file::load(&arguments.file)?;
+    let report = verdict::judge(&scene.name, &scene.scene);
+    if arguments.json {
+        serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{}", text(&report))?;
+    }
+    out.flush()?;
+    Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
+}
+
+/// The report for a person.
+pub fn text(report: &Report) -> String {
+    let mut rows = vec![
+        ("scene", report.name.clone()),
+        ("verdict", format!("{:?}", report.verdict).to_uppercase()),
+        ("", report.message.clone()),
+        ("alpha", enclosure(report.alpha)),
+        ("alpha, coupled", enclosure(report.alpha_coupled)),
+        ("delta", format!("{} N m s/rad", report.delta)),
+    ];
+    if let Some(margin) = report.margin {
+        rows.push(("margin", format!("{margin:.6e} N m s/rad")));
+    }
+    if let Some(theta) = report.theta {
+        let degrees = theta.to_degrees();
+        rows.push(("reached at", format!("theta = {theta:.6} rad ({degrees:.2} degrees)")));
+    }
+    rows.push(("rule of the paper", format!("{:?}", report.rules.paper).to_lowercase()));
+    rows.push(("exact rule", format!("{:?}", report.rules.exact).to_lowercase()));
+    list(&mut rows, "remedies", &report.remedies);
+    list(&mut rows, "assumes", &report.assumptions);
+    rows.iter().map(|(label, value)| format!("{label:<18} {value}\n")).collect()
+}
+
+fn list(rows: &mut Vec<(&'static str, String)>, label: &'static str, items: &[String]) {
+    for (index, item) in items.iter().enumerate() {
+        rows.push((if index == 0 { label } else { "" }, item.clone()));
+    }
+}
+
+fn enclosure(enclosure: Enclosure) -> String {
+    match enclosure {
+        Enclosure { lo: Some(lo), hi: Some(hi) } => format!("{lo} to {hi} N m s/rad"),
+        _ => "does not exist".to_owned(),
+    }
+}

@@ -1,0 +1,247 @@
+//! What can be wrong with a file, as sentences that name the file, the line, the key, the value
+//! and the bound.
+
+use std::fmt;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use thiserror::Error;
+
+use super::key::{Bound, Key};
+use super::tree::Span;
+
+/// Longest piece of a file that is repeated in a message, in characters.
+const EXCERPT: usize = 60;
+
+/// Longest line of a file that is shown under a message, in bytes.
+const SHOWN_LINE: usize = 160;
+
+/// What is wrong, without the place.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Problem {
+    /// The file could not be read.
+    #[error("the file cannot be read: {0}")]
+    Unreadable(String),
+    /// More bytes than a scene can need.
+    #[error("the file is longer than {bound} bytes, the most that is read")]
+    TooLong {
+        /// Largest length in bytes.
+        bound: u64,
+    },
+    /// Not text.
+    #[error("the file is not UTF-8 text: byte {byte:#04x} at offset {offset}")]
+    NotText {
+        /// The first byte that is not part of a character.
+        byte: u8,
+        /// Its position in the file.
+        offset: usize,
+    },
+    /// Nothing in it.
+    #[error("there is nothing here; a scene has `name`, [device], [servo] and [environment]")]
+    Empty,
+    /// Neither valid TOML nor valid JSON.
+    #[error("not valid {format}: {message}")]
+    Syntax {
+        /// The format that was expected.
+        format: &'static str,
+        /// The parser's message.
+        message: String,
+    },
+    /// A key twice in one table.
+    #[error("the key `{key}` is there twice; a key is set once")]
+    Duplicate {
+        /// The key.
+        key: String,
+    },
+    /// A key that must be there is not.
+    #[error("`{key}` is missing; it must be {bound}")]
+    Missing {
+        /// Full name of the key.
+        key: &'static str,
+        /// What it must be.
+        bound: String,
+    },
+    /// A key that means nothing here.
+    #[error("`{key}` is not a key of {table}; {advice}")]
+    Unknown {
+        /// Full name of the key.
+        key: String,
+        /// The table it stood in.
+        table: String,
+        /// The key that was probably meant, or all of them.
+        advice: String,
+    },
+    /// A value of another kind.
+    #[error("`{key}` = {value} is {found}; it must be {bound}")]
+    WrongKind {
+        /// Full name of the key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// Kind of the value.
+        found: &'static str,
+        /// What it must be.
+        bound: String,
+    },
+    /// A number that the key does not admit.
+    #[error("`{key}` = {value} is out of bounds; it must be {bound}")]
+    OutOfBounds {
+        /// Full name of the key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// What it must be.
+        bound: String,
+    },
+    /// A device that is more than a rigid body.
+    #[error(
+        "`{key}` makes the device more than a rigid body, which a certificate is not taken of; \
+             give the `inertia` and `damping` that the hand feels and the `passivity`"
+    )]
+    NotRigid {
+        /// Full name of the key.
+        key: &'static str,
+    },
+    /// Keys that contradict one another.
+    #[error("`{key}` = {value} {reason}")]
+    Conflict {
+        /// Full name of the key.
+        key: &'static str,
+        /// The value as written.
+        value: String,
+        /// Why it cannot stand beside another key, or alone.
+        reason: String,
+    },
+}
+
+impl Problem {
+    /// A key that is there twice.
+    pub fn duplicate(key: &str) -> Self {
+        Self::Duplicate { key: excerpt(key) }
+    }
+
+    /// A text that the format's grammar does not admit.
+    pub fn syntax(format: &'static str, message: &str) -> Self {
+        Self::Syntax { format, message: excerpt(message) }
+    }
+
+    /// A value of the wrong kind for a key.
+    pub fn wrong_kind(key: &Key, value: &str, found: &'static str) -> Self {
+        let bound = key.requirement();
+        let key = if key.path.is_empty() { "the file" } else { key.path }.to_owned();
+        Self::WrongKind { key, value: excerpt(value), found, bound }
+    }
+
+    /// A number outside its key's bound.
+    pub fn out_of_bounds(path: &str, value: &str, bound: Bound, unit: &str) -> Self {
+        let bound = bound.requirement(unit);
+        Self::OutOfBounds { key: path.to_owned(), value: excerpt(value), bound }
+    }
+}
+
+/// A problem and the bytes of the text that it is about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Where.
+    pub span: Span,
+    /// What.
+    pub problem: Problem,
+}
+
+/// A bad file: which, where, and what is wrong with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileError {
+    /// The file's name as the person gave it.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub problem: Box<Problem>,
+    /// The line and the bytes in it that the problem is about, if it is short enough to show.
+    shown: Option<Box<(String, Span)>>,
+}
+
+impl FileError {
+    /// Places a fault in the text that it was found in, whose first line is line `first_line` of
+    /// the file.
+    pub fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
+        let start = floor(text, fault.span.start);
+        let before = &text[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let line = text[line_start..line_end].trim_end_matches('\r');
+        let end = floor(text, fault.span.end)
+            .clamp(start, line_start + line.len().max(start - line_start));
+        let printable = line.len() <= SHOWN_LINE && !line.chars().any(is_unprintable);
+        let shown = printable.then(|| (line.to_owned(), start - line_start..end - line_start));
+        Self {
+            file: excerpt_path(file),
+            line: first_line + before.matches('\n').count(),
+            column: 1 + text[line_start..start].chars().count(),
+            problem: Box::new(fault.problem),
+            shown: shown.filter(|(line, _)| !line.trim().is_empty()).map(Box::new),
+        }
+    }
+
+    /// A problem with a file as a whole, without any of its text.
+    pub fn whole(file: &str, line: usize, column: usize, problem: Problem) -> Self {
+        Self { file: excerpt_path(file), line, column, problem: Box::new(problem), shown: None }
+    }
+
+    /// The message with the line of the file below it, as compilers print it.
+    pub fn report(&self, colour: bool) -> String {
+        let title = self.to_string();
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let group = match self.shown.as_deref() {
+            None => Level::ERROR
+                .primary_title(title.as_str())
+                .elements(std::iter::empty::<Snippet<'_, annotate_snippets::Annotation<'_>>>()),
+            Some((line, span)) => Level::ERROR.primary_title(title.as_str()).element(
+                Snippet::source(line.as_str())
+                    .path(self.file.as_str())
+                    .line_start(self.line)
+                    .annotation(AnnotationKind::Primary.span(span.clone())),
+            ),
+        };
+        renderer.render(&[group]).to_string()
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.problem)
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// The largest character boundary that is not behind `at`.
+fn floor(text: &str, at: usize) -> usize {
+    text.floor_char_boundary(at)
+}
+
+fn is_unprintable(character: char) -> bool {
+    character.is_control() && character != '\t'
+}
+
+/// A piece of somebody's text made safe to print: one line, no control characters, bounded.
+pub fn excerpt(text: &str) -> String {
+    let mut short = String::new();
+    for (count, character) in text.trim().chars().enumerate() {
+        if count == EXCERPT {
+            short.push('…');
+            break;
+        }
+        match character {
+            c if c.is_control() => short.extend(c.escape_default()),
+            c => short.push(c),
+        }
+    }
+    short
+}
+
+/// A path is a person's own words and is repeated whole, but printable.
+fn excerpt_path(path: &str) -> String {
+    path.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}

@@ -1,0 +1,166 @@
+//! A scene file's tables turned into a [`Scene`].
+
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::key::{self, Key};
+use super::problem::Fault;
+use super::section::{Found, Section};
+use super::simulation::{self, Hand, Simulation};
+use super::tree::{Node, Value};
+
+/// Everything that a scene file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// What the person calls the scene.
+    pub name: String,
+    /// The scene itself; nothing about it is certified yet.
+    pub scene: Scene,
+    /// What a simulation starts from.
+    pub simulation: Option<Simulation>,
+    /// A passive hand that holds the device, for simulation.
+    pub hand: Option<Hand>,
+    /// Angle of one encoder count in rad, for simulation.
+    pub encoder_step: Option<f64>,
+}
+
+/// Reads the tables of a parsed file.
+pub fn read(text: &str, root: Node) -> Result<SceneFile, Fault> {
+    let mut top = Section::new(text, "a scene", &ROOT, root)?;
+    let name = top.needed_text(&key::NAME)?.value;
+    let device = device(top.needed_table(&key::DEVICE)?)?;
+    let timing = timing(top.needed_table(&key::SERVO)?)?;
+    let coupling = top.table(&key::COUPLING)?.map_or(Ok(Coupling::Rigid), coupling)?;
+    let environment = environment(top.needed_table(&key::ENVIRONMENT)?)?;
+    let simulation = top.table(&key::SIMULATION)?.map(simulation::simulation).transpose()?;
+    let hand = top.table(&key::HUMAN)?.map(simulation::hand).transpose()?;
+    let (torque_limit, encoder_step) = top.table(&key::LIMITS)?.map_or(Ok((None, None)), limits)?;
+    top.finish()?;
+    let scene = Scene { device, timing, coupling, environment, torque_limit };
+    Ok(SceneFile { name, scene, simulation, hand, encoder_step })
+}
+
+/// The file as a whole: it has no name, and must be a table.
+const ROOT: Key = Key {
+    path: "",
+    unit: "",
+    bound: key::Bound::Other("a table of `name`, [device], [servo] and [environment]"),
+};
+
+/// Keys of devices with inner modes or a lagging amplifier.
+const MORE_THAN_RIGID: &[&str] =
+    &["device.mass", "device.link", "device.encoder", "device.actuator_lag"];
+
+fn device(mut section: Section<'_>) -> Result<Device, Fault> {
+    section.refuse_more_than_rigid(MORE_THAN_RIGID)?;
+    let inertia = section.number(&key::INERTIA)?;
+    let damping = section.number(&key::DEVICE_DAMPING)?;
+    let passivity = section.optional(&key::PASSIVITY)?;
+    section.finish()?;
+    Ok(Device { inertia, damping, passivity })
+}
+
+fn timing(mut section: Section<'_>) -> Result<Timing, Fault> {
+    let period = section.number(&key::PERIOD)?;
+    let worst = section.found(&key::WORST_PERIOD)?;
+    if let Some(Found { value, span }) = &worst
+        && *value < period
+    {
+        let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
+        return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
+    }
+    section.finish()?;
+    Ok(Timing { period, worst_period: worst.map(|found| found.value) })
+}
+
+fn coupling(mut section: Section<'_>) -> Result<Coupling, Fault> {
+    let stiffness = section.number(&key::COUPLING_STIFFNESS)?;
+    section.finish()?;
+    Ok(Coupling::Spring { stiffness })
+}
+
+fn limits(mut section: Section<'_>) -> Result<(Option<f64>, Option<f64>), Fault> {
+    let torque = section.optional(&key::TORQUE_LIMIT)?;
+    let step = section.optional(&key::ENCODER_STEP)?;
+    section.finish()?;
+    Ok((torque, step))
+}
+
+fn environment(mut section: Section<'_>) -> Result<Environment, Fault> {
+    let kind = section.needed_text(&key::TYPE)?;
+    section.retitle(format!("a {} [environment]", super::problem::excerpt(&kind.value)));
+    let environment = match kind.value.as_str() {
+        "delayed-spring" => Environment::DelayedSpring(spring(&mut section)?),
+        "damper-wall" => Environment::DamperWall(wall(&mut section)?),
+        "free-mode" => Environment::FreeMode {
+            residual: section.number(&key::RESIDUAL)?,
+            delay: whole(section.optional(&key::DELAY_SAMPLES)?),
+        },
+        "free-mode-wall" => Environment::FreeModeWall {
+            residual: section.number(&key::RESIDUAL)?,
+            wall: wall(&mut section)?,
+        },
+        "rational" => Environment::Rational(rational(&mut section)?),
+        _ => return Err(section.out_of_bounds(&key::TYPE, key::TYPE.path, &kind.span)),
+    };
+    section.finish()?;
+    Ok(environment)
+}
+
+fn spring(section: &mut Section<'_>) -> Result<Wall, Fault> {
+    let stiffness = section.number(&key::STIFFNESS)?;
+    let delay = whole(Some(section.number(&key::DELAY_SAMPLES)?));
+    Ok(Wall { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false })
+}
+
+fn wall(section: &mut Section<'_>) -> Result<Wall, Fault> {
+    Ok(Wall {
+        stiffness: section.number(&key::STIFFNESS)?,
+        damping: section.number(&key::DAMPING)?,
+        filter: section.optional(&key::FILTER)?,
+        delay: whole(Some(section.number(&key::DELAY_SAMPLES)?)),
+        face: section.optional(&key::FACE)?.unwrap_or(0.0),
+        one_sided: section.boolean(&key::ONE_SIDED)?.unwrap_or(false),
+    })
+}
+
+fn rational(section: &mut Section<'_>) -> Result<Rational, Fault> {
+    let numerator = polynomial(section, &key::NUMERATOR)?;
+    let denominator = polynomial(section, &key::DENOMINATOR)?;
+    let delay = whole(section.optional(&key::DELAY_SAMPLES)?);
+    let unit_zeros = section.found(&key::UNIT_ZEROS)?;
+    if let Some(Found { value, span }) = &unit_zeros
+        && numerator.as_slice().len() - 1 + whole(Some(*value)) > MAX_DEGREE
+    {
+        let reason = format!("makes the numerator's degree more than {MAX_DEGREE}");
+        return Err(section.conflict(&key::UNIT_ZEROS, span.clone(), reason));
+    }
+    let unit_zeros = whole(unit_zeros.map(|found| found.value));
+    Ok(Rational { numerator, denominator, delay, unit_zeros })
+}
+
+/// Descending coefficients without leading zeros; a denominator must have one that is not zero.
+fn polynomial(section: &mut Section<'_>, key: &Key) -> Result<Coefficients, Fault> {
+    let Some(Found { value, span }) = section.list(key)? else {
+        return Err(section.missing(key));
+    };
+    let leading = value.iter().position(|&coefficient| coefficient != 0.0);
+    let significant = match leading {
+        Some(first) => &value[first..],
+        None if *key == key::DENOMINATOR => &[],
+        None => &value[value.len().saturating_sub(1)..],
+    };
+    let coefficients =
+        if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
+    coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))
+}
+
+/// A number whose bound is [`key::Bound::Whole`]; zero where it was left out.
+fn whole(value: Option<f64>) -> usize {
+    value.map_or(0, |value| value as usize)
+}
+
+/// Whether a parsed file has nothing in it.
+pub fn is_empty(root: &Node) -> bool {
+    matches!(&root.value, Value::Table(entries) if entries.is_empty())
+}

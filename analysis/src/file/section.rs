@@ -1,0 +1,204 @@
+//! Taking a table apart, key by key: whatever is not asked for is unknown.
+
+use super::key::Key;
+use super::problem::{Fault, Problem, excerpt};
+use super::tree::{Entry, Node, Span, Value};
+
+/// How alike two names must be (0 to 1) for one to be taken as a slip of the other. Chosen so
+/// that one wrong, missing or swapped letter in a word of six still counts.
+const ALIKE: f64 = 0.9;
+
+/// A table of the file that is being read.
+pub struct Section<'t> {
+    text: &'t str,
+    path: &'static str,
+    title: String,
+    span: Span,
+    entries: Vec<Entry>,
+    asked: Vec<&'static str>,
+}
+
+/// A value and where it stood.
+pub struct Found<T> {
+    /// The value.
+    pub value: T,
+    /// Bytes of the value in the text.
+    pub span: Span,
+}
+
+impl<'t> Section<'t> {
+    /// Starts on a node that must be a table; `title` is what messages call it.
+    pub fn new(text: &'t str, title: &str, key: &Key, node: Node) -> Result<Self, Fault> {
+        let title = title.to_owned();
+        match node.value {
+            Value::Table(entries) => {
+                let (path, span, asked) = (key.path, node.span, Vec::new());
+                Ok(Self { text, path, title, span, entries, asked })
+            }
+            other => Err(wrong_kind(text, key, &node.span, &other)),
+        }
+    }
+
+    /// From here on messages call the table this, since its kind is known.
+    pub fn retitle(&mut self, title: String) {
+        self.title = title;
+    }
+
+    /// The table of that key, if there is one.
+    pub fn table(&mut self, key: &Key) -> Result<Option<Self>, Fault> {
+        let title = format!("[{}]", key.path);
+        self.take(key).map(|node| Self::new(self.text, &title, key, node)).transpose()
+    }
+
+    /// The table of that key, which must be there.
+    pub fn needed_table(&mut self, key: &Key) -> Result<Self, Fault> {
+        self.table(key)?.ok_or_else(|| self.missing(key))
+    }
+
+    /// The number of that key with its place, if it is there.
+    pub fn found(&mut self, key: &Key) -> Result<Option<Found<f64>>, Fault> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let value = self.number_of(key, key.path, &node)?;
+        Ok(Some(Found { value, span: node.span }))
+    }
+
+    /// The number of that key, if it is there.
+    pub fn optional(&mut self, key: &Key) -> Result<Option<f64>, Fault> {
+        Ok(self.found(key)?.map(|found| found.value))
+    }
+
+    /// The number of that key, which must be there.
+    pub fn number(&mut self, key: &Key) -> Result<f64, Fault> {
+        self.optional(key)?.ok_or_else(|| self.missing(key))
+    }
+
+    /// The string of that key with its place, which must be there.
+    pub fn needed_text(&mut self, key: &Key) -> Result<Found<String>, Fault> {
+        self.text(key)?.ok_or_else(|| self.missing(key))
+    }
+
+    /// The string of that key with its place, if it is there.
+    pub fn text(&mut self, key: &Key) -> Result<Option<Found<String>>, Fault> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Node { span, value: Value::Text(value) }) => Ok(Some(Found { value, span })),
+            Some(node) => Err(wrong_kind(self.text, key, &node.span, &node.value)),
+        }
+    }
+
+    /// The truth value of that key, if it is there.
+    pub fn boolean(&mut self, key: &Key) -> Result<Option<bool>, Fault> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Node { value: Value::Boolean(value), .. }) => Ok(Some(value)),
+            Some(node) => Err(wrong_kind(self.text, key, &node.span, &node.value)),
+        }
+    }
+
+    /// The finite numbers of that key with their place, if it is there.
+    pub fn list(&mut self, key: &Key) -> Result<Option<Found<Vec<f64>>>, Fault> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let Value::List(items) = &node.value else {
+            return Err(wrong_kind(self.text, key, &node.span, &node.value));
+        };
+        let item = |(index, item): (usize, &Node)| {
+            let path = format!("{}[{index}]", key.path);
+            let (value, span) = (&item.value, &item.span);
+            match value {
+                Value::Number(number) if number.is_finite() => Ok(*number),
+                Value::Number(_) => Err(self.out_of_bounds(key, &path, span)),
+                _ => {
+                    let problem = Problem::WrongKind {
+                        key: path,
+                        value: excerpt(&self.text[span.clone()]),
+                        found: value.kind(),
+                        bound: "a finite number".to_owned(),
+                    };
+                    Err(Fault { span: span.clone(), problem })
+                }
+            }
+        };
+        let value = items.iter().enumerate().map(item).collect::<Result<_, _>>()?;
+        Ok(Some(Found { value, span: node.span }))
+    }
+
+    /// The fault of a key whose value is out of its bound.
+    pub fn out_of_bounds(&self, key: &Key, path: &str, span: &Span) -> Fault {
+        let value = &self.text[span.clone()];
+        let problem = Problem::out_of_bounds(path, value, key.bound, key.unit);
+        Fault { span: span.clone(), problem }
+    }
+
+    /// The fault of a key that contradicts another one, or a rule.
+    pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Fault {
+        let value = excerpt(&self.text[span.clone()]);
+        Fault { span, problem: Problem::Conflict { key: key.path, value, reason } }
+    }
+
+    /// Ends the reading where one of these keys is there: they describe what is not a rigid body.
+    pub fn refuse_more_than_rigid(&mut self, keys: &[&'static str]) -> Result<(), Fault> {
+        for entry in &self.entries {
+            if let Some(&key) = keys.iter().find(|key| key.ends_with(&format!(".{}", entry.name))) {
+                return Err(Fault { span: entry.span.clone(), problem: Problem::NotRigid { key } });
+            }
+        }
+        Ok(())
+    }
+
+    /// The fault of a key that is not there, or of the slip that was written in its place.
+    pub fn missing(&self, key: &Key) -> Fault {
+        let slip = self.entries.iter().find(|entry| alike(&entry.name, key.name()));
+        match slip {
+            Some(entry) => self.unknown(entry),
+            None => {
+                let problem = Problem::Missing { key: key.path, bound: key.requirement() };
+                Fault { span: self.span.start..self.span.start, problem }
+            }
+        }
+    }
+
+    /// Ends the table: a key that nobody asked for is an error.
+    pub fn finish(self) -> Result<(), Fault> {
+        // The first in the file, not in the map: people mend a file from the top.
+        match self.entries.iter().min_by_key(|entry| entry.span.start) {
+            Some(entry) => Err(self.unknown(entry)),
+            None => Ok(()),
+        }
+    }
+
+    fn take(&mut self, key: &Key) -> Option<Node> {
+        self.asked.push(key.name());
+        let index = self.entries.iter().position(|entry| entry.name == key.name())?;
+        Some(self.entries.swap_remove(index).node)
+    }
+
+    fn number_of(&self, key: &Key, path: &str, node: &Node) -> Result<f64, Fault> {
+        match node.value {
+            Value::Number(value) if key.bound.admits(value) => Ok(value),
+            Value::Number(_) => Err(self.out_of_bounds(key, path, &node.span)),
+            ref other => Err(wrong_kind(self.text, key, &node.span, other)),
+        }
+    }
+
+    fn unknown(&self, entry: &Entry) -> Fault {
+        let slip = self.asked.iter().find(|name| alike(&entry.name, name));
+        let advice = match slip {
+            Some(name) => format!("`{name}` is"),
+            None => format!("its keys are {}", self.asked.join(", ")),
+        };
+        let dot = if self.path.is_empty() { "" } else { "." };
+        let key = format!("{}{dot}{}", self.path, excerpt(&entry.name));
+        let problem = Problem::Unknown { key, table: self.title.clone(), advice };
+        Fault { span: entry.span.clone(), problem }
+    }
+}
+
+fn alike(written: &str, name: &str) -> bool {
+    // Comparing is quadratic in the length; no slip is longer than this.
+    written.len() <= 2 * name.len() && strsim::jaro_winkler(written, name) >= ALIKE
+}
+
+fn wrong_kind(text: &str, key: &Key, span: &Span, value: &Value) -> Fault {
+    let problem = Problem::wrong_kind(key, &text[span.clone()], value.kind());
+    Fault { span: span.clone(), problem }
+}

@@ -1,0 +1,100 @@
+//! The tables of a scene file that only simulation uses: checked like all others, so that a file
+//! that certifies also simulates.
+
+use std::path::PathBuf;
+
+use super::key::{self, Key};
+use super::problem::Fault;
+use super::section::{Found, Section};
+
+/// What a simulation starts from and what the hand does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Number of samples.
+    pub samples: usize,
+    /// Position in rad at sample 0.
+    pub position: f64,
+    /// Velocity in rad/s at sample 0.
+    pub velocity: f64,
+    /// Torque of the hand on the device.
+    pub torque: HandTorque,
+}
+
+/// Torque in N m that the hand puts on the device, positive in the direction of the angle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HandTorque {
+    /// None.
+    Free,
+    /// One value a sample, held over it.
+    Held(Vec<f64>),
+    /// The same, in a file.
+    File(PathBuf),
+    /// `amplitude * sin(omega t + phase)`, continuous in time.
+    Sine {
+        /// Amplitude in N m.
+        amplitude: f64,
+        /// Angular frequency in rad/s.
+        omega: f64,
+        /// Phase in rad at sample 0.
+        phase: f64,
+    },
+}
+
+/// A passive hand that holds the device: all three are 0 or more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hand {
+    /// Inertia in kg m^2.
+    pub inertia: f64,
+    /// Damping in N m s/rad.
+    pub damping: f64,
+    /// Stiffness in N m/rad to the point where the hand is held.
+    pub stiffness: f64,
+}
+
+/// Reads `[simulation]`.
+pub fn simulation(mut section: Section<'_>) -> Result<Simulation, Fault> {
+    let samples = section.number(&key::SAMPLES)? as usize;
+    let position = section.optional(&key::POSITION)?.unwrap_or(0.0);
+    let velocity = section.optional(&key::VELOCITY)?.unwrap_or(0.0);
+    let torque = torque(&mut section)?;
+    section.finish()?;
+    Ok(Simulation { samples, position, velocity, torque })
+}
+
+/// Reads `[human]`.
+pub fn hand(mut section: Section<'_>) -> Result<Hand, Fault> {
+    let inertia = section.optional(&key::HUMAN_INERTIA)?.unwrap_or(0.0);
+    let damping = section.optional(&key::HUMAN_DAMPING)?.unwrap_or(0.0);
+    let stiffness = section.optional(&key::HUMAN_STIFFNESS)?.unwrap_or(0.0);
+    section.finish()?;
+    Ok(Hand { inertia, damping, stiffness })
+}
+
+fn torque(section: &mut Section<'_>) -> Result<HandTorque, Fault> {
+    let held = section.list(&key::TORQUE)?;
+    let file = section.text(&key::TORQUE_FILE)?;
+    let sine = section.table(&key::TORQUE_SINE)?;
+    match (held, file, sine) {
+        (None, None, None) => Ok(HandTorque::Free),
+        (Some(Found { value, .. }), None, None) => Ok(HandTorque::Held(value)),
+        (None, Some(Found { value, .. }), None) => Ok(HandTorque::File(value.into())),
+        (None, None, Some(table)) => sine_torque(table),
+        (Some(Found { span, .. }), ..) => Err(section.conflict(&key::TORQUE, span, twice())),
+        (None, Some(Found { span, .. }), Some(_)) => {
+            Err(section.conflict(&key::TORQUE_FILE, span, twice()))
+        }
+    }
+}
+
+fn twice() -> String {
+    let names = [key::TORQUE, key::TORQUE_FILE, key::TORQUE_SINE].map(|key: Key| key.name());
+    format!("stands beside another torque; the hand has one of {}", names.join(", "))
+}
+
+fn sine_torque(mut table: Section<'_>) -> Result<HandTorque, Fault> {
+    let amplitude = table.number(&key::SINE_AMPLITUDE)?;
+    let omega = table.number(&key::SINE_OMEGA)?;
+    let phase = table.optional(&key::SINE_PHASE)?.unwrap_or(0.0);
+    table.finish()?;
+    Ok(HandTorque::Sine { amplitude, omega, phase })
+}

@@ -1,0 +1,9 @@
+//! The `haptic` program; see [`analysis::command`].
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    analysis::command::run(analysis::command::Arguments::parse())
+}
