@@ -1,2 +1,191 @@
 //! Text built without allocation, also at compile time: the sentence that the compiler prints is
 //! the sentence that the board sends.
+
+/// A string of at most `N` bytes; what does not fit is cut off.
+#[derive(Clone, Copy)]
+pub struct Text<const N: usize> {
+    bytes: [u8; N],
+    len: usize,
+}
+
+impl<const N: usize> Text<N> {
+    /// The empty text.
+    pub const fn new() -> Self {
+        Self { bytes: [0; N], len: 0 }
+    }
+
+    /// The text.
+    pub const fn as_str(&self) -> &str {
+        match core::str::from_utf8(self.bytes.split_at(self.len).0) {
+            Ok(text) => text,
+            // Only whole ASCII pieces are ever pushed.
+            Err(_) => "",
+        }
+    }
+
+    const fn byte(&mut self, byte: u8) {
+        if self.len < N {
+            self.bytes[self.len] = byte;
+            self.len += 1;
+        }
+    }
+
+    /// Appends ASCII text; bytes beyond ASCII become `?`.
+    pub const fn push(&mut self, text: &str) {
+        let bytes = text.as_bytes();
+        let mut i = 0;
+        while i < bytes.len() {
+            self.byte(if bytes[i].is_ascii() { bytes[i] } else { b'?' });
+            i += 1;
+        }
+    }
+
+    /// Appends a number with ten significant digits, trailing zeros left out; exponents outside
+    /// 1e-5 to 1e9 are written as `1.5e-7`. The digits are for reading: they are rounded, and may
+    /// be off in the tenth place.
+    pub const fn push_number(&mut self, value: f64) {
+        if value.is_nan() {
+            return self.push("NaN");
+        }
+        if value < 0.0 {
+            self.byte(b'-');
+        }
+        if value.is_infinite() {
+            return self.push("inf");
+        }
+        if value == 0.0 {
+            return self.byte(b'0');
+        }
+        let (digits, exponent) = decimal(value.abs());
+        if -5 <= exponent && exponent < 9 {
+            self.push_digits(&digits, exponent);
+        } else {
+            self.push_digits(&digits, 0);
+            self.byte(b'e');
+            self.push_integer(exponent);
+        }
+    }
+
+    /// Digits with the point after the one of weight `10^exponent`... `10^0`.
+    const fn push_digits(&mut self, digits: &[u8; DIGITS], exponent: i32) {
+        let mut last = DIGITS - 1;
+        while last > 0 && digits[last] == 0 {
+            last -= 1;
+        }
+        if exponent < 0 {
+            self.push("0.");
+            let mut zeros = -1;
+            while zeros > exponent {
+                self.byte(b'0');
+                zeros -= 1;
+            }
+        }
+        let mut i = 0;
+        while i <= last || i as i32 <= exponent {
+            if i as i32 == exponent + 1 && i > 0 && exponent >= 0 {
+                self.byte(b'.');
+            }
+            self.byte(b'0' + digits[i]);
+            i += 1;
+        }
+    }
+
+    const fn push_integer(&mut self, value: i32) {
+        if value < 0 {
+            self.byte(b'-');
+        }
+        let mut rest = value.unsigned_abs();
+        let mut digits = [0u8; 10];
+        let mut n = 0;
+        loop {
+            digits[n] = (rest % 10) as u8;
+            rest /= 10;
+            n += 1;
+            if rest == 0 {
+                break;
+            }
+        }
+        while n > 0 {
+            n -= 1;
+            self.byte(b'0' + digits[n]);
+        }
+    }
+}
+
+impl<const N: usize> Default for Text<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+const DIGITS: usize = 10;
+
+/// Ten decimal digits and the exponent of the first one; `value` positive and finite.
+const fn decimal(value: f64) -> ([u8; DIGITS], i32) {
+    let (mut scaled, mut exponent) = (value, 0);
+    while scaled >= 1e16 {
+        scaled /= 1e16;
+        exponent += 16;
+    }
+    while scaled < 1e-15 {
+        scaled *= 1e16;
+        exponent -= 16;
+    }
+    while scaled >= 10.0 {
+        scaled /= 10.0;
+        exponent += 1;
+    }
+    while scaled < 1.0 {
+        scaled *= 10.0;
+        exponent -= 1;
+    }
+    let mut whole = (scaled * 1e9 + 0.5) as u64;
+    if whole >= 10_000_000_000 {
+        whole /= 10;
+        exponent += 1;
+    }
+    let mut digits = [0; DIGITS];
+    let mut i = DIGITS;
+    while i > 0 {
+        i -= 1;
+        digits[i] = (whole % 10) as u8;
+        whole /= 10;
+    }
+    (digits, exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Text;
+
+    #[test]
+    fn numbers_read_as_people_write_them() {
+        for (value, wanted) in [
+            (0.022, "0.022"),
+            (21.0, "21"),
+            (-0.5, "-0.5"),
+            (123456.789, "123456.789"),
+            (0.1 + 0.2, "0.3"),
+            (999999999.0, "999999999"),
+            (1e9, "1e9"),
+            (2.5e-7, "2.5e-7"),
+            (9.99999999999, "10"),
+            (0.00001234, "0.00001234"),
+            (f64::INFINITY, "inf"),
+            (f64::MAX, "1.797693135e308"),
+            (100.0, "100"),
+            (120.5, "120.5"),
+        ] {
+            let mut text = Text::<40>::new();
+            text.push_number(value);
+            assert_eq!(text.as_str(), wanted);
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_cut_off() {
+        let mut text = Text::<4>::new();
+        text.push("passive");
+        assert_eq!(text.as_str(), "pass");
+    }
+}

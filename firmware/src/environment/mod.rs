@@ -6,6 +6,8 @@
 //! Each environment is a type of its own, so that a program contains only what its scene uses.
 //! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
 
+mod data;
+
 /// Spring delayed by whole samples: `E(z) = stiffness * z^-DELAY`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DelayedSpring<const DELAY: usize> {

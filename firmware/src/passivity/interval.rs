@@ -1,19 +1,336 @@
 //! Outward-rounded interval arithmetic in `f64`, usable in `const fn`.
+//!
+//! Every operation returns an interval that contains the exact result of every choice of numbers
+//! from its operands. An operation whose result is exact in `f64` keeps it exact: sums by their
+//! rounding error (Knuth's two-sum), products and quotients by counting significant bits. That is
+//! what lets a pole at exactly `z = 1` be told from one near it. Only IEEE additions,
+//! multiplications and divisions are used, so the end points are the same bits in the compiler, on
+//! the host and on the target.
 
-/// A closed interval of reals that encloses a value; `lo <= hi`, never NaN.
+/// A closed interval of reals; `lo <= hi`, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    pub(crate) lo: f64,
-    pub(crate) hi: f64,
+    lo: f64,
+    hi: f64,
 }
 
 impl Interval {
+    /// The number 0.
+    pub const ZERO: Self = Self { lo: 0.0, hi: 0.0 };
+    /// The number 1.
+    pub const ONE: Self = Self { lo: 1.0, hi: 1.0 };
+    /// Nothing is known.
+    pub const ENTIRE: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
+    /// The interval from `lo` to `hi`; [`Interval::ENTIRE`] if these are not in order or NaN.
+    pub const fn new(lo: f64, hi: f64) -> Self {
+        if lo <= hi { Self { lo, hi } } else { Self::ENTIRE }
+    }
+
+    /// The double itself; [`Interval::ENTIRE`] for NaN and infinities.
+    pub const fn exact(value: f64) -> Self {
+        if value.is_finite() { Self { lo: value, hi: value } } else { Self::ENTIRE }
+    }
+
+    /// Every decimal number that a person can have meant by this double.
+    ///
+    /// `0.001` has no binary representation; the double nearest to it stands for all decimals that
+    /// round to it. Whole numbers below 2^53 are exact in both notations.
+    pub const fn decimal(value: f64) -> Self {
+        const EXACT_BELOW: f64 = 9_007_199_254_740_992.0;
+        if !value.is_finite() {
+            return Self::ENTIRE;
+        }
+        if value.abs() < EXACT_BELOW && (value as i64) as f64 == value {
+            return Self::exact(value);
+        }
+        Self { lo: value.next_down(), hi: value.next_up() }
+    }
+
     /// Lower end.
     pub const fn lo(self) -> f64 {
         self.lo
     }
+
     /// Upper end.
     pub const fn hi(self) -> f64 {
         self.hi
+    }
+
+    /// Middle of the interval, rounded.
+    pub const fn midpoint(self) -> f64 {
+        self.lo * 0.5 + self.hi * 0.5
+    }
+
+    /// Whether the interval is a single number.
+    pub const fn is_exact(self) -> bool {
+        self.lo == self.hi
+    }
+
+    /// Whether the interval is the number 0 and nothing else.
+    pub const fn is_zero(self) -> bool {
+        self.lo == 0.0 && self.hi == 0.0
+    }
+
+    /// Whether `value` is inside.
+    pub const fn contains(self, value: f64) -> bool {
+        self.lo <= value && value <= self.hi
+    }
+
+    /// Whether every number of the interval is below every number of `other`.
+    pub const fn is_below(self, other: Self) -> bool {
+        self.hi < other.lo
+    }
+
+    /// Whether every number of the interval is above 0.
+    pub const fn is_positive(self) -> bool {
+        self.lo > 0.0
+    }
+
+    /// Whether every number of the interval is below 0.
+    pub const fn is_negative(self) -> bool {
+        self.hi < 0.0
+    }
+
+    /// Whether both ends are finite.
+    pub const fn is_finite(self) -> bool {
+        self.lo.is_finite() && self.hi.is_finite()
+    }
+
+    /// `-self`, exact.
+    pub const fn neg(self) -> Self {
+        Self { lo: -self.hi, hi: -self.lo }
+    }
+
+    /// `self + other`.
+    pub const fn add(self, other: Self) -> Self {
+        Self { lo: add_down(self.lo, other.lo), hi: add_up(self.hi, other.hi) }
+    }
+
+    /// `self - other`.
+    pub const fn sub(self, other: Self) -> Self {
+        self.add(other.neg())
+    }
+
+    /// `self * other`.
+    pub const fn mul(self, other: Self) -> Self {
+        let (a, b, c, d) = (self.lo, self.hi, other.lo, other.hi);
+        // Which end points give the smallest and the largest product.
+        let (p, q, r, s) = if a >= 0.0 {
+            if c >= 0.0 {
+                (a, c, b, d)
+            } else if d <= 0.0 {
+                (b, c, a, d)
+            } else {
+                (b, c, b, d)
+            }
+        } else if b <= 0.0 {
+            if c >= 0.0 {
+                (a, d, b, c)
+            } else if d <= 0.0 {
+                (b, d, a, c)
+            } else {
+                (a, d, a, c)
+            }
+        } else if c >= 0.0 {
+            (a, d, b, d)
+        } else if d <= 0.0 {
+            (b, c, a, c)
+        } else {
+            return Self {
+                lo: mul_down(a, d).min(mul_down(b, c)),
+                hi: mul_up(a, c).max(mul_up(b, d)),
+            };
+        };
+        Self { lo: mul_down(p, q), hi: mul_up(r, s) }
+    }
+
+    /// `self / other`; [`Interval::ENTIRE`] if `other` contains 0.
+    pub const fn div(self, other: Self) -> Self {
+        if other.is_positive() {
+            let lo = div_down(self.lo, if self.lo >= 0.0 { other.hi } else { other.lo });
+            let hi = div_up(self.hi, if self.hi >= 0.0 { other.lo } else { other.hi });
+            Self { lo, hi }
+        } else if other.is_negative() {
+            self.neg().div(other.neg())
+        } else {
+            Self::ENTIRE
+        }
+    }
+
+    /// `self / 2`.
+    pub const fn half(self) -> Self {
+        Self { lo: half_down(self.lo), hi: -half_down(-self.hi) }
+    }
+
+    /// `2 self`, exact unless it overflows.
+    pub const fn double(self) -> Self {
+        self.add(self)
+    }
+
+    /// Largest absolute value inside.
+    pub const fn magnitude(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+
+    /// `abs(self)`.
+    pub const fn abs(self) -> Self {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            self.neg()
+        } else {
+            Self { lo: 0.0, hi: self.magnitude() }
+        }
+    }
+
+    /// The larger of two numbers, one from each interval.
+    pub const fn max(self, other: Self) -> Self {
+        Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// The smaller of two numbers, one from each interval.
+    pub const fn min(self, other: Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi) }
+    }
+
+    /// Non-negative square root of the non-negative part; [`Interval::ENTIRE`] if there is none.
+    pub const fn sqrt(self) -> Self {
+        if !(self.hi >= 0.0) || !self.is_finite() {
+            return Self::ENTIRE;
+        }
+        let lo = if self.lo > 0.0 { sqrt_enclosure(self.lo).lo } else { 0.0 };
+        Self { lo, hi: sqrt_enclosure(self.hi).hi }
+    }
+}
+
+const fn add_down(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    if sum.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    if rounding_error_of_sum(a, b, sum) >= 0.0 { sum } else { sum.next_down() }
+}
+
+const fn add_up(a: f64, b: f64) -> f64 {
+    -add_down(-a, -b)
+}
+
+/// Knuth's two-sum: `a + b - sum`, exact for finite numbers. Infinite sums give NaN, so that the
+/// caller steps outward.
+const fn rounding_error_of_sum(a: f64, b: f64, sum: f64) -> f64 {
+    let b_seen = sum - a;
+    (a - (sum - b_seen)) + (b - b_seen)
+}
+
+const fn mul_down(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 {
+        return 0.0;
+    }
+    let product = a * b;
+    if product_is_exact(a, b, product) { product } else { product.next_down() }
+}
+
+const fn mul_up(a: f64, b: f64) -> f64 {
+    -mul_down(-a, b)
+}
+
+/// Lower bound of a quotient; `b > 0`.
+pub(super) const fn div_down(a: f64, b: f64) -> f64 {
+    if a == 0.0 {
+        return 0.0;
+    }
+    let quotient = a / b;
+    if quotient.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    let back = quotient * b;
+    if back == a && product_is_exact(quotient, b, back) { quotient } else { quotient.next_down() }
+}
+
+/// Upper bound of a quotient; `b > 0`.
+pub(super) const fn div_up(a: f64, b: f64) -> f64 {
+    -div_down(-a, b)
+}
+
+const fn half_down(value: f64) -> f64 {
+    let half = value * 0.5;
+    if half + half == value { half } else { half.next_down() }
+}
+
+/// Whether `product`, the rounded `a * b`, is the exact one: the significant bits of the factors
+/// fit a mantissa together and the exponent stays in range.
+const fn product_is_exact(a: f64, b: f64, product: f64) -> bool {
+    product.is_normal()
+        && a.is_normal()
+        && b.is_normal()
+        && significant_bits(a) + significant_bits(b) <= 53
+}
+
+/// Bits of the mantissa of a normal number from the leading one to the last one.
+const fn significant_bits(value: f64) -> u32 {
+    const MANTISSA: u64 = (1 << 52) - 1;
+    let mantissa = (value.to_bits() & MANTISSA) | (1 << 52);
+    53 - mantissa.trailing_zeros()
+}
+
+/// Newton's iteration, then the quotient on the other side of the root: `r` and `x / r` enclose
+/// it whatever `r` is.
+const fn sqrt_enclosure(x: f64) -> Interval {
+    if x == 0.0 {
+        return Interval::ZERO;
+    }
+    // Halving the exponent gives a start within a factor of 1.5 of the root.
+    let mut root = f64::from_bits((x.to_bits() >> 1) + (1023 << 51));
+    let mut i = 0;
+    while i < 6 {
+        root = 0.5 * (root + x / root);
+        i += 1;
+    }
+    let (below, above) = (div_down(x, root), div_up(x, root));
+    Interval::new(below.min(root), above.max(root))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Interval;
+
+    #[test]
+    fn exact_operations_stay_exact_and_others_widen() {
+        let third = Interval::ONE.div(Interval::exact(3.0));
+        assert!(!third.is_exact() && third.lo() < third.hi());
+        assert!(third.mul(Interval::exact(3.0)).contains(1.0));
+        assert!(Interval::exact(1.5).mul(Interval::exact(-2.25)).is_exact());
+        assert!(Interval::exact(0.1).sub(Interval::exact(0.1)).is_zero());
+        assert!(!Interval::exact(0.1).add(Interval::exact(0.2)).is_exact());
+        assert!(Interval::exact(6.0).div(Interval::exact(3.0)).is_exact());
+    }
+
+    #[test]
+    fn decimals_enclose_what_was_written() {
+        assert!(Interval::decimal(44.0).is_exact());
+        let tenth = Interval::decimal(0.1).mul(Interval::exact(10.0));
+        assert!(tenth.contains(1.0) && !tenth.is_exact());
+    }
+
+    #[test]
+    fn infinities_and_nan_are_no_knowledge() {
+        assert_eq!(Interval::exact(f64::NAN), Interval::ENTIRE);
+        assert_eq!(Interval::ONE.div(Interval::ZERO), Interval::ENTIRE);
+        let huge = Interval::exact(f64::MAX).add(Interval::exact(f64::MAX));
+        assert!(huge.lo() == f64::MAX && huge.hi() == f64::INFINITY);
+        let none = Interval::ENTIRE.sub(Interval::ENTIRE);
+        assert_eq!(none, Interval::ENTIRE);
+    }
+
+    #[test]
+    fn square_roots_enclose() {
+        for x in [2.0, 0.25, 1e-300, 1e300, f64::MIN_POSITIVE / 8.0, 3.0] {
+            let root = Interval::exact(x).sqrt();
+            let square = root.mul(root);
+            assert!(square.contains(x), "{x}: {root:?}");
+            assert!(root.hi() - root.lo() <= 1e-15 * root.hi() || x < 1e-307);
+        }
+        assert_eq!(Interval::exact(-1.0).sqrt(), Interval::ENTIRE);
     }
 }

@@ -1,0 +1,108 @@
+//! From a [`Scene`] to a [`Certified`] scene, or to a [`Rejection`] that says why not.
+//!
+//! The same `const fn` judges at compile time, when the board starts, and for every change that
+//! arrives over the wire.
+
+mod assumption;
+mod model;
+mod parameter;
+mod rejection;
+mod remedy;
+mod rules;
+
+pub use assumption::{Assumption, Assumptions};
+pub use parameter::{InvalidParameter, Parameter};
+pub use rejection::{Rejection, Sentence};
+pub use remedy::{Relation, Remedies, Remedy};
+pub use rules::{Answer, Assessment, Rule, assess, gamma};
+
+use crate::environment::*;
+use crate::scene::Scene;
+
+/// A scene that was proved passive.
+///
+/// There is no way to make one but `certify`, and a servo is built from nothing else: unchecked
+/// parameters cannot drive the motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certified<S> {
+    scene: S,
+    assessment: Assessment,
+}
+
+impl<S> Certified<S> {
+    /// The scene that was certified.
+    pub const fn scene(&self) -> &S {
+        &self.scene
+    }
+
+    /// The numbers that the certificate rests on.
+    pub const fn assessment(&self) -> &Assessment {
+        &self.assessment
+    }
+}
+
+/// Judges a scene given as data: the certificate's numbers, or why there is no certificate.
+pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
+    let assessment = assess(scene);
+    match assessment.outcome {
+        Ok(()) => Ok(assessment),
+        Err(rejection) => Err(remedy::with_remedies(rejection, scene)),
+    }
+}
+
+macro_rules! certify_for {
+    ($([$($generics:tt)*] $environment:ty;)*) => {$(
+        impl<$($generics)*> Scene<$environment> {
+            /// The same scene with its environment as data.
+            pub const fn as_data(&self) -> Scene {
+                Scene {
+                    device: self.device,
+                    timing: self.timing,
+                    coupling: self.coupling,
+                    environment: self.environment.as_data(),
+                    torque_limit: self.torque_limit,
+                }
+            }
+
+            /// Judges the scene; only one that is proved passive becomes [`Certified`].
+            pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
+                match certify(&self.as_data()) {
+                    Ok(assessment) => Ok(Certified { scene: self, assessment }),
+                    Err(rejection) => Err(rejection),
+                }
+            }
+
+            /// For constants: the certified scene, or a compile error that says why not.
+            ///
+            /// # Panics
+            /// If the scene is not certified; in a constant that is the compile error.
+            pub const fn certified(self) -> Certified<Self> {
+                match self.certify() {
+                    Ok(certified) => certified,
+                    Err(rejection) => panic!("{}", rejection.sentence().as_str()),
+                }
+            }
+        }
+    )*};
+}
+
+certify_for! {
+    [const N: usize] DelayedSpring<N>;
+    [const N: usize] Placed<DelayedSpring<N>>;
+    [const N: usize] OneSided<DelayedSpring<N>>;
+    [const N: usize] DamperWall<N>;
+    [const N: usize] Placed<DamperWall<N>>;
+    [const N: usize] OneSided<DamperWall<N>>;
+    [const N: usize] FilteredWall<N>;
+    [const N: usize] Placed<FilteredWall<N>>;
+    [const N: usize] OneSided<FilteredWall<N>>;
+    [const N: usize] FreeMode<N>;
+    [const N: usize] FreeModeWall<DelayedSpring<N>>;
+    [const N: usize] FreeModeWall<DamperWall<N>>;
+    [const N: usize] FreeModeWall<FilteredWall<N>>;
+    [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>;
+    [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>;
+    [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>;
+    [] Rational;
+    [] Environment;
+}

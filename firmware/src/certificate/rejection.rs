@@ -1,0 +1,254 @@
+//! Why a scene was not certified, as numbers and as a sentence.
+
+use core::fmt;
+
+use super::parameter::InvalidParameter;
+use super::remedy::Remedies;
+use crate::passivity::interval::Interval;
+use crate::passivity::poles::Doubt;
+use crate::text::Text;
+
+/// A sentence about a scene.
+pub type Sentence = Text<640>;
+
+/// Why a scene was not certified. Indices in N m s/rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rejection {
+    /// A number that makes no sense whatever the rest of the scene is.
+    Invalid(InvalidParameter),
+    /// The environment has more zeros than poles: it would need future positions.
+    Improper,
+    /// Coupling and undelayed environment have no unique solution within a tick.
+    IllPosed {
+        /// `1 + E(inf) V`; 0 where the environment's own denominator degenerates.
+        loop_gain: Interval,
+    },
+    /// The device has no passivity to spend.
+    NoPassivity {
+        /// Its output strict passivity.
+        delta: Interval,
+    },
+    /// A pole outside the unit circle.
+    UnstablePole {
+        /// Schur-Cohn reflection coefficient that shows it: at least 1.
+        reflection: Interval,
+    },
+    /// A repeated pole on the unit circle, counting the integrator from velocity to position.
+    RepeatedUnitPole {
+        /// Cosine of its angle.
+        cos_theta: Interval,
+    },
+    /// A pole on the unit circle whose residue does not point its way (equation 4).
+    ResidueAngle {
+        /// Cosine of its angle.
+        cos_theta: Interval,
+    },
+    /// The environment pulls away at rest: a negative spring.
+    NegativeResidue {
+        /// Residue at `z = 1`.
+        residue: Interval,
+    },
+    /// The environment needs more damping than the device has (equation 17).
+    Shortage {
+        /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
+        alpha: Interval,
+        /// What it has to stay below.
+        delta: Interval,
+        /// Where on the unit circle the linear index is reached.
+        cos_theta: Interval,
+        /// Changes of one number that would pass.
+        remedies: Remedies,
+    },
+    /// The environment would pass behind the standard coupling; this coupling does not suit it
+    /// (equation 18).
+    Coupling {
+        /// Index of the environment alone (its bound, for one-sided and limited scenes).
+        alpha: Option<Interval>,
+        /// Index with this coupling folded in, where it exists and was compared.
+        alpha_coupled: Option<Interval>,
+        /// Passivity of the device.
+        delta: Interval,
+        /// Stiffness of this coupling in N m/rad; `None`: rigid.
+        stiffness: Option<Interval>,
+        /// Stiffness of the standard coupling, `2 delta / T`, in N m/rad.
+        standard: Interval,
+        /// Changes of one number that would pass.
+        remedies: Remedies,
+    },
+    /// Neither proved nor disproved: never a yes.
+    Undecided {
+        /// What stood in the way.
+        doubt: Doubt,
+        /// The index, where it was enclosed.
+        index: Option<Interval>,
+        /// What it had to stay below.
+        limit: Option<Interval>,
+        /// Changes of one number that would pass.
+        remedies: Remedies,
+    },
+}
+
+impl Rejection {
+    /// The reason as a word for programs.
+    pub const fn reason(&self) -> &'static str {
+        match self {
+            Self::Invalid(_) | Self::IllPosed { .. } => "ill_posed",
+            Self::Improper => "improper",
+            Self::NoPassivity { .. } | Self::Shortage { .. } => "shortage",
+            Self::UnstablePole { .. } => "unstable_pole",
+            Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
+            Self::ResidueAngle { .. } => "residue_angle",
+            Self::NegativeResidue { .. } => "negative_residue",
+            Self::Coupling { .. } => "coupling",
+            Self::Undecided { .. } => "undecided",
+        }
+    }
+
+    /// Whether this is [`Rejection::Undecided`].
+    pub const fn is_undecided(&self) -> bool {
+        matches!(self, Self::Undecided { .. })
+    }
+
+    /// Changes of one number that would make the scene pass, each of them tried.
+    pub const fn remedies(&self) -> Remedies {
+        match self {
+            Self::Shortage { remedies, .. }
+            | Self::Coupling { remedies, .. }
+            | Self::Undecided { remedies, .. } => *remedies,
+            _ => Remedies::NONE,
+        }
+    }
+
+    /// The rejection as a sentence, the same at compile time, on the host and on the board.
+    pub const fn sentence(&self) -> Sentence {
+        let mut t = Sentence::new();
+        t.push(if self.is_undecided() { "undecided: " } else { "rejected: " });
+        match self {
+            Self::Invalid(invalid) => invalid.write(&mut t),
+            Self::Improper => t.push("the environment has more zeros than poles, so it is not causal; add delay or poles"),
+            Self::IllPosed { loop_gain } => {
+                t.push("coupling and environment have no unique solution within a tick (1 + E(inf)/K_vc = ");
+                t.push_number(loop_gain.midpoint());
+                t.push("); delay the environment or change the coupling stiffness");
+            }
+            Self::NoPassivity { delta } => {
+                t.push("the device's passivity delta = ");
+                t.push_number(delta.midpoint());
+                t.push(" N m s/rad leaves nothing to spend; it must be greater than 0");
+            }
+            Self::UnstablePole { reflection } => {
+                t.push("the environment has a pole outside the unit circle (reflection coefficient ");
+                t.push_number(reflection.lo());
+                t.push(", must be below 1)");
+            }
+            Self::RepeatedUnitPole { cos_theta } => {
+                t.push("from velocity to torque there is a repeated pole on the unit circle");
+                write_angle(&mut t, *cos_theta);
+            }
+            Self::ResidueAngle { cos_theta } => {
+                t.push("a pole on the unit circle has a residue of the wrong angle");
+                write_angle(&mut t, *cos_theta);
+            }
+            Self::NegativeResidue { residue } => {
+                t.push("the environment pulls away at rest like a negative spring (residue at z = 1 is ");
+                t.push_number(residue.midpoint());
+                t.push(" N m s/rad, must be positive)");
+            }
+            Self::Shortage { alpha, delta, cos_theta, .. } => {
+                write_shortage(&mut t, *alpha, *delta, *cos_theta);
+            }
+            Self::Coupling { alpha, alpha_coupled, delta, stiffness, standard, .. } => {
+                write_coupling(&mut t, *alpha, *alpha_coupled, *delta, *stiffness, *standard);
+            }
+            Self::Undecided { doubt, index, limit, .. } => {
+                write_doubt(&mut t, *doubt, *index, *limit);
+            }
+        }
+        self.remedies().write(&mut t);
+        t
+    }
+}
+
+const fn write_angle(t: &mut Sentence, cos_theta: Interval) {
+    t.push(" (at cos(theta) = ");
+    t.push_number(cos_theta.midpoint());
+    t.push(")");
+}
+
+const fn write_shortage(t: &mut Sentence, alpha: Interval, delta: Interval, cos_theta: Interval) {
+    t.push("the environment needs alpha = ");
+    t.push_number(alpha.hi());
+    t.push(" N m s/rad of damping, not below the delta = ");
+    t.push_number(delta.lo());
+    t.push(" N m s/rad that the device has");
+    if cos_theta.hi() - cos_theta.lo() < 0.5 {
+        write_angle(t, cos_theta);
+    }
+}
+
+const fn write_coupling(
+    t: &mut Sentence,
+    alpha: Option<Interval>,
+    coupled: Option<Interval>,
+    delta: Interval,
+    stiffness: Option<Interval>,
+    standard: Interval,
+) {
+    match stiffness {
+        Some(stiffness) => {
+            t.push("the coupling stiffness ");
+            t.push_number(stiffness.midpoint());
+            t.push(" N m/rad");
+        }
+        None => t.push("the rigid coupling"),
+    }
+    t.push(" does not suit this environment");
+    if let Some(alpha) = alpha {
+        t.push(": alone it needs alpha = ");
+        t.push_number(alpha.hi());
+    }
+    if let Some(coupled) = coupled {
+        t.push(", with the coupling alpha = ");
+        t.push_number(coupled.hi());
+    }
+    t.push(" N m s/rad of the delta = ");
+    t.push_number(delta.lo());
+    t.push(" N m s/rad that the device has; the standard coupling is 2 delta/T = ");
+    t.push_number(standard.midpoint());
+    t.push(" N m/rad");
+}
+
+const fn write_doubt(
+    t: &mut Sentence,
+    doubt: Doubt,
+    index: Option<Interval>,
+    limit: Option<Interval>,
+) {
+    t.push(match doubt {
+        Doubt::PoleNearCircle => "a pole is so near the unit circle that rounding hides its side",
+        Doubt::SeveralPolePairs => "the environment has several pole pairs on the unit circle",
+        Doubt::ResidueSign => {
+            "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 as unit_zeros"
+        }
+        Doubt::OutOfRange => "numbers or degrees are out of the range of the computation",
+        Doubt::TooClose => "the index is too close to its limit to tell",
+        Doubt::NoNonlinearBound => {
+            "no bound is known for a general rational environment with a torque limit"
+        }
+    });
+    if let (Some(index), Some(limit)) = (index, limit) {
+        t.push(" (alpha = ");
+        t.push_number(index.hi());
+        t.push(", delta = ");
+        t.push_number(limit.lo());
+        t.push(" N m s/rad)");
+    }
+}
+
+impl fmt::Display for Rejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.sentence().as_str())
+    }
+}
+
+impl core::error::Error for Rejection {}

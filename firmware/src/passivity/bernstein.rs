@@ -1,0 +1,272 @@
+//! Enclosure of the minimum of a rational function of `c = cos(theta)` over `[-1, 1]`.
+//!
+//! Numerator `p` and denominator `r` are brought to Bernstein form on a box. Where all
+//! coefficients `r_i` are positive, `p / r` is a convex mean of the `p_i / r_i`, so the smallest of
+//! these is a lower bound; the values at the box's ends are upper bounds of the minimum. Boxes
+//! are halved until both meet. The bounds close quadratically, and rounding is outward all the
+//! way, so the result encloses the minimum however early the halving ends.
+
+use super::chebyshev::Series;
+use super::interval::{Interval, div_down, div_up};
+use super::polynomial::MAX_DEGREE;
+
+const SIZE: usize = MAX_DEGREE + 2;
+/// Boxes put aside share this pool, so that the working memory fits a small target's stack.
+const POOL: usize = 2 * SIZE * 9;
+const MAX_BOXES: u32 = 600;
+const MAX_LEVEL: u32 = 30;
+/// Wanted width of the enclosure, relative to its magnitude.
+const TOLERANCE: f64 = 1e-13;
+
+/// Where and how small `p / r` gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Minimum {
+    /// Encloses the minimum; the lower end is infinite where `r` could not be proved positive.
+    pub value: Interval,
+    /// The box of `c` that holds the point with the smallest value seen.
+    pub at: Interval,
+}
+
+/// Bernstein coefficients of `p` and `r` on one box.
+#[derive(Clone, Copy)]
+struct Pieces {
+    p: [Interval; SIZE],
+    r: [Interval; SIZE],
+}
+
+#[derive(Clone, Copy)]
+struct Waiting {
+    left: f64,
+    level: u32,
+    bound: Bound,
+}
+
+/// Lower bound of `p / r` on a box.
+#[derive(Clone, Copy)]
+struct Bound {
+    lower: f64,
+    /// How much of it is rounding: halving cannot improve on that.
+    rounding: f64,
+}
+
+impl Waiting {
+    const NONE: Self =
+        Self { left: 0.0, level: 0, bound: Bound { lower: f64::INFINITY, rounding: 0.0 } };
+}
+
+/// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
+/// proved on the way.
+pub const fn minimum(p: &Series, r: &Series) -> Minimum {
+    let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
+    let mut search = Search {
+        degree,
+        upper: f64::INFINITY,
+        at: Interval::new(-1.0, 1.0),
+        lower: f64::INFINITY,
+        pool: [Interval::ZERO; POOL],
+        waiting: [Waiting::NONE; MAX_LEVEL as usize + 2],
+        waiting_len: 0,
+    };
+    let root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    search.run(root);
+    let lower = search.lower.min(search.upper);
+    Minimum { value: Interval::new(lower, search.upper), at: search.at }
+}
+
+struct Search {
+    degree: usize,
+    /// Smallest proved upper bound so far, and the box it was seen in.
+    upper: f64,
+    at: Interval,
+    /// Smallest lower bound among the boxes that were given up.
+    lower: f64,
+    pool: [Interval; POOL],
+    waiting: [Waiting; MAX_LEVEL as usize + 2],
+    waiting_len: usize,
+}
+
+impl Search {
+    const fn run(&mut self, root: Pieces) {
+        let mut pieces = root;
+        let mut current = Waiting { left: -1.0, level: 0, bound: self.look(&pieces, -1.0, 2.0) };
+        let mut boxes = 0;
+        loop {
+            boxes += 1;
+            if boxes > MAX_BOXES || current.level >= MAX_LEVEL || self.is_settled(current.bound) {
+                self.lower = self.lower.min(current.bound.lower);
+            } else {
+                current = self.split(&mut pieces, current);
+                continue;
+            }
+            match self.take(&mut pieces) {
+                Some(next) => current = next,
+                None => return,
+            }
+        }
+    }
+
+    /// Bounds the minimum on a box: updates the upper bound, returns the lower one.
+    const fn look(&mut self, pieces: &Pieces, left: f64, width: f64) -> Bound {
+        let n = self.degree;
+        let at = Interval::new(left, left + width);
+        self.offer(pieces.p[0], pieces.r[0], at);
+        self.offer(pieces.p[n], pieces.r[n], at);
+        let mut bound = Bound { lower: f64::INFINITY, rounding: 0.0 };
+        let mut i = 0;
+        while i <= n {
+            let (p, r) = (pieces.p[i], pieces.r[i]);
+            if !r.is_positive() {
+                return Bound { lower: f64::NEG_INFINITY, rounding: 0.0 };
+            }
+            let lower = div_down(p.lo(), if p.lo() >= 0.0 { r.hi() } else { r.lo() });
+            if lower < bound.lower {
+                let upper = div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() });
+                bound = Bound { lower, rounding: upper - lower };
+            }
+            i += 1;
+        }
+        bound
+    }
+
+    const fn offer(&mut self, p: Interval, r: Interval, at: Interval) {
+        if r.is_positive() {
+            let value = div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() });
+            if value < self.upper {
+                self.upper = value;
+                self.at = at;
+            }
+        }
+    }
+
+    /// Whether halving the box cannot move the result by more than is wanted, or than rounding
+    /// hides.
+    const fn is_settled(&self, bound: Bound) -> bool {
+        let slack = (TOLERANCE * self.upper.abs()).max(2.0 * bound.rounding);
+        bound.lower >= self.upper - slack
+    }
+
+    /// Halves the box. Goes on with the half that has the smaller lower bound and puts the other
+    /// aside; a half that cannot hold a smaller value is settled at once.
+    const fn split(&mut self, pieces: &mut Pieces, parent: Waiting) -> Waiting {
+        let n = self.degree;
+        let width = box_width(parent.level + 1);
+        let middle = parent.left + width;
+        let mut right = *pieces;
+        halve(&mut pieces.p, &mut right.p, n);
+        halve(&mut pieces.r, &mut right.r, n);
+        let level = parent.level + 1;
+        let low = self.look(pieces, parent.left, width);
+        let high = self.look(&right, middle, width);
+        let a = Waiting { left: parent.left, level, bound: low };
+        let b = Waiting { left: middle, level, bound: high };
+        if low.lower <= high.lower {
+            self.put_aside(&right, b);
+            a
+        } else {
+            self.put_aside(pieces, a);
+            *pieces = right;
+            b
+        }
+    }
+
+    const fn put_aside(&mut self, pieces: &Pieces, waiting: Waiting) {
+        let stride = 2 * (self.degree + 1);
+        let base = self.waiting_len * stride;
+        let full = base + stride > POOL || self.waiting_len >= self.waiting.len();
+        if full || self.is_settled(waiting.bound) {
+            self.lower = self.lower.min(waiting.bound.lower);
+            return;
+        }
+        let mut i = 0;
+        while i <= self.degree {
+            self.pool[base + i] = pieces.p[i];
+            self.pool[base + self.degree + 1 + i] = pieces.r[i];
+            i += 1;
+        }
+        self.waiting[self.waiting_len] = waiting;
+        self.waiting_len += 1;
+    }
+
+    const fn take(&mut self, pieces: &mut Pieces) -> Option<Waiting> {
+        if self.waiting_len == 0 {
+            return None;
+        }
+        self.waiting_len -= 1;
+        let base = self.waiting_len * 2 * (self.degree + 1);
+        let mut i = 0;
+        while i <= self.degree {
+            pieces.p[i] = self.pool[base + i];
+            pieces.r[i] = self.pool[base + self.degree + 1 + i];
+            i += 1;
+        }
+        Some(self.waiting[self.waiting_len])
+    }
+}
+
+/// Width of a box after `level` halvings of `[-1, 1]`; a power of two, exact.
+const fn box_width(level: u32) -> f64 {
+    2.0 / (1u64 << level) as f64
+}
+
+/// De Casteljau at the middle: `left` becomes the left half, `right` (a copy) the right half.
+const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usize) {
+    // right[0..] is worked down in place: after step k, right[i] holds the mean of level k.
+    let mut k = 0;
+    while k <= n {
+        left[k] = right[0];
+        let mut i = 0;
+        while i + k < n {
+            right[i] = right[i].add(right[i + 1]).half();
+            i += 1;
+        }
+        k += 1;
+    }
+    // Level k left its last mean, the right half's coefficient n - k, at right[n - k].
+}
+
+/// Bernstein coefficients on `[-1, 1]`, `c` growing with the index, of a Chebyshev series.
+///
+/// Multiplied by the binomials, `T_k` has the whole coefficients `(-1)^(k-i) C(2k, 2i)` at degree
+/// `k`, and raising the degree by one adds neighbours; so the only roundings are those of the
+/// series' own coefficients, and of the division by the binomials at the end.
+const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
+    let mut scaled = [Interval::ZERO; SIZE];
+    let mut k = 0;
+    while k <= degree {
+        // Raise from degree k - 1 to k: multiply by (1 - t) + t.
+        let mut i = k;
+        while i > 0 {
+            scaled[i] = scaled[i].add(scaled[i - 1]);
+            i -= 1;
+        }
+        let a = series.coefficient(k);
+        if !a.is_zero() {
+            let mut i = 0;
+            while i <= k {
+                let sign = if (k - i) % 2 == 0 { 1.0 } else { -1.0 };
+                let weight = Interval::exact(sign * binomial(2 * k, 2 * i));
+                scaled[i] = scaled[i].add(a.mul(weight));
+                i += 1;
+            }
+        }
+        k += 1;
+    }
+    let mut i = 0;
+    while i <= degree {
+        scaled[i] = scaled[i].div(Interval::exact(binomial(degree, i)));
+        i += 1;
+    }
+    scaled
+}
+
+/// `C(n, k)` for `n <= 34`: below 2^53, so exact.
+const fn binomial(n: usize, k: usize) -> f64 {
+    let k = if k > n - k { n - k } else { k };
+    let mut value: u64 = 1;
+    let mut i = 0;
+    while i < k {
+        value = value * (n - i) as u64 / (i + 1) as u64;
+        i += 1;
+    }
+    value as f64
+}

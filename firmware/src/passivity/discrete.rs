@@ -1,0 +1,167 @@
+//! The discrete-time tests of theory, section 1: passive, input strictly, output strictly passive.
+
+use super::bernstein::{Minimum, minimum};
+use super::chebyshev::{Kernel, Series, at_cosine};
+use super::interval::Interval;
+use super::poles::{Doubt, Obstacle, Reduced, reduce};
+use super::polynomial::UnitRoot;
+use super::transfer::Transfer;
+
+/// Smallest real part on the unit circle of a function that meets the pole conditions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RealPart {
+    /// Encloses the infimum of `Re G` over the circle.
+    pub minimum: Interval,
+    /// Box of `cos(theta)` in which the smallest value was seen.
+    pub cos_theta: Interval,
+}
+
+/// Input strict passivity: checks the pole conditions (equation 4) and encloses
+/// `min Re G(e^(j theta))`, the index `f` for which `<u, y> >= f ||u||^2` (equation 3).
+///
+/// `G` is passive if the minimum is not negative. For `G = (T z / (z - 1)) E` the minimum is
+/// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
+pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
+    match reduce(g, widen) {
+        Ok(reduced) => real_part(&reduced),
+        Err(obstacle) => Err(obstacle),
+    }
+}
+
+/// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as
+/// `min Re (1/G)`. `G` must be stable; a pole on the circle leaves it an index of at most 0.
+pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
+    match reduce(g, widen) {
+        Ok(_) => input_passivity(g.inverse(), widen),
+        Err(obstacle) => Err(obstacle),
+    }
+}
+
+/// The index `alpha_min` of an environment: the least `alpha` for which `alpha + L` is passive,
+/// `L = (T z / (z - 1)) E` (equations 20, 21; theory, section 2).
+pub const fn index(
+    environment: Transfer,
+    period: Interval,
+    widen: bool,
+) -> Result<RealPart, Obstacle> {
+    match input_passivity(environment.from_velocity(period), widen) {
+        Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
+        Err(obstacle) => Err(obstacle),
+    }
+}
+
+const fn real_part(g: &Reduced) -> Result<RealPart, Obstacle> {
+    if let Err(obstacle) = residues_at_real_points(g) {
+        return Err(obstacle);
+    }
+    let (kernel, shift) = kernel_of(g);
+    let Some(mut p) = Series::real_part(kernel, shift, &g.numerator, &g.denominator) else {
+        return Err(Obstacle::Undecided(Doubt::OutOfRange));
+    };
+    if let Some(sum) = g.pair {
+        p = match without_pair(g, p, sum.half()) {
+            Ok(p) => p,
+            Err(obstacle) => return Err(obstacle),
+        };
+    }
+    let r = Series::squared_magnitude(&g.denominator);
+    let Minimum { value, at } = minimum(&p, &r);
+    let minimum = value.mul(g.scale).half();
+    if minimum.is_finite() {
+        Ok(RealPart { minimum, cos_theta: at })
+    } else {
+        Err(Obstacle::Undecided(Doubt::PoleNearCircle))
+    }
+}
+
+/// The kernel of the poles at 1 and -1, and the power of `z` that is left beside it.
+const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
+    // 1 / (z^2 - 2 c0 z + 1) = z^-1 / (2 (c - c0)) on the circle.
+    let shift = if g.pair.is_some() { g.shift - 1 } else { g.shift };
+    match (g.at_one, g.at_minus_one) {
+        (false, false) => (Kernel::One, shift),
+        (true, false) => (Kernel::AtOne, shift - 1),
+        (false, true) => (Kernel::AtMinusOne, shift),
+        (true, true) => (Kernel::AtBoth, shift - 1),
+    }
+}
+
+/// Residues at `z = 1` and `z = -1`: `k = residue / z_0` must be positive.
+const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
+    if g.at_one {
+        let residue = residue_at(g, UnitRoot::Plus);
+        if residue.is_negative() {
+            return Err(Obstacle::NegativeResidue { residue });
+        }
+        if !residue.is_positive() {
+            return Err(Obstacle::Undecided(Doubt::ResidueSign));
+        }
+    }
+    if g.at_minus_one {
+        let k = residue_at(g, UnitRoot::Minus).neg();
+        if k.is_negative() {
+            return Err(Obstacle::ResidueAngle { cos_theta: Interval::ONE.neg() });
+        }
+        if !k.is_positive() {
+            return Err(Obstacle::Undecided(Doubt::ResidueSign));
+        }
+    }
+    Ok(())
+}
+
+const fn residue_at(g: &Reduced, root: UnitRoot) -> Interval {
+    let mut value = g.scale.mul(g.numerator.at_unit_root(root));
+    value = value.div(g.denominator.at_unit_root(root));
+    let two = Interval::exact(2.0);
+    match root {
+        UnitRoot::Plus => {
+            if g.at_minus_one {
+                value = value.half();
+            }
+            if let Some(sum) = g.pair {
+                value = value.div(two.sub(sum));
+            }
+        }
+        UnitRoot::Minus => {
+            if g.shift % 2 != 0 {
+                value = value.neg();
+            }
+            if g.at_one {
+                value = value.half().neg();
+            }
+            if let Some(sum) = g.pair {
+                value = value.div(two.add(sum));
+            }
+        }
+    }
+    value
+}
+
+/// Divides the real part by `2 (c - c0)`. The remainder is the imaginary part of the residue over
+/// the pole: it must vanish exactly, and the residue's real part must be positive.
+const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Obstacle> {
+    let (quotient, remainder) = p.over_linear(c0);
+    if !remainder.contains(0.0) {
+        return Err(Obstacle::ResidueAngle { cos_theta: c0 });
+    }
+    if !remainder.is_zero() {
+        return Err(Obstacle::Undecided(Doubt::ResidueSign));
+    }
+    let (kernel, shift) = kernel_of(g);
+    let (real, imaginary) = at_cosine(c0, shift, &g.numerator, &g.denominator);
+    // Imaginary part of K(z) z^shift n conj(d), times a positive factor, by kernel.
+    let sign = match kernel {
+        Kernel::One => imaginary,
+        Kernel::AtOne => imaginary.mul(Interval::ONE.sub(c0)).sub(real),
+        Kernel::AtMinusOne => imaginary.mul(Interval::ONE.add(c0)).sub(real),
+        Kernel::AtBoth => real.neg(),
+    };
+    let k = sign.mul(g.scale);
+    if k.is_negative() {
+        Err(Obstacle::ResidueAngle { cos_theta: c0 })
+    } else if k.is_positive() {
+        Ok(quotient)
+    } else {
+        Err(Obstacle::Undecided(Doubt::ResidueSign))
+    }
+}

@@ -1,0 +1,328 @@
+//! Where the poles are: exactly on the unit circle, certainly inside, certainly outside.
+
+use super::interval::Interval;
+use super::polynomial::{Polynomial, UnitRoot};
+use super::transfer::Transfer;
+
+/// A transfer function whose circle poles are named and whose other poles are proved inside:
+///
+/// `G = scale z^shift numerator / (denominator (z-1)^at_one (z+1)^at_minus_one pair)` with
+/// `pair = z^2 - 2 cos(theta_0) z + 1` if present.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reduced {
+    /// Constant factor.
+    pub scale: Interval,
+    /// Power of `z`.
+    pub shift: i32,
+    /// Whether there is a pole at `z = 1`; simple, or this value would not exist.
+    pub at_one: bool,
+    /// Whether there is a pole at `z = -1`.
+    pub at_minus_one: bool,
+    /// `2 cos(theta_0)` of the complex pair on the circle.
+    pub pair: Option<Interval>,
+    /// Numerator.
+    pub numerator: Polynomial,
+    /// Denominator, strictly Schur, lowest coefficient not exactly zero.
+    pub denominator: Polynomial,
+}
+
+/// What stands against a passivity index before the real part is even looked at (conditions of
+/// equation 4), or what could not be decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Obstacle {
+    /// A pole outside the unit circle; the reflection coefficient that shows it is at least 1.
+    UnstablePole {
+        /// Magnitude of the reflection coefficient of the Schur-Cohn recursion.
+        reflection: Interval,
+    },
+    /// A repeated pole on the unit circle, at this cosine of its angle.
+    RepeatedUnitPole {
+        /// Cosine of the pole's angle.
+        cos_theta: Interval,
+    },
+    /// A simple circle pole at `z != 1` whose residue does not have the pole's angle.
+    ResidueAngle {
+        /// Cosine of the pole's angle.
+        cos_theta: Interval,
+    },
+    /// The residue at `z = 1` is negative.
+    NegativeResidue {
+        /// The residue, N m s/rad for a velocity-to-torque function.
+        residue: Interval,
+    },
+    /// Not decided, never to be taken as a yes.
+    Undecided(Doubt),
+}
+
+/// Why something could not be decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// A pole is so near the unit circle that rounding hides on which side it is.
+    PoleNearCircle,
+    /// Several complex pole pairs on the unit circle.
+    SeveralPolePairs,
+    /// The sign of a residue on the unit circle is hidden by rounding.
+    ResidueSign,
+    /// A number overflowed or a degree is out of range.
+    OutOfRange,
+    /// The index and the limit enclose a common number.
+    TooClose,
+    /// No bound is known for this environment with one-sidedness or a torque limit.
+    NoNonlinearBound,
+}
+
+/// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.
+///
+/// Structure (which factors are there) is read from the doubles as they are; the enclosure that
+/// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
+/// result depend on them being exact.
+pub const fn reduce(g: Transfer, widen: bool) -> Result<Reduced, Obstacle> {
+    if g.numerator.is_zero() {
+        return Ok(constant_zero());
+    }
+    let mut work = Work::new(g, widen);
+    if work.exact.ones < -1 {
+        return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE });
+    }
+    if work.exact.minus_ones < -1 {
+        return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
+    }
+    let pair = match work.strip_pairs() {
+        Ok(pair) => pair,
+        Err(obstacle) => return Err(obstacle),
+    };
+    let kept = if pair.is_some() || work.exact.minus_ones < 0 { work.exact } else { work.wide };
+    if let Err(obstacle) = strictly_schur(&kept.denominator) {
+        return Err(obstacle);
+    }
+    let Some(numerator) = zeros_multiplied(&kept) else {
+        return Err(Obstacle::Undecided(Doubt::OutOfRange));
+    };
+    Ok(Reduced {
+        scale: kept.scale,
+        shift: kept.shift,
+        at_one: kept.ones < 0,
+        at_minus_one: kept.minus_ones < 0,
+        pair,
+        numerator,
+        denominator: kept.denominator,
+    })
+}
+
+/// `G` with its exact common factors at 0, 1 and -1 cancelled and the others moved to the
+/// exponents; coefficients as the decimals they stand for.
+pub const fn cancelled(g: Transfer) -> Transfer {
+    if g.numerator.is_zero() { g } else { Work::new(g, true).wide }
+}
+
+const fn constant_zero() -> Reduced {
+    Reduced {
+        scale: Interval::ONE,
+        shift: 0,
+        at_one: false,
+        at_minus_one: false,
+        pair: None,
+        numerator: Polynomial::ZERO,
+        denominator: Polynomial::ascending(&[Interval::ONE]),
+    }
+}
+
+const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
+    let ones = if g.ones > 0 { g.ones as usize } else { 0 };
+    let minus = if g.minus_ones > 0 { g.minus_ones as usize } else { 0 };
+    let Some(p) = g.numerator.times_unit_root(UnitRoot::Plus, ones) else { return None };
+    p.times_unit_root(UnitRoot::Minus, minus)
+}
+
+const fn widened(p: &Polynomial) -> Polynomial {
+    let mut values = [Interval::ZERO; super::polynomial::MAX_DEGREE + 1];
+    let mut i = 0;
+    while i < p.len() {
+        let c = p.coefficient(i);
+        values[i] = if c.is_exact() { Interval::decimal(c.lo()) } else { c };
+        i += 1;
+    }
+    Polynomial::ascending(values.split_at(p.len()).0)
+}
+
+/// The same transfer function twice: as the doubles are, and as decimals.
+struct Work {
+    exact: Transfer,
+    wide: Transfer,
+}
+
+impl Work {
+    const fn new(g: Transfer, widen: bool) -> Self {
+        let mut work = Self { wide: g, exact: g };
+        if widen {
+            work.wide.numerator = widened(&g.numerator);
+            work.wide.denominator = widened(&g.denominator);
+        }
+        work.strip_origin();
+        work.strip_unit_root(UnitRoot::Plus, g.ones < 0);
+        work.strip_unit_root(UnitRoot::Minus, g.minus_ones < 0);
+        work
+    }
+
+    /// Powers of `z` do not change magnitudes on the circle: they become part of the shift.
+    const fn strip_origin(&mut self) {
+        let zeros = self.exact.numerator.trailing_zeros();
+        let poles = self.exact.denominator.trailing_zeros();
+        self.divide(zeros, poles);
+    }
+
+    const fn divide(&mut self, zeros: usize, poles: usize) {
+        self.exact.numerator = self.exact.numerator.shifted_down(zeros);
+        self.wide.numerator = self.wide.numerator.shifted_down(zeros);
+        self.exact.denominator = self.exact.denominator.shifted_down(poles);
+        self.wide.denominator = self.wide.denominator.shifted_down(poles);
+        self.exact.shift += zeros as i32 - poles as i32;
+        self.wide.shift = self.exact.shift;
+    }
+
+    /// Moves the exact factors `z - root` of the denominator, and, where poles are to be met, of
+    /// the numerator, into the exponents.
+    const fn strip_unit_root(&mut self, root: UnitRoot, declared_pole: bool) {
+        let mut change = 0;
+        while self.exact.denominator.vanishes_at(root) {
+            self.exact.denominator = self.exact.denominator.over_unit_root(root);
+            self.wide.denominator = self.wide.denominator.over_unit_root(root);
+            change -= 1;
+        }
+        if declared_pole || change < 0 {
+            while self.exact.numerator.vanishes_at(root) {
+                self.exact.numerator = self.exact.numerator.over_unit_root(root);
+                self.wide.numerator = self.wide.numerator.over_unit_root(root);
+                change += 1;
+            }
+        }
+        match root {
+            UnitRoot::Plus => {
+                self.exact.ones += change;
+                self.wide.ones = self.exact.ones;
+            }
+            UnitRoot::Minus => {
+                self.exact.minus_ones += change;
+                self.wide.minus_ones = self.exact.minus_ones;
+            }
+        }
+    }
+
+    /// Finds the complex pair of circle poles that is left after cancellation.
+    const fn strip_pairs(&mut self) -> Result<Option<Interval>, Obstacle> {
+        let mut found: Option<Interval> = None;
+        loop {
+            let sum = match circle_pair(&self.exact.denominator) {
+                Ok(Some(sum)) => sum,
+                Ok(None) => return Ok(found),
+                Err(doubt) => return Err(Obstacle::Undecided(doubt)),
+            };
+            let (quotient, ..) = self.exact.denominator.over_pair(sum);
+            self.exact.denominator = quotient;
+            let (reduced, constant, linear) = self.exact.numerator.over_pair(sum);
+            if constant.is_zero() && linear.is_zero() && !reduced.is_zero() {
+                self.exact.numerator = reduced;
+                self.wide = self.exact;
+            } else if let Some(before) = found {
+                // A second pair: the same one is a repeated pole, another one is not handled.
+                let same = before.lo() == sum.lo() && before.hi() == sum.hi();
+                return Err(if same {
+                    Obstacle::RepeatedUnitPole { cos_theta: sum.half() }
+                } else {
+                    Obstacle::Undecided(Doubt::SeveralPolePairs)
+                });
+            } else {
+                found = Some(sum);
+            }
+        }
+    }
+}
+
+/// `2 cos(theta_0)` of a factor `z^2 - 2 cos(theta_0) z + 1` that divides `p`, where the
+/// coefficients make it exact.
+///
+/// The greatest common divisor of `p` and its reverse holds exactly the circle roots and the
+/// mirrored pairs. It is found by the Schur-Cohn recursion without divisions, which stays exact
+/// while the coefficients are short enough; where it does not, no pair is found, and the pole is
+/// left for [`strictly_schur`] to doubt.
+const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, Doubt> {
+    let mut p = *p;
+    while p.len() >= 3 && p.is_exact() && p.is_finite() {
+        let n = p.degree();
+        let (first, last) = (p.coefficient(0), p.coefficient(n));
+        if first.lo() == last.lo() && is_palindrome(&p) {
+            if n > 2 {
+                return Err(Doubt::SeveralPolePairs);
+            }
+            let sum = p.coefficient(1).div(last).neg();
+            return Ok(if sum.abs().is_below(Interval::exact(2.0)) { Some(sum) } else { None });
+        }
+        let mut next = [Interval::ZERO; super::polynomial::MAX_DEGREE];
+        let mut i = 1;
+        while i <= n {
+            let kept = last.mul(p.coefficient(i));
+            next[i - 1] = kept.sub(first.mul(p.coefficient(n - i)));
+            i += 1;
+        }
+        p = Polynomial::ascending(next.split_at(n).0);
+        let zeros = p.trailing_zeros();
+        if p.len() < n || zeros > 0 {
+            p = p.shifted_down(zeros);
+        }
+    }
+    Ok(None)
+}
+
+const fn is_palindrome(p: &Polynomial) -> bool {
+    let n = p.degree();
+    let mut i = 0;
+    while i <= n / 2 {
+        if p.coefficient(i).lo() != p.coefficient(n - i).lo() {
+            return false;
+        }
+        i += 1;
+    }
+    true
+}
+
+/// Schur-Cohn: proves that all roots are inside the unit circle, or that one is outside.
+pub const fn strictly_schur(p: &Polynomial) -> Result<(), Obstacle> {
+    let mut p = *p;
+    while p.degree() > 0 {
+        let n = p.degree();
+        let reflection = p.coefficient(0).div(p.coefficient(n));
+        let size = reflection.abs();
+        if !size.is_below(Interval::ONE) {
+            return Err(if Interval::ONE.is_below(size) {
+                Obstacle::UnstablePole { reflection: size }
+            } else if size.is_exact() && n <= 2 && !on_circle(&p) {
+                // The magnitudes multiply to one and the roots are not on the circle.
+                Obstacle::UnstablePole { reflection: size }
+            } else {
+                Obstacle::Undecided(Doubt::PoleNearCircle)
+            });
+        }
+        let mut next = [Interval::ZERO; super::polynomial::MAX_DEGREE];
+        let mut i = 1;
+        while i <= n {
+            next[i - 1] = p.coefficient(i).sub(reflection.mul(p.coefficient(n - i)));
+            i += 1;
+        }
+        p = Polynomial::ascending(next.split_at(n).0);
+        if p.degree() != n - 1 || p.leading().contains(0.0) {
+            return Err(Obstacle::Undecided(Doubt::PoleNearCircle));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a polynomial of degree at most two with a reflection coefficient of magnitude one may
+/// have its roots on the circle.
+const fn on_circle(p: &Polynomial) -> bool {
+    if p.degree() < 2 {
+        return true;
+    }
+    let sum = p.coefficient(1).div(p.coefficient(2)).abs();
+    let mirrored = p.coefficient(0).lo() == p.coefficient(2).lo();
+    !(mirrored && Interval::exact(2.0).is_below(sum)) && !(!mirrored && !sum.contains(0.0))
+}

@@ -1,0 +1,367 @@
+//! Polynomials with interval coefficients, of the degrees that a scene can have.
+
+use super::interval::Interval;
+
+/// Largest degree: eight of the environment, eight of the delay.
+pub const MAX_DEGREE: usize = 16;
+const CAPACITY: usize = MAX_DEGREE + 1;
+
+/// A polynomial; coefficients in ascending powers, the leading one not exactly zero, unless the
+/// polynomial is zero (no coefficients).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial {
+    coefficients: [Interval; CAPACITY],
+    len: usize,
+}
+
+impl Polynomial {
+    /// The zero polynomial.
+    pub const ZERO: Self = Self { coefficients: [Interval::ZERO; CAPACITY], len: 0 };
+
+    /// From ascending coefficients. Those beyond [`MAX_DEGREE`] must be zero.
+    pub const fn ascending(values: &[Interval]) -> Self {
+        let mut out = Self::ZERO;
+        let mut i = 0;
+        while i < values.len() && i < CAPACITY {
+            out.coefficients[i] = values[i];
+            i += 1;
+        }
+        out.len = i;
+        out.trimmed()
+    }
+
+    /// From descending doubles, taken as they are or as the decimals they stand for.
+    pub const fn descending(values: &[f64], decimal: bool) -> Self {
+        let mut out = Self::ZERO;
+        let mut i = 0;
+        while i < values.len() && i < CAPACITY {
+            let value = values[values.len() - 1 - i];
+            out.coefficients[i] =
+                if decimal { Interval::decimal(value) } else { Interval::exact(value) };
+            i += 1;
+        }
+        out.len = i;
+        out.trimmed()
+    }
+
+    const fn trimmed(mut self) -> Self {
+        while self.len > 0 && self.coefficients[self.len - 1].is_zero() {
+            self.len -= 1;
+        }
+        self
+    }
+
+    /// Whether this is the zero polynomial.
+    pub const fn is_zero(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Number of coefficients: the degree plus one, 0 for the zero polynomial.
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are no coefficients; the same as [`Polynomial::is_zero`].
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Degree; 0 for the zero polynomial.
+    pub const fn degree(&self) -> usize {
+        self.len.saturating_sub(1)
+    }
+
+    /// Coefficient of `z^power`.
+    pub const fn coefficient(&self, power: usize) -> Interval {
+        if power < self.len { self.coefficients[power] } else { Interval::ZERO }
+    }
+
+    /// Coefficient of the highest power; zero for the zero polynomial.
+    pub const fn leading(&self) -> Interval {
+        self.coefficient(self.degree())
+    }
+
+    /// How many of the lowest coefficients are exactly zero: the power of `z` that divides.
+    pub const fn trailing_zeros(&self) -> usize {
+        let mut n = 0;
+        while n < self.len && self.coefficients[n].is_zero() {
+            n += 1;
+        }
+        n
+    }
+
+    /// Divides by `z^power`, dropping the lowest coefficients.
+    pub const fn shifted_down(&self, power: usize) -> Self {
+        let mut out = Self::ZERO;
+        let mut i = power;
+        while i < self.len {
+            out.coefficients[i - power] = self.coefficients[i];
+            i += 1;
+        }
+        out.len = self.len.saturating_sub(power);
+        out
+    }
+
+    /// Multiplies by `z^power`; `None` past [`MAX_DEGREE`].
+    pub const fn shifted_up(&self, power: usize) -> Option<Self> {
+        if self.len == 0 {
+            return Some(*self);
+        }
+        if self.len + power > CAPACITY {
+            return None;
+        }
+        let mut out = Self::ZERO;
+        let mut i = 0;
+        while i < self.len {
+            out.coefficients[i + power] = self.coefficients[i];
+            i += 1;
+        }
+        out.len = self.len + power;
+        Some(out)
+    }
+
+    /// `self * factor`.
+    pub const fn scaled(&self, factor: Interval) -> Self {
+        let mut out = *self;
+        let mut i = 0;
+        while i < out.len {
+            out.coefficients[i] = out.coefficients[i].mul(factor);
+            i += 1;
+        }
+        out.trimmed()
+    }
+
+    /// `self + other`.
+    pub const fn plus(&self, other: &Self) -> Self {
+        let mut out = Self::ZERO;
+        let len = if self.len > other.len { self.len } else { other.len };
+        let mut i = 0;
+        while i < len {
+            out.coefficients[i] = self.coefficient(i).add(other.coefficient(i));
+            i += 1;
+        }
+        out.len = len;
+        out.trimmed()
+    }
+
+    /// `self * other`; `None` past [`MAX_DEGREE`].
+    pub const fn times(&self, other: &Self) -> Option<Self> {
+        if self.len == 0 || other.len == 0 {
+            return Some(Self::ZERO);
+        }
+        if self.len + other.len - 1 > CAPACITY {
+            return None;
+        }
+        let mut out = Self::ZERO;
+        let mut i = 0;
+        while i < self.len {
+            let mut j = 0;
+            while j < other.len {
+                let product = self.coefficients[i].mul(other.coefficients[j]);
+                out.coefficients[i + j] = out.coefficients[i + j].add(product);
+                j += 1;
+            }
+            i += 1;
+        }
+        out.len = self.len + other.len - 1;
+        Some(out.trimmed())
+    }
+
+    /// `self * (z - root)^power`, `root` being 1 or -1; `None` past [`MAX_DEGREE`].
+    pub const fn times_unit_root(&self, root: UnitRoot, power: usize) -> Option<Self> {
+        if self.len > 0 && self.len + power > CAPACITY {
+            return None;
+        }
+        let mut out = *self;
+        let mut n = 0;
+        while n < power && out.len > 0 {
+            let lowest = root.times(out.coefficients[0]).neg();
+            // Coefficient i of the product is c[i - 1] - root c[i]; from the top, in place.
+            let mut i = out.len;
+            while i > 0 {
+                let upper = if i < out.len { out.coefficients[i] } else { Interval::ZERO };
+                out.coefficients[i] = out.coefficients[i - 1].sub(root.times(upper));
+                i -= 1;
+            }
+            out.coefficients[0] = lowest;
+            out.len += 1;
+            n += 1;
+        }
+        Some(out)
+    }
+
+    /// Quotient by `(z - root)`; the remainder is dropped.
+    pub const fn over_unit_root(&self, root: UnitRoot) -> Self {
+        if self.len == 0 {
+            return Self::ZERO;
+        }
+        let mut out = Self::ZERO;
+        let mut carry = Interval::ZERO;
+        let mut i = self.len - 1;
+        while i > 0 {
+            carry = self.coefficients[i].add(root.times(carry));
+            out.coefficients[i - 1] = carry;
+            i -= 1;
+        }
+        out.len = self.len - 1;
+        out.trimmed()
+    }
+
+    /// Quotient and remainder (constant, linear) by `z^2 - sum z + 1`.
+    pub const fn over_pair(&self, sum: Interval) -> (Self, Interval, Interval) {
+        if self.len < 3 {
+            return (Self::ZERO, self.coefficient(0), self.coefficient(1));
+        }
+        let mut out = Self::ZERO;
+        let (mut next, mut after) = (Interval::ZERO, Interval::ZERO);
+        let mut i = self.len - 1;
+        while i >= 2 {
+            let q = self.coefficients[i].add(sum.mul(next)).sub(after);
+            out.coefficients[i - 2] = q;
+            (after, next) = (next, q);
+            i -= 1;
+        }
+        out.len = self.len - 2;
+        let linear = self.coefficients[1].add(sum.mul(next)).sub(after);
+        let constant = self.coefficients[0].sub(next);
+        (out.trimmed(), constant, linear)
+    }
+
+    /// Value at 1 or -1.
+    pub const fn at_unit_root(&self, root: UnitRoot) -> Interval {
+        let mut sum = Interval::ZERO;
+        let mut i = self.len;
+        while i > 0 {
+            i -= 1;
+            sum = self.coefficients[i].add(root.times(sum));
+        }
+        sum
+    }
+
+    /// Whether every coefficient is a single number.
+    pub const fn is_exact(&self) -> bool {
+        let mut i = 0;
+        while i < self.len {
+            if !self.coefficients[i].is_exact() {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+
+    /// Whether every coefficient has finite ends.
+    pub const fn is_finite(&self) -> bool {
+        let mut i = 0;
+        while i < self.len {
+            if !self.coefficients[i].is_finite() {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+
+    /// Whether the polynomial is proved to vanish at 1 or -1: its coefficients are single numbers
+    /// whose sum, without any rounding, is zero.
+    pub const fn vanishes_at(&self, root: UnitRoot) -> bool {
+        if self.len == 0 || !self.is_exact() || !self.is_finite() {
+            return false;
+        }
+        // Shewchuk's expansion: the partial sums' rounding errors are kept, so the sum is exact.
+        let mut parts = [0.0f64; CAPACITY];
+        let mut used = 0;
+        let mut i = 0;
+        while i < self.len {
+            let mut x = self.coefficients[i].lo();
+            if matches!(root, UnitRoot::Minus) && i % 2 == 1 {
+                x = -x;
+            }
+            let mut kept = 0;
+            let mut k = 0;
+            while k < used {
+                let y = parts[k];
+                let sum = x + y;
+                if !sum.is_finite() {
+                    return false;
+                }
+                let y_seen = sum - x;
+                let error = (x - (sum - y_seen)) + (y - y_seen);
+                if error != 0.0 {
+                    parts[kept] = error;
+                    kept += 1;
+                }
+                x = sum;
+                k += 1;
+            }
+            parts[kept] = x;
+            used = kept + 1;
+            i += 1;
+        }
+        // The parts do not overlap: their sum is zero only if each is.
+        let mut k = 0;
+        while k < used {
+            if parts[k] != 0.0 {
+                return false;
+            }
+            k += 1;
+        }
+        true
+    }
+}
+
+/// One of the two real points of the unit circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnitRoot {
+    /// `z = 1`.
+    Plus,
+    /// `z = -1`.
+    Minus,
+}
+
+impl UnitRoot {
+    const fn times(self, value: Interval) -> Interval {
+        match self {
+            Self::Plus => value,
+            Self::Minus => value.neg(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn poly(descending: &[f64]) -> Polynomial {
+        Polynomial::descending(descending, false)
+    }
+
+    #[test]
+    fn factors_at_the_real_unit_roots() {
+        let p = poly(&[3.0, -2.0, 5.0]);
+        for root in [UnitRoot::Plus, UnitRoot::Minus] {
+            let product = p.times_unit_root(root, 3).unwrap();
+            assert!(product.vanishes_at(root));
+            let back = product.over_unit_root(root).over_unit_root(root).over_unit_root(root);
+            assert_eq!(back, p);
+            assert!(!p.vanishes_at(root));
+        }
+    }
+
+    #[test]
+    fn zero_sums_are_exact() {
+        assert!(poly(&[0.1, -0.1]).vanishes_at(UnitRoot::Plus));
+        assert!(!poly(&[0.1, 0.2, -0.3]).vanishes_at(UnitRoot::Plus));
+        assert!(poly(&[1e300, 1.0, -1e300, -1.0]).vanishes_at(UnitRoot::Plus));
+        assert!(!poly(&[1e300, 1.0, -1e300, -0.5]).vanishes_at(UnitRoot::Plus));
+    }
+
+    #[test]
+    fn pair_division_leaves_no_remainder() {
+        let pair = poly(&[1.0, -1.25, 1.0]);
+        let p = poly(&[2.0, 0.0, -7.0, 1.0]);
+        let (quotient, constant, linear) = p.times(&pair).unwrap().over_pair(Interval::exact(1.25));
+        assert_eq!(quotient, p);
+        assert!(constant.is_zero() && linear.is_zero());
+    }
+}
