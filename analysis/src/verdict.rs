@@ -144,7 +144,5 @@ fn angle(cosine: Interval) -> f64 {
 }
 
 fn reason(rejection: &Rejection) -> &'static str {
-    match rejection {
-        Rejection::Undecided => "undecided",
-    }
+    rejection.reason()
 }

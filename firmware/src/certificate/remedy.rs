@@ -122,7 +122,7 @@ const REFINEMENTS: u32 = 10;
 /// itself; rounds it to the safe side and certifies the rounded value.
 const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Option<Remedy> {
     let Some(start) = get(scene, parameter) else { return None };
-    if !(start > 0.0) {
+    if start.is_nan() || start <= 0.0 {
         return None;
     }
     let factor = match relation {

@@ -62,7 +62,7 @@ impl Series {
             Kernel::AtOne => self.add_dirichlet(m - 1, value.neg()),
             // The same with theta replaced by pi - theta.
             Kernel::AtMinusOne if lag > 0 => self.add_alternating(m - 1, m % 2 == 1, value),
-            Kernel::AtMinusOne => self.add_alternating(m, m % 2 == 0, value),
+            Kernel::AtMinusOne => self.add_alternating(m, m.is_multiple_of(2), value),
             // sin(m theta) / sin(theta)
             Kernel::AtBoth => {
                 let value = if lag < 0 { value.neg() } else { value };

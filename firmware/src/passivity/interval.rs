@@ -196,7 +196,7 @@ impl Interval {
 
     /// Non-negative square root of the non-negative part; [`Interval::ENTIRE`] if there is none.
     pub const fn sqrt(self) -> Self {
-        if !(self.hi >= 0.0) || !self.is_finite() {
+        if self.hi < 0.0 || !self.is_finite() {
             return Self::ENTIRE;
         }
         let lo = if self.lo > 0.0 { sqrt_enclosure(self.lo).lo } else { 0.0 };

@@ -324,5 +324,5 @@ const fn on_circle(p: &Polynomial) -> bool {
     }
     let sum = p.coefficient(1).div(p.coefficient(2)).abs();
     let mirrored = p.coefficient(0).lo() == p.coefficient(2).lo();
-    !(mirrored && Interval::exact(2.0).is_below(sum)) && !(!mirrored && !sum.contains(0.0))
+    if mirrored { !Interval::exact(2.0).is_below(sum) } else { sum.contains(0.0) }
 }
