@@ -7,9 +7,19 @@
 // A rejection carries all its numbers, and there is no heap to put them on.
 #![allow(clippy::result_large_err)]
 
+pub mod encoder;
+
+pub mod coupling;
 pub mod environment;
+
+pub mod torque;
+
+pub mod dac;
 
 pub mod certificate;
 pub mod passivity;
 pub mod scene;
+pub mod servo;
+
+pub mod number;
 pub mod text;

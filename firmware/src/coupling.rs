@@ -1,0 +1,129 @@
+//! The virtual coupling and the environment, solved together in every tick.
+//!
+//! With `x` the device's position and `K_vc` the coupling's stiffness, the environment is at
+//! `x_E = x - F / K_vc` and answers with `F` at `x_E`: an algebraic loop where the environment is
+//! not delayed (theory, section 2). A line with slope `f` that would give `v` at `x_E = x` gives
+//!
+//! ```text
+//! F = v + f (x_E - x) = v - F f / K_vc,   so   F = v / (1 + f / K_vc),
+//! ```
+//!
+//! and that gain is known before the servo starts. The environment is always asked for the value
+//! at `x`, never for an intercept: near the state where it rests no large numbers cancel.
+
+use crate::number::Number;
+use crate::scene::Coupling;
+use crate::servo::BuildError;
+
+/// What an environment offers to the coupling in one tick.
+#[derive(Clone, Copy, Debug)]
+pub enum Offer<N> {
+    /// A torque that does not depend on this tick's position, in N m.
+    Held(N),
+    /// A line; its torque in N m at `x_E = x`.
+    Line(N),
+    /// A wall that can only push.
+    Wall(Contact<N>),
+    /// A line (its torque in N m at `x_E = x`) and a wall, added.
+    LineAndWall(N, Contact<N>),
+}
+
+/// A one-sided wall at `x_E = x`.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<N> {
+    /// Torque in N m of the wall's line, as if it could pull and had no face.
+    pub torque: N,
+    /// Depth behind the face in rad.
+    pub depth: N,
+}
+
+/// Slopes of an environment's lines, in N m/rad; they are the same in every tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slopes {
+    /// Of the line.
+    pub line: f64,
+    /// Of the wall that can only push; zero where there is none.
+    pub wall: f64,
+}
+
+/// The coupling with everything computed that does not change from tick to tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Solver<N: Number> {
+    /// `1 / K_vc` in rad/(N m); zero for a rigid coupling.
+    compliance: N::Coefficient,
+    /// `1 / (1 + f / K_vc)` with the slope of the line alone.
+    line_gain: N::Coefficient,
+    /// The same with the slopes of line and wall together.
+    contact_gain: N::Coefficient,
+    /// `K_vc` in N m/rad, the torque a depth that slides on the wall's face; `None`: rigid.
+    stiffness: Option<N::Coefficient>,
+}
+
+impl<N: Number> Solver<N> {
+    /// Computes the gains.
+    ///
+    /// # Errors
+    /// Where a coefficient does not fit the number format, or the loop of coupling and environment
+    /// has no solution or more than one.
+    pub fn new(coupling: Coupling, slopes: Slopes) -> Result<Self, BuildError> {
+        let stiffness = match coupling {
+            Coupling::Rigid => None,
+            Coupling::Spring { stiffness } => Some(stiffness),
+        };
+        let compliance = stiffness.map_or(0.0, |stiffness| 1.0 / stiffness);
+        let compliance = BuildError::coefficient::<N>("1 / coupling stiffness", compliance)?;
+        // From here on with the compliance as rounded: the solution shall be that of the loop
+        // that runs.
+        let given = N::coefficient_to_f64(compliance);
+        let line = 1.0 + slopes.line * given;
+        let contact = line + slopes.wall * given;
+        // A line needs a solution. A wall needs one only, in contact and out of it, which the
+        // loop has as long as a deeper position of the device means a deeper environment.
+        let solvable = slopes.wall == 0.0 && line != 0.0 || line > 0.0 && contact > 0.0;
+        if !solvable {
+            return Err(BuildError::IllPosed { line, contact });
+        }
+        Ok(Self {
+            compliance,
+            line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
+            contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
+            stiffness: match stiffness {
+                Some(k) => Some(BuildError::coefficient::<N>("coupling stiffness", k)?),
+                None => None,
+            },
+        })
+    }
+
+    /// The torque in N m that satisfies coupling and environment at once.
+    #[inline(always)]
+    pub fn torque(&self, offer: Offer<N>) -> N {
+        match offer {
+            Offer::Held(torque) => torque,
+            Offer::Line(line) => line.times(self.line_gain),
+            Offer::Wall(wall) => self.pushing(N::ZERO, wall.torque, wall.depth),
+            Offer::LineAndWall(line, wall) => {
+                self.pushing(line.times(self.line_gain), line.plus(wall.torque), wall.depth)
+            }
+        }
+    }
+
+    /// The torque with a wall that can only push: the free solution `free` outside the wall,
+    /// `K_vc depth` while the environment slides on the face (`x_E = face`, the wall giving any
+    /// torque between nothing and its own), and the solution with the wall's line inside. For
+    /// positive loop gains these cross once, and the order picks the right one.
+    #[inline(always)]
+    fn pushing(&self, free: N, both: N, depth: N) -> N {
+        let contact = both.times(self.contact_gain);
+        match self.stiffness {
+            Some(stiffness) => contact.smaller(depth.times(stiffness)).larger(free),
+            None if depth > N::ZERO => contact.larger(free),
+            None => free,
+        }
+    }
+
+    /// The environment's position `x_E` in rad with the device at `x` and this torque.
+    #[inline(always)]
+    pub fn environment_position(&self, x: N, torque: N) -> N {
+        x.minus(torque.times(self.compliance))
+    }
+}

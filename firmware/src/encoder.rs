@@ -1,0 +1,96 @@
+//! From a counter that wraps to a position that does not.
+
+/// Something that counts the steps of a quadrature encoder.
+pub trait Encoder {
+    /// The counter now.
+    fn read(&mut self) -> RawCount;
+}
+
+/// Number of bits after which the counter wraps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum CounterWidth {
+    /// A 32-bit timer.
+    Bits32 = 0,
+    /// A 16-bit timer.
+    Bits16 = 16,
+}
+
+/// A counter's content, in its low bits; bits above the counter's width are ignored.
+///
+/// ```
+/// use firmware::encoder::RawCount;
+/// assert_eq!(RawCount::from(-1_i16), RawCount::from(0xffff_u16));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RawCount(u32);
+
+impl From<u16> for RawCount {
+    #[inline(always)]
+    fn from(count: u16) -> Self {
+        Self(count.into())
+    }
+}
+
+impl From<i16> for RawCount {
+    #[inline(always)]
+    fn from(count: i16) -> Self {
+        Self(count.cast_unsigned().into())
+    }
+}
+
+impl From<u32> for RawCount {
+    #[inline(always)]
+    fn from(count: u32) -> Self {
+        Self(count)
+    }
+}
+
+impl From<i32> for RawCount {
+    #[inline(always)]
+    fn from(count: i32) -> Self {
+        Self(count.cast_unsigned())
+    }
+}
+
+/// Extends a wrapping counter without loss, as long as it moves by less than half its range from
+/// one reading to the next.
+///
+/// The position starts at zero with the counter at zero; a counter that is not zero at the first
+/// reading is taken as the nearest position to zero.
+///
+/// ```
+/// use firmware::encoder::{CounterWidth, Position, RawCount};
+/// let mut position = Position::new(CounterWidth::Bits16);
+/// assert_eq!(position.update(RawCount::from(0x7000_u16)), 0x7000);
+/// assert_eq!(position.update(RawCount::from(0xc000_u16)), 0xc000);
+/// assert_eq!(position.update(RawCount::from(0x1000_u16)), 0x11000);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Position {
+    count: i64,
+    width: CounterWidth,
+}
+
+impl Position {
+    /// A position of zero, to be fed by a counter of this width.
+    pub const fn new(width: CounterWidth) -> Self {
+        Self { count: 0, width }
+    }
+
+    /// Takes a reading and gives the position in counts.
+    #[inline(always)]
+    pub const fn update(&mut self, raw: RawCount) -> i64 {
+        // The low bits of the position are the last reading: their difference, taken at the
+        // counter's width, is the signed step.
+        let shift = self.width as u32;
+        let step = (raw.0.wrapping_sub(self.count as u32) << shift).cast_signed() >> shift;
+        self.count = self.count.wrapping_add(step as i64);
+        self.count
+    }
+
+    /// The position in counts.
+    pub const fn count(&self) -> i64 {
+        self.count
+    }
+}

@@ -1,0 +1,141 @@
+//! Any environment as data: for scenes that come from a file or over the wire.
+
+use super::delay_line::VariableDelay;
+use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
+use super::law::{Law, Renderable, Setting};
+use super::rational::{Rational, RationalLaw};
+use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
+use super::wall_law::{AnySide, WallLaw};
+use crate::coupling::{Offer, Slopes};
+use crate::number::Number;
+use crate::servo::BuildError;
+
+/// A spring with an optional damper, as data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Stiffness `K` in N m/rad.
+    pub stiffness: f64,
+    /// Damping `B` in N m s/rad.
+    pub damping: f64,
+    /// Pole `a` of the velocity filter, if there is one.
+    pub filter: Option<f64>,
+    /// Delay in whole samples.
+    pub delay: usize,
+    /// Rest position, or position of the face, in rad.
+    pub face: f64,
+    /// Whether the wall is felt only above `face`.
+    pub one_sided: bool,
+}
+
+/// Any environment as data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Environment {
+    /// [`DelayedSpring`](super::DelayedSpring), placed or one-sided.
+    DelayedSpring(Wall),
+    /// [`DamperWall`](super::DamperWall) or [`FilteredWall`](super::FilteredWall), placed or
+    /// one-sided.
+    DamperWall(Wall),
+    /// [`FreeMode`](super::FreeMode).
+    FreeMode {
+        /// Damping `epsilon` in N m s/rad that is left.
+        residual: f64,
+        /// Delay in whole samples.
+        delay: usize,
+    },
+    /// [`FreeModeWall`](super::FreeModeWall).
+    FreeModeWall {
+        /// Damping `epsilon` in N m s/rad that is left.
+        residual: f64,
+        /// The wall that ends the free motion.
+        wall: Wall,
+    },
+    /// [`Rational`].
+    Rational(Rational),
+}
+
+/// The law of any wall. It is put together from the parts of the typed walls, and so gives the
+/// same torques to the bit.
+type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
+
+impl<N: Number> Renderable<N> for Wall {
+    type Law = AnyWallLaw<N>;
+
+    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+        let (damping, period) = (self.damping, setting.period);
+        let velocity = match self.filter {
+            Some(pole) => AnyVelocity::Filtered(Washout::filtered(damping, period, pole)?),
+            None if damping != 0.0 => AnyVelocity::Difference(Difference::new(damping, period)?),
+            None => AnyVelocity::None(NoDamping),
+        };
+        let face = BuildError::number("wall face", self.face)?;
+        let side = AnySide { face, one_sided: self.one_sided };
+        WallLaw::new(self.stiffness, velocity, side, VariableDelay::at_rest(self.delay)?)
+    }
+}
+
+/// The law of any [`Environment`].
+#[derive(Clone, Debug)]
+pub enum EnvironmentLaw<N: Number> {
+    /// Of a spring or a wall.
+    Wall(AnyWallLaw<N>),
+    /// Of free mode.
+    FreeMode(FreeModeLaw<N, VariableDelay<N>>),
+    /// Of free mode that ends at a wall.
+    FreeModeWall(FreeModeWallLaw<N, AnyWallLaw<N>>),
+    /// Of a rational environment.
+    Rational(RationalLaw<N>),
+}
+
+impl<N: Number> Law<N> for EnvironmentLaw<N> {
+    fn offer(&self, x: N) -> Offer<N> {
+        match self {
+            Self::Wall(law) => law.offer(x),
+            Self::FreeMode(law) => law.offer(x),
+            Self::FreeModeWall(law) => law.offer(x),
+            Self::Rational(law) => law.offer(x),
+        }
+    }
+
+    fn advance(&mut self, x_e: N) {
+        match self {
+            Self::Wall(law) => law.advance(x_e),
+            Self::FreeMode(law) => law.advance(x_e),
+            Self::FreeModeWall(law) => law.advance(x_e),
+            Self::Rational(law) => law.advance(x_e),
+        }
+    }
+
+    fn slopes(&self) -> Slopes {
+        match self {
+            Self::Wall(law) => law.slopes(),
+            Self::FreeMode(law) => law.slopes(),
+            Self::FreeModeWall(law) => law.slopes(),
+            Self::Rational(law) => law.slopes(),
+        }
+    }
+}
+
+impl<N: Number> Renderable<N> for Environment {
+    type Law = EnvironmentLaw<N>;
+
+    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+        Ok(match self {
+            // A spring has no damper, whatever the field says.
+            Self::DelayedSpring(wall) => {
+                EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
+            }
+            Self::DamperWall(wall) => EnvironmentLaw::Wall(wall.law(setting)?),
+            Self::FreeMode { residual, delay } => EnvironmentLaw::FreeMode(FreeModeLaw {
+                canceller: canceller(*residual, setting)?,
+                delay: VariableDelay::at_rest(*delay)?,
+            }),
+            Self::FreeModeWall { residual, wall } => {
+                EnvironmentLaw::FreeModeWall(FreeModeWallLaw {
+                    canceller: canceller(*residual, setting)?,
+                    wall: wall.law(setting)?,
+                })
+            }
+            Self::Rational(rational) => EnvironmentLaw::Rational(rational.law(setting)?),
+        })
+    }
+}

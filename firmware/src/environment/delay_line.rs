@@ -1,0 +1,80 @@
+//! Whole samples of delay between an environment's position and its torque.
+
+use super::MAX_DELAY;
+use crate::number::Number;
+use crate::servo::BuildError;
+
+/// The torques of the last ticks, not yet felt.
+pub trait DelayLine<N>: Clone + core::fmt::Debug {
+    /// The torque that is due in this tick; `None` where there is no delay.
+    fn due(&self) -> Option<N>;
+    /// Takes this tick's torque and drops the one that was due.
+    fn push(&mut self, torque: N);
+}
+
+/// A delay that the scene's type knows. Moving a few samples along is cheaper than an index that
+/// wraps, and for a delay of one, the usual case, it is a single store.
+#[derive(Clone, Debug)]
+pub struct FixedDelay<N, const DELAY: usize> {
+    oldest_first: [N; DELAY],
+}
+
+impl<N: Number, const DELAY: usize> FixedDelay<N, DELAY> {
+    /// A line full of zeros.
+    pub(crate) const fn at_rest() -> Self {
+        Self { oldest_first: [N::ZERO; DELAY] }
+    }
+}
+
+impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
+    #[inline(always)]
+    fn due(&self) -> Option<N> {
+        self.oldest_first.first().copied()
+    }
+
+    #[inline(always)]
+    fn push(&mut self, torque: N) {
+        move_along(&mut self.oldest_first, torque);
+    }
+}
+
+/// A delay that is known at run time, up to [`MAX_DELAY`].
+#[derive(Clone, Debug)]
+pub struct VariableDelay<N> {
+    oldest_first: [N; MAX_DELAY],
+    delay: usize,
+}
+
+impl<N: Number> VariableDelay<N> {
+    /// A line full of zeros.
+    ///
+    /// # Errors
+    /// If the delay is longer than [`MAX_DELAY`].
+    pub(crate) fn at_rest(delay: usize) -> Result<Self, BuildError> {
+        if delay > MAX_DELAY {
+            return Err(BuildError::Delay { delay, largest: MAX_DELAY });
+        }
+        Ok(Self { oldest_first: [N::ZERO; MAX_DELAY], delay })
+    }
+}
+
+impl<N: Number> DelayLine<N> for VariableDelay<N> {
+    fn due(&self) -> Option<N> {
+        if self.delay == 0 { None } else { self.oldest_first.first().copied() }
+    }
+
+    fn push(&mut self, torque: N) {
+        if let Some(used) = self.oldest_first.get_mut(..self.delay) {
+            move_along(used, torque);
+        }
+    }
+}
+
+/// Shifts towards the oldest and puts the newest at the end.
+#[inline(always)]
+fn move_along<N: Copy>(oldest_first: &mut [N], newest: N) {
+    let mut arriving = newest;
+    for place in oldest_first.iter_mut().rev() {
+        core::mem::swap(place, &mut arriving);
+    }
+}

@@ -1,0 +1,125 @@
+//! Free mode: the device's own damping cancelled, so that the hand feels almost nothing.
+
+use super::delay_line::{DelayLine, FixedDelay};
+use super::law::{Law, Renderable, Setting};
+use super::velocity::{Velocity, Washout};
+use crate::coupling::{Offer, Slopes};
+use crate::number::Number;
+use crate::scene::Coupling;
+use crate::servo::BuildError;
+
+/// Free mode: cancels the device's damping down to `residual` (equations 22 and 23).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMode<const DELAY: usize> {
+    /// Damping `epsilon` in N m s/rad that the hand still feels.
+    pub residual: f64,
+}
+
+/// An undelayed [`FreeMode`] together with a wall: free motion that ends at a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeModeWall<W> {
+    /// Damping `epsilon` in N m s/rad that the hand still feels.
+    pub residual: f64,
+    /// The wall, with its own delay.
+    pub wall: W,
+}
+
+/// The canceller's high-pass.
+///
+/// Wanted is the controller `C = -be s` with `be = b - epsilon`; behind the coupling it is the
+/// environment `E = C / (1 - C / K_vc)`, by backward differences
+/// `E(z) = -g (z - 1) / (z - rho)` with `g = be K_vc / (K_vc T + be)` and
+/// `rho = be / (K_vc T + be)` (equation 23 at `K_vc = 2 b / T`); rigid: `g = be / T`, `rho = 0`.
+pub(crate) fn canceller<N: Number>(
+    residual: f64,
+    setting: &Setting,
+) -> Result<Washout<N>, BuildError> {
+    let be = setting.damping - residual;
+    match setting.coupling {
+        Coupling::Rigid => Washout::new(-be / setting.period, 1.0),
+        Coupling::Spring { stiffness } => {
+            let leading = stiffness * setting.period + be;
+            Washout::new(-be * stiffness / leading, stiffness * setting.period / leading)
+        }
+    }
+}
+
+/// The law of a [`FreeMode`].
+#[derive(Clone, Debug)]
+pub struct FreeModeLaw<N: Number, D> {
+    pub(crate) canceller: Washout<N>,
+    pub(crate) delay: D,
+}
+
+impl<N: Number, D: DelayLine<N>> Law<N> for FreeModeLaw<N, D> {
+    #[inline(always)]
+    fn offer(&self, x: N) -> Offer<N> {
+        match self.delay.due() {
+            Some(torque) => Offer::Held(torque),
+            None => Offer::Line(self.canceller.torque(x)),
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        if self.delay.due().is_some() {
+            self.delay.push(self.canceller.torque(x_e));
+        }
+        self.canceller.advance(x_e);
+    }
+
+    fn slopes(&self) -> Slopes {
+        match self.delay.due() {
+            Some(_) => Slopes::default(),
+            None => Slopes { line: self.canceller.slope(), wall: 0.0 },
+        }
+    }
+}
+
+impl<N: Number, const DELAY: usize> Renderable<N> for FreeMode<DELAY> {
+    type Law = FreeModeLaw<N, FixedDelay<N, DELAY>>;
+
+    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+        let canceller = canceller(self.residual, setting)?;
+        Ok(FreeModeLaw { canceller, delay: FixedDelay::at_rest() })
+    }
+}
+
+/// The law of a [`FreeModeWall`]: the sum of the two.
+#[derive(Clone, Debug)]
+pub struct FreeModeWallLaw<N: Number, L> {
+    pub(crate) canceller: Washout<N>,
+    pub(crate) wall: L,
+}
+
+impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
+    #[inline(always)]
+    fn offer(&self, x: N) -> Offer<N> {
+        let free = self.canceller.torque(x);
+        match self.wall.offer(x) {
+            Offer::Held(wall) | Offer::Line(wall) => Offer::Line(free.plus(wall)),
+            Offer::Wall(contact) => Offer::LineAndWall(free, contact),
+            Offer::LineAndWall(line, contact) => Offer::LineAndWall(free.plus(line), contact),
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        self.canceller.advance(x_e);
+        self.wall.advance(x_e);
+    }
+
+    fn slopes(&self) -> Slopes {
+        let wall = self.wall.slopes();
+        Slopes { line: self.canceller.slope() + wall.line, wall: wall.wall }
+    }
+}
+
+impl<N: Number, W: Renderable<N>> Renderable<N> for FreeModeWall<W> {
+    type Law = FreeModeWallLaw<N, W::Law>;
+
+    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+        let canceller = canceller(self.residual, setting)?;
+        Ok(FreeModeWallLaw { canceller, wall: self.wall.law(setting)? })
+    }
+}

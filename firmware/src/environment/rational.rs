@@ -1,0 +1,178 @@
+//! Any proper rational environment.
+
+use super::delay_line::{DelayLine, VariableDelay};
+use super::law::{Law, Renderable, Setting};
+use crate::coupling::{Offer, Slopes};
+use crate::number::Number;
+use crate::servo::BuildError;
+
+/// Largest degree of a [`Rational`] numerator or denominator.
+pub const MAX_DEGREE: usize = 8;
+
+/// Any proper rational `E(z)` up to degree 8, with up to 8 samples of delay on top:
+/// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rational {
+    /// Numerator, descending powers of z, `numerator.0[..numerator.1]`.
+    pub numerator: Coefficients,
+    /// Denominator, descending powers of z.
+    pub denominator: Coefficients,
+    /// Delay in whole samples.
+    pub delay: usize,
+    /// Zeros at `z = 1` that multiply the numerator. Declaring them keeps them exact where the
+    /// coefficients of the product would not sum to zero in binary.
+    pub unit_zeros: usize,
+}
+
+/// A polynomial's coefficients in descending powers, at most `MAX_DEGREE + 1` of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    values: [f64; MAX_DEGREE + 1],
+    len: usize,
+}
+
+impl Coefficients {
+    /// Takes descending coefficients; `None` if there are none or more than `MAX_DEGREE + 1`.
+    pub const fn new(descending: &[f64]) -> Option<Self> {
+        if descending.is_empty() || descending.len() > MAX_DEGREE + 1 {
+            return None;
+        }
+        let mut values = [0.0; MAX_DEGREE + 1];
+        let mut i = 0;
+        while i < descending.len() {
+            values[i] = descending[i];
+            i += 1;
+        }
+        Some(Self { values, len: descending.len() })
+    }
+
+    /// The coefficients in descending powers.
+    pub const fn as_slice(&self) -> &[f64] {
+        self.values.split_at(self.len).0
+    }
+
+    /// The coefficients from the leading one that is not zero on.
+    fn without_leading_zeros(&self) -> &[f64] {
+        let leading = self.as_slice().iter().position(|c| *c != 0.0).unwrap_or(self.len);
+        self.as_slice().get(leading..).unwrap_or(&[])
+    }
+}
+
+/// The law of a [`Rational`]: direct form II transposed, whose state is one sum a degree.
+///
+/// With the denominator's leading coefficient divided out and both polynomials in powers of
+/// `1/z`: `y = b_0 x + s_1`, then `s_i = b_i x - a_i y + s_(i+1)`.
+#[derive(Clone, Debug)]
+pub struct RationalLaw<N: Number> {
+    feedthrough: N::Coefficient,
+    /// `b_i`, `a_i` and `s_i` for i = 1 and up; the first `degree` are used.
+    sections: [Section<N>; MAX_DEGREE],
+    degree: usize,
+    delay: VariableDelay<N>,
+}
+
+/// One power of `1/z`.
+#[derive(Clone, Copy, Debug)]
+struct Section<N: Number> {
+    numerator: N::Coefficient,
+    denominator: N::Coefficient,
+    sum: N,
+}
+
+impl<N: Number> RationalLaw<N> {
+    #[inline]
+    fn torque(&self, x: N) -> N {
+        let line = x.times(self.feedthrough);
+        match self.sections.first() {
+            Some(section) => line.plus(section.sum),
+            None => line,
+        }
+    }
+}
+
+impl<N: Number> Law<N> for RationalLaw<N> {
+    fn offer(&self, x: N) -> Offer<N> {
+        match self.delay.due() {
+            Some(torque) => Offer::Held(torque),
+            None => Offer::Line(self.torque(x)),
+        }
+    }
+
+    fn advance(&mut self, x_e: N) {
+        let torque = self.torque(x_e);
+        let mut next = N::ZERO;
+        for section in self.sections.iter_mut().take(self.degree).rev() {
+            let change = x_e.times(section.numerator).minus(torque.times(section.denominator));
+            let sum = change.plus(next);
+            next = core::mem::replace(&mut section.sum, sum);
+        }
+        self.delay.push(torque);
+    }
+
+    fn slopes(&self) -> Slopes {
+        match self.delay.due() {
+            Some(_) => Slopes::default(),
+            None => Slopes { line: N::coefficient_to_f64(self.feedthrough), wall: 0.0 },
+        }
+    }
+}
+
+impl<N: Number> Renderable<N> for Rational {
+    type Law = RationalLaw<N>;
+
+    fn law(&self, _: &Setting) -> Result<Self::Law, BuildError> {
+        let (numerator, above) = self.multiplied_out();
+        let denominator = self.denominator.without_leading_zeros();
+        let degree = denominator.len().saturating_sub(1);
+        let improper = BuildError::Improper { numerator: above, denominator: degree };
+        let leading = *denominator.first().ok_or(improper)?;
+        if above > degree {
+            return Err(improper);
+        }
+        // Coefficient of z^(degree - i), over the leading one.
+        let of = |i: usize| {
+            let over = |c: Option<&f64>| c.map_or(0.0, |c| c / leading);
+            let b = over(numerator.get(degree.wrapping_sub(i)));
+            (b, over(denominator.get(i)))
+        };
+        let section = |i: usize| -> Result<Section<N>, BuildError> {
+            let (b, a) = of(i);
+            Ok(Section {
+                numerator: BuildError::coefficient::<N>("numerator coefficient", b)?,
+                denominator: BuildError::coefficient::<N>("denominator coefficient", a)?,
+                sum: N::ZERO,
+            })
+        };
+        let mut sections = [section(MAX_DEGREE + 1)?; MAX_DEGREE];
+        for (i, place) in sections.iter_mut().enumerate() {
+            *place = section(i + 1)?;
+        }
+        Ok(RationalLaw {
+            feedthrough: BuildError::coefficient::<N>("numerator coefficient", of(0).0)?,
+            sections,
+            degree,
+            delay: VariableDelay::at_rest(self.delay)?,
+        })
+    }
+}
+
+impl Rational {
+    /// `(z - 1)^unit_zeros numerator(z)` in *ascending* powers, up to twice the degree that can
+    /// run, and its degree.
+    fn multiplied_out(&self) -> ([f64; 2 * MAX_DEGREE + 1], usize) {
+        let mut product = [0.0; 2 * MAX_DEGREE + 1];
+        let given = self.numerator.without_leading_zeros();
+        for (place, c) in product.iter_mut().zip(given.iter().rev()) {
+            *place = *c;
+        }
+        let zeros = if given.is_empty() { 0 } else { self.unit_zeros };
+        for _ in 0..zeros.min(MAX_DEGREE) {
+            // Multiplied by z - 1: the coefficient one power lower, less the coefficient itself.
+            let mut lower = 0.0;
+            for place in &mut product {
+                lower = core::mem::replace(place, lower - *place);
+            }
+        }
+        (product, given.len().saturating_sub(1).saturating_add(zeros))
+    }
+}

@@ -1,0 +1,150 @@
+//! The part of an environment that answers to velocity.
+//!
+//! All of it is one high-pass: with gain `g` and pole `a`,
+//! `g (z - 1) / (z - a)`, which is `g (x - s)` with the state `s += (1 - a) (x - s)`. A backward
+//! difference is the case `a = 0`, where the state is the last position.
+
+use crate::number::Number;
+use crate::servo::BuildError;
+
+/// Something that adds a torque for velocity to a torque for position.
+pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
+    /// `torque` plus that for the velocity, in N m, with the environment at `x` (rad).
+    fn add_to(&self, torque: N, x: N) -> N;
+    /// Ends the tick with the environment at `x_e` (rad).
+    fn advance(&mut self, x_e: N);
+    /// Torque a position in this tick, in N m/rad.
+    fn slope(&self) -> f64;
+}
+
+/// No damping: costs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct NoDamping;
+
+impl<N: Number> Velocity<N> for NoDamping {
+    #[inline(always)]
+    fn add_to(&self, torque: N, _: N) -> N {
+        torque
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, _: N) {}
+
+    fn slope(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Damping `B` on the backward difference: `B (z - 1) / (T z)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Difference<N: Number> {
+    gain: N::Coefficient,
+    previous: N,
+}
+
+impl<N: Number> Difference<N> {
+    /// From `B` in N m s/rad and the period in s.
+    pub(crate) fn new(damping: f64, period: f64) -> Result<Self, BuildError> {
+        let gain = BuildError::coefficient::<N>("wall damping / period", damping / period)?;
+        Ok(Self { gain, previous: N::ZERO })
+    }
+}
+
+impl<N: Number> Velocity<N> for Difference<N> {
+    #[inline(always)]
+    fn add_to(&self, torque: N, x: N) -> N {
+        torque.plus(x.minus(self.previous).times(self.gain))
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        self.previous = x_e;
+    }
+
+    fn slope(&self) -> f64 {
+        N::coefficient_to_f64(self.gain)
+    }
+}
+
+/// The high-pass with a pole: a damper whose velocity is filtered, or a free-mode canceller.
+#[derive(Clone, Copy, Debug)]
+pub struct Washout<N: Number> {
+    gain: N::Coefficient,
+    rate: N::Coefficient,
+    state: N,
+}
+
+impl<N: Number> Washout<N> {
+    /// From `g` in N m/rad and `1 - a`.
+    pub(crate) fn new(gain: f64, rate: f64) -> Result<Self, BuildError> {
+        Ok(Self {
+            gain: BuildError::coefficient::<N>("high-pass gain", gain)?,
+            rate: BuildError::coefficient::<N>("high-pass rate", rate)?,
+            state: N::ZERO,
+        })
+    }
+
+    /// A damper `B` (N m s/rad) behind the velocity filter `(1 - a) / (1 - a / z)`.
+    pub(crate) fn filtered(damping: f64, period: f64, pole: f64) -> Result<Self, BuildError> {
+        Self::new(damping / period * (1.0 - pole), 1.0 - pole)
+    }
+
+    /// The torque in N m with the environment at `x` (rad).
+    #[inline(always)]
+    pub fn torque(&self, x: N) -> N {
+        x.minus(self.state).times(self.gain)
+    }
+}
+
+impl<N: Number> Velocity<N> for Washout<N> {
+    #[inline(always)]
+    fn add_to(&self, torque: N, x: N) -> N {
+        torque.plus(self.torque(x))
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        self.state = self.state.plus(x_e.minus(self.state).times(self.rate));
+    }
+
+    fn slope(&self) -> f64 {
+        N::coefficient_to_f64(self.gain)
+    }
+}
+
+/// Any of them, where the scene is data.
+#[derive(Clone, Copy, Debug)]
+pub enum AnyVelocity<N: Number> {
+    /// A spring only.
+    None(NoDamping),
+    /// A damper.
+    Difference(Difference<N>),
+    /// A filtered damper.
+    Filtered(Washout<N>),
+}
+
+impl<N: Number> Velocity<N> for AnyVelocity<N> {
+    fn add_to(&self, torque: N, x: N) -> N {
+        match self {
+            Self::None(velocity) => velocity.add_to(torque, x),
+            Self::Difference(velocity) => velocity.add_to(torque, x),
+            Self::Filtered(velocity) => velocity.add_to(torque, x),
+        }
+    }
+
+    fn advance(&mut self, x_e: N) {
+        match self {
+            Self::None(velocity) => velocity.advance(x_e),
+            Self::Difference(velocity) => velocity.advance(x_e),
+            Self::Filtered(velocity) => velocity.advance(x_e),
+        }
+    }
+
+    fn slope(&self) -> f64 {
+        match self {
+            Self::None(velocity) => Velocity::<N>::slope(velocity),
+            Self::Difference(velocity) => velocity.slope(),
+            Self::Filtered(velocity) => velocity.slope(),
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The law of every wall: a spring, perhaps a damper, perhaps a face, perhaps a delay.
+
+use super::delay_line::DelayLine;
+use super::law::Law;
+use super::velocity::Velocity;
+use crate::coupling::{Contact, Offer, Slopes};
+use crate::number::Number;
+use crate::servo::BuildError;
+
+/// Where a wall is, and whether it can pull.
+pub trait Side<N>: Clone + core::fmt::Debug {
+    /// Depth in rad of the position `x` (rad) behind the wall's rest position.
+    fn depth(&self, x: N) -> N;
+    /// Whether the wall is felt only at positive depths and only pushes.
+    fn one_sided(&self) -> bool;
+}
+
+/// At rest at zero, pushes and pulls: costs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Centred;
+
+impl<N> Side<N> for Centred {
+    #[inline(always)]
+    fn depth(&self, x: N) -> N {
+        x
+    }
+
+    #[inline(always)]
+    fn one_sided(&self) -> bool {
+        false
+    }
+}
+
+/// At rest at a face, pushes and pulls.
+#[derive(Clone, Copy, Debug)]
+pub struct Displaced<N>(pub(crate) N);
+
+impl<N: Number> Side<N> for Displaced<N> {
+    #[inline(always)]
+    fn depth(&self, x: N) -> N {
+        x.minus(self.0)
+    }
+
+    #[inline(always)]
+    fn one_sided(&self) -> bool {
+        false
+    }
+}
+
+/// Behind a face, only pushes.
+#[derive(Clone, Copy, Debug)]
+pub struct Face<N>(pub(crate) N);
+
+impl<N: Number> Side<N> for Face<N> {
+    #[inline(always)]
+    fn depth(&self, x: N) -> N {
+        x.minus(self.0)
+    }
+
+    #[inline(always)]
+    fn one_sided(&self) -> bool {
+        true
+    }
+}
+
+/// Any of them, where the scene is data.
+#[derive(Clone, Copy, Debug)]
+pub struct AnySide<N> {
+    pub(crate) face: N,
+    pub(crate) one_sided: bool,
+}
+
+impl<N: Number> Side<N> for AnySide<N> {
+    fn depth(&self, x: N) -> N {
+        x.minus(self.face)
+    }
+
+    fn one_sided(&self) -> bool {
+        self.one_sided
+    }
+}
+
+/// `F = K p + B v` with the depth `p = x_E - face`; one-sided: zero outside and never negative.
+#[derive(Clone, Debug)]
+pub struct WallLaw<N: Number, V, S, D> {
+    stiffness: N::Coefficient,
+    velocity: V,
+    side: S,
+    delay: D,
+}
+
+impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D> {
+    /// From `K` in N m/rad and the parts.
+    pub(crate) fn new(stiffness: f64, velocity: V, side: S, delay: D) -> Result<Self, BuildError> {
+        let stiffness = BuildError::coefficient::<N>("wall stiffness", stiffness)?;
+        Ok(Self { stiffness, velocity, side, delay })
+    }
+
+    /// Torque of the spring and damper alone, as if the wall had no face.
+    #[inline(always)]
+    fn line(&self, x: N, depth: N) -> N {
+        self.velocity.add_to(depth.times(self.stiffness), x)
+    }
+
+    /// The wall's torque in N m with the environment at `x` (rad), undelayed.
+    #[inline(always)]
+    fn torque(&self, x: N) -> N {
+        let depth = self.side.depth(x);
+        if !self.side.one_sided() {
+            self.line(x, depth)
+        } else if depth > N::ZERO {
+            self.line(x, depth).positive_part()
+        } else {
+            N::ZERO
+        }
+    }
+
+    /// The undelayed offer.
+    #[inline(always)]
+    fn immediate(&self, x: N) -> Offer<N> {
+        let depth = self.side.depth(x);
+        let torque = self.line(x, depth);
+        if self.side.one_sided() {
+            Offer::Wall(Contact { torque, depth })
+        } else {
+            Offer::Line(torque)
+        }
+    }
+}
+
+impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> Law<N> for WallLaw<N, V, S, D> {
+    #[inline(always)]
+    fn offer(&self, x: N) -> Offer<N> {
+        match self.delay.due() {
+            Some(torque) => Offer::Held(torque),
+            None => self.immediate(x),
+        }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        if self.delay.due().is_some() {
+            let torque = self.torque(x_e);
+            self.delay.push(torque);
+        }
+        self.velocity.advance(x_e);
+    }
+
+    fn slopes(&self) -> Slopes {
+        let slope = N::coefficient_to_f64(self.stiffness) + self.velocity.slope();
+        match (self.delay.due(), self.side.one_sided()) {
+            (Some(_), _) => Slopes::default(),
+            (None, false) => Slopes { line: slope, wall: 0.0 },
+            (None, true) => Slopes { line: 0.0, wall: slope },
+        }
+    }
+}

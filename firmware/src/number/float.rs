@@ -1,0 +1,102 @@
+//! The formats of the floating-point unit: `f32` on the target, `f64` as the host's reference.
+
+use core::hint::cold_path;
+
+use super::{Angle, Format, Number, OutOfRange, bounded};
+
+/// Largest magnitude of a coefficient or a constant. An angle is below 2^34 rad, so that no
+/// product of the tick comes near the 2^127 where `f32` would turn infinite.
+const LARGEST: f64 = (1u64 << 40) as f64;
+
+macro_rules! floating_point {
+    ($float:ident, $bits:literal, $format:expr, $integers_from:expr) => {
+        impl Number for $float {
+            type Coefficient = $float;
+            const FORMAT: Format = $format;
+            const ZERO: Self = 0.0;
+
+            fn from_f64(value: f64) -> Result<Self, OutOfRange> {
+                bounded(value, LARGEST, $format).map(|value| value as $float)
+            }
+
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+
+            fn coefficient(value: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(value)
+            }
+
+            fn coefficient_to_f64(coefficient: Self) -> f64 {
+                coefficient.into()
+            }
+
+            #[inline(always)]
+            fn plus(self, other: Self) -> Self {
+                self + other
+            }
+
+            #[inline(always)]
+            fn minus(self, other: Self) -> Self {
+                self - other
+            }
+
+            #[inline(always)]
+            fn times(self, coefficient: Self) -> Self {
+                self * coefficient
+            }
+
+            #[inline(always)]
+            fn negated(self) -> Self {
+                -self
+            }
+
+            #[inline(always)]
+            fn within(self, bound: Self) -> bool {
+                self.abs() <= bound
+            }
+
+            #[inline(always)]
+            fn positive_part(self) -> Self {
+                // Clears all bits where the sign is set: three integer instructions in place of
+                // five for a comparison and a choice.
+                let bits = self.to_bits().cast_signed();
+                Self::from_bits((bits & !(bits >> ($bits - 1))).cast_unsigned())
+            }
+
+            fn angle_scale(radians_per_count: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(radians_per_count)
+            }
+
+            #[inline(always)]
+            fn angle(count: i64, scale: Self) -> Angle<Self> {
+                // One conversion instruction takes 32 bits; a count beyond them (days of spinning
+                // one way) holds the angle still and says so. Compared in halves, because LLVM
+                // makes six instructions of `i32::try_from`.
+                let (high, low) = ((count >> 32) as i32, count as i32);
+                if high == low >> 31 {
+                    return Angle { value: low as $float * scale, saturated: false };
+                }
+                cold_path();
+                let end = if high < 0 { i32::MIN } else { i32::MAX };
+                Angle { value: end as $float * scale, saturated: true }
+            }
+
+            fn code_scale(codes_per_torque: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(codes_per_torque)
+            }
+
+            #[inline(always)]
+            fn codes_below(self, centre: u16, scale: Self) -> u16 {
+                // Around 1.5 * 2^(mantissa bits) neighbouring floats are 1 apart, so that the
+                // subtraction itself rounds to the nearest code, which is then found in the low
+                // bits. A cast would add the instructions of its saturation.
+                let centre = $integers_from + $float::from(centre);
+                ((centre - self * scale).to_bits() & 0xfff) as u16
+            }
+        }
+    };
+}
+
+floating_point!(f32, 32, Format::F32, 12_582_912.0_f32);
+floating_point!(f64, 64, Format::F64, 6_755_399_441_055_744.0_f64);

@@ -1,0 +1,122 @@
+//! Number formats that the servo can compute in, and no more of them than a tick needs.
+//!
+//! A [`Number`] holds angles (rad) and torques (N m). What multiplies them is a
+//! [`Number::Coefficient`], computed once from plain SI values. All operations of the tick give
+//! the same bits on every machine: no fused multiply-add, no library function, no division.
+
+mod fixed_point;
+mod float;
+
+pub use fixed_point::Scaled;
+
+use core::fmt;
+
+/// An angle as the servo knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angle<N> {
+    /// The angle in rad.
+    pub value: N,
+    /// Whether the count was beyond what the conversion can hold, so that the angle stands still
+    /// at the end of its range.
+    pub saturated: bool,
+}
+
+/// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`].
+pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
+    /// What multiplies a number: a gain, a compliance, a scale.
+    type Coefficient: Copy + fmt::Debug;
+    /// The format's name and resolution, for messages.
+    const FORMAT: Format;
+    /// Zero.
+    const ZERO: Self;
+
+    /// Rounds a value in SI units to the format; an error if it does not fit.
+    fn from_f64(value: f64) -> Result<Self, OutOfRange>;
+    /// The number in SI units, exactly.
+    fn to_f64(self) -> f64;
+    /// Rounds a factor to the format's coefficients; an error if it does not fit.
+    fn coefficient(value: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// The value of a coefficient, exactly: what the servo really multiplies by.
+    fn coefficient_to_f64(coefficient: Self::Coefficient) -> f64;
+
+    /// Sum; saturates in fixed point.
+    fn plus(self, other: Self) -> Self;
+    /// Difference; saturates in fixed point.
+    fn minus(self, other: Self) -> Self;
+    /// Product with a coefficient, rounded to nearest; saturates in fixed point.
+    fn times(self, coefficient: Self::Coefficient) -> Self;
+    /// The number with the opposite sign; saturates in fixed point.
+    fn negated(self) -> Self;
+    /// Whether the magnitude is at most `bound`; never true of a NaN.
+    fn within(self, bound: Self) -> bool;
+    /// The number where it is positive, else zero. Of a NaN: either.
+    fn positive_part(self) -> Self;
+    /// The smaller of two.
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    /// The larger of two.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    /// The factor for [`Number::angle`] from the encoder's step in rad.
+    fn angle_scale(radians_per_count: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// Angle of an encoder count.
+    fn angle(count: i64, scale: Self::Coefficient) -> Angle<Self>;
+    /// The factor for [`Number::codes_below`] from the converter's codes per N m.
+    fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// `centre - torque * scale` rounded to the nearest whole code, for results in `0..=4095`.
+    fn codes_below(self, centre: u16, scale: Self::Coefficient) -> u16;
+}
+
+/// A number format, for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// IEEE binary32.
+    F32,
+    /// IEEE binary64.
+    F64,
+    /// 32-bit two's complement with this many fractional bits.
+    Fixed {
+        /// Number of fractional bits.
+        fraction_bits: u32,
+    },
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::F32 => f.write_str("f32"),
+            Self::F64 => f.write_str("f64"),
+            Self::Fixed { fraction_bits } => write!(f, "Q{}.{fraction_bits}", 32 - fraction_bits),
+        }
+    }
+}
+
+/// A value that a number format cannot hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutOfRange {
+    /// The value, in the unit that it was given in.
+    pub value: f64,
+    /// The largest magnitude that fits.
+    pub bound: f64,
+    /// The format.
+    pub format: Format,
+}
+
+impl fmt::Display for OutOfRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} does not fit {}: its magnitude may be at most ", self.value, self.format)?;
+        write!(f, "{}", self.bound)
+    }
+}
+
+impl core::error::Error for OutOfRange {}
+
+/// The value if its magnitude is at most `bound` (a NaN is not), else the error that says so.
+fn bounded(value: f64, bound: f64, format: Format) -> Result<f64, OutOfRange> {
+    if value.abs() <= bound { Ok(value) } else { Err(OutOfRange { value, bound, format }) }
+}
