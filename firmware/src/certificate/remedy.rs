@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::model::Numbers;
 use super::parameter::Parameter;
 use super::rejection::Rejection;
 use super::rules::assess;
@@ -16,6 +17,8 @@ pub enum Relation {
     AtMost,
     /// `>=`
     AtLeast,
+    /// `=`
+    Exactly,
 }
 
 /// One number that, changed to `value`, makes the scene pass.
@@ -25,7 +28,7 @@ pub struct Remedy {
     pub parameter: Parameter,
     /// On which side of the value.
     pub relation: Relation,
-    /// Three significant digits, certified with exactly this value.
+    /// Three significant digits (all of them for [`Relation::Exactly`]), certified with this value.
     pub value: f64,
 }
 
@@ -36,6 +39,7 @@ impl Remedy {
         t.push(match self.relation {
             Relation::AtMost => " <= ",
             Relation::AtLeast => " >= ",
+            Relation::Exactly => " = ",
         });
         t.push_number(self.value);
         t.push(" ");
@@ -99,7 +103,7 @@ const fn search(scene: &Scene) -> Remedies {
         (Parameter::Stiffness, Relation::AtMost),
         (Parameter::Damping, Relation::AtMost),
         (Parameter::Residual, Relation::AtLeast),
-        (Parameter::CouplingStiffness, Relation::AtMost),
+        (Parameter::CouplingStiffness, Relation::Exactly),
         (Parameter::Period, Relation::AtMost),
         (Parameter::Passivity, Relation::AtLeast),
     ];
@@ -107,10 +111,28 @@ const fn search(scene: &Scene) -> Remedies {
     let mut i = 0;
     while i < CANDIDATES {
         let (parameter, relation) = ORDER[i];
-        found.found[i] = invert(scene, parameter, relation);
+        found.found[i] = match relation {
+            Relation::Exactly => standard_coupling(scene),
+            _ => invert(scene, parameter, relation),
+        };
         i += 1;
     }
     found
+}
+
+/// The standard coupling, `2 delta / T`, if that passes and is not what the scene has.
+const fn standard_coupling(scene: &Scene) -> Option<Remedy> {
+    let numbers = Numbers::of(scene);
+    if numbers.excess_compliance().contains(0.0) {
+        return None;
+    }
+    let parameter = Parameter::CouplingStiffness;
+    let value = numbers.delta.double().div(numbers.period).midpoint();
+    if is_certified(scene, parameter, value) {
+        Some(Remedy { parameter, relation: Relation::Exactly, value })
+    } else {
+        None
+    }
 }
 
 /// How far a number is moved in the search for a value that passes: by halving or doubling.
@@ -127,9 +149,10 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
     }
     let factor = match relation {
         Relation::AtMost => 0.5,
-        Relation::AtLeast => 2.0,
+        _ => 2.0,
     };
-    let (mut fails, mut passes) = (start, start * factor);
+    // A residual that was not positive starts the search at a small one, which may pass at once.
+    let (mut fails, mut passes) = (start, start);
     let mut octave = 0;
     while !is_certified(scene, parameter, passes) {
         if octave == MAX_OCTAVES {
@@ -139,7 +162,7 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
         octave += 1;
     }
     let mut i = 0;
-    while i < REFINEMENTS {
+    while i < REFINEMENTS && fails != passes {
         let middle = 0.5 * (fails + passes);
         if is_certified(scene, parameter, middle) {
             passes = middle;
@@ -177,7 +200,7 @@ const fn three_digits(value: f64, relation: Relation) -> f64 {
     }
     let whole = match relation {
         Relation::AtMost => scaled as u64,
-        Relation::AtLeast => scaled as u64 + 1,
+        _ => scaled as u64 + 1,
     };
     whole as f64 / power * divisor
 }
@@ -197,11 +220,7 @@ const fn get(scene: &Scene, parameter: Parameter) -> Option<f64> {
         (
             Parameter::Residual,
             Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. },
-        ) => Some(if *residual > 0.0 { *residual } else { scene.device.damping / 64.0 }),
-        (Parameter::CouplingStiffness, _) => match scene.coupling {
-            Coupling::Rigid => None,
-            Coupling::Spring { stiffness } => Some(stiffness),
-        },
+        ) => Some(if *residual > 0.0 { *residual } else { scene.device.damping / 1024.0 }),
         (Parameter::Period, _) => match scene.timing.worst_period {
             None => Some(scene.timing.period),
             Some(_) => None,
