@@ -1,1 +1,18 @@
-//! Nothing is exported: everything is in the integration tests.
+//! What the tests of the whole share: an independent, exact reference for the certificate, random
+//! scenes, passive hands, and the sampled loop that they close.
+//!
+//! Nothing here uses the firmware's mathematics. The reference decides in rational arithmetic with
+//! remainder sequences; the firmware encloses in binary intervals with Bernstein polynomials.
+
+pub mod agreement;
+pub mod contact;
+pub mod exact;
+pub mod floats;
+pub mod hands;
+pub mod index;
+pub mod plant;
+pub mod poly;
+pub mod remainders;
+pub mod rules;
+pub mod scenes;
+pub mod vectors;

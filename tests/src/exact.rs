@@ -1,0 +1,57 @@
+//! Numbers without rounding: decimal text and `f64` as rationals.
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+/// An exact rational number.
+pub type Q = BigRational;
+
+/// The rational that a finite `f64` is, bit for bit; `None` for NaN and infinities.
+pub fn of_f64(x: f64) -> Option<Q> {
+    BigRational::from_float(x)
+}
+
+/// The rational that a decimal such as `-0.0220` or `1e-9` is; `None` if it is not one.
+pub fn of_decimal(text: &str) -> Option<Q> {
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((m, e)) => (m, e.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits: BigInt = format!("{whole}{fraction}").parse().ok()?;
+    Some(Q::from_integer(digits) * power_of_ten(exponent - i32::try_from(fraction.len()).ok()?))
+}
+
+/// `numerator / denominator`.
+pub fn ratio(numerator: i64, denominator: i64) -> Q {
+    Q::new(numerator.into(), denominator.into())
+}
+
+/// `10^n`, also for negative `n`.
+pub fn power_of_ten(n: i32) -> Q {
+    let magnitude = Q::from_integer(BigInt::from(10).pow(n.unsigned_abs()));
+    if n < 0 { Q::one() / magnitude } else { magnitude }
+}
+
+/// `x` rounded to `places` decimals: the rational and the `f64` nearest to it, as a person who
+/// types that decimal would get it.
+pub fn rounded(x: f64, places: usize) -> (Q, f64) {
+    let text = format!("{x:.places$}");
+    let exact = of_decimal(&text).unwrap_or_else(Q::zero);
+    (exact, text.parse().unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_exact() {
+        assert_eq!(of_decimal("-0.0220").unwrap(), ratio(-11, 500));
+        assert_eq!(of_decimal("25e-1").unwrap(), ratio(5, 2));
+        assert_eq!(of_decimal("-0.5").unwrap(), ratio(-1, 2));
+        assert!(of_decimal("1.2.3").is_none() && of_decimal("").is_none());
+        assert_ne!(of_f64(0.1).unwrap(), ratio(1, 10));
+    }
+}

@@ -1,0 +1,243 @@
+//! The closed forms of theory section 5, written out here, against the certificate's general test
+//! and against the exact reference, over random parameters.
+//!
+//! A slip in how an environment is turned into a transfer function (a delay counted twice, the
+//! filter on the spring too, the sign of the canceller) moves the index away from its formula.
+
+use firmware::certificate::assess;
+use firmware::environment::Environment;
+use firmware::passivity::interval::Interval;
+use firmware::scene::Coupling;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::cmp::Ordering;
+use tests::exact::{Q, of_f64, ratio};
+use tests::scenes::{
+    Drawn, Frame, free_fraction, log_uniform, short, sum_of, wall_data, wall_fraction,
+};
+
+const ROUNDS: usize = 200;
+
+fn q(x: f64) -> Q {
+    of_f64(x).expect("drawn numbers are finite")
+}
+
+/// Device, period and the standard coupling, with a stiffness and a damping that fit them.
+struct Draw {
+    rng: ChaCha8Rng,
+    frame: Frame,
+    stiffness: f64,
+    damping: f64,
+}
+
+impl Draw {
+    fn new(seed: usize) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed as u64);
+        let mut frame = Frame::draw(&mut rng);
+        frame.coupling = Coupling::Spring { stiffness: 2.0 * frame.delta / frame.period };
+        let stiffness = short(frame.unit() * log_uniform(&mut rng, 0.01, 2.0), 16);
+        let damping = short(frame.delta * log_uniform(&mut rng, 0.01, 2.0), 24);
+        Self { rng, frame, stiffness, damping }
+    }
+
+    fn kt(&self) -> Q {
+        q(self.stiffness) * q(self.frame.period)
+    }
+
+    fn b(&self) -> Q {
+        q(self.damping)
+    }
+
+    fn wall(&self, damping: f64, filter: Option<f64>, delay: usize) -> Drawn {
+        let wall = wall_data(self.stiffness, damping, filter, delay);
+        let fraction = wall_fraction(&wall, self.frame.period);
+        self.frame.with(Environment::DamperWall(wall), fraction)
+    }
+}
+
+fn enclosure(drawn: &Drawn) -> Interval {
+    assess(&drawn.scene).alpha.unwrap_or_else(|| panic!("no index for {:?}", drawn.scene))
+}
+
+/// The closed form is the index: by the reference exactly, by the certificate inside it.
+fn agree(drawn: &Drawn, alpha: &Q) {
+    let reference = drawn.exact.alpha().expect("the index exists");
+    assert_eq!(reference.compare(alpha), Ordering::Equal, "reference, {:?}", drawn.scene);
+    let found = enclosure(drawn);
+    let inside = q(found.lo()) <= *alpha && *alpha <= q(found.hi());
+    assert!(inside, "{alpha} is not in {found:?} of {:?}", drawn.scene);
+}
+
+/// The same for a closed form that was computed in floating point.
+fn agree_closely(drawn: &Drawn, alpha: f64) {
+    let found = enclosure(drawn);
+    let slack = 1e-12 * alpha.abs();
+    let overlap = found.lo() <= alpha + slack && alpha - slack <= found.hi();
+    assert!(overlap, "{alpha} is not in {found:?} of {:?}", drawn.scene);
+}
+
+#[test]
+fn springs() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let delay = seed % 9;
+        let wall = wall_data(draw.stiffness, 0.0, None, delay);
+        let fraction = wall_fraction(&wall, draw.frame.period);
+        let drawn = draw.frame.with(Environment::DelayedSpring(wall), fraction);
+        let samples = 2 * i64::try_from(delay).unwrap() - 1;
+        agree(&drawn, &(draw.kt() * ratio(samples, 2)));
+    }
+}
+
+#[test]
+fn undelayed_walls() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        agree(&draw.wall(draw.damping, None, 0), &-(draw.kt() * ratio(1, 2) + draw.b()));
+    }
+}
+
+#[test]
+fn walls_one_sample_late() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let alpha = draw.kt() * ratio(1, 2) + draw.b();
+        agree(&draw.wall(draw.damping, None, 1), &alpha);
+        agree(&draw.wall(-draw.damping, None, 1), &alpha);
+    }
+}
+
+#[test]
+fn walls_two_samples_late() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let (kt, b) = (draw.kt(), draw.b());
+        let alpha = if kt <= &b * ratio(4, 1) {
+            &kt * ratio(1, 2) + &b + &kt * &kt / (&b * ratio(8, 1))
+        } else {
+            kt * ratio(3, 2) - b
+        };
+        agree(&draw.wall(draw.damping, None, 2), &alpha);
+    }
+}
+
+#[test]
+fn walls_three_samples_late() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let (kt, b) = (draw.stiffness * draw.frame.period, draw.damping);
+        let g =
+            |c: f64| -(kt / 2.0) * (4.0 * c * c + 2.0 * c - 1.0) + b * (4.0 * c.powi(3) - 3.0 * c);
+        let alpha = if 5.0 * kt <= 9.0 * b {
+            let c0 = (kt + (kt * kt + 3.0 * b * kt + 9.0 * b * b).sqrt()) / (6.0 * b);
+            (-g(-1.0)).max(-g(c0))
+        } else {
+            (2.5 * kt - b).max(0.5 * kt + b)
+        };
+        agree_closely(&draw.wall(draw.damping, None, 3), alpha);
+    }
+}
+
+/// Minus the least of `-(K T / 2)(U_{n-1} + U_{n-2}) + B T_n`, by Sturm's theorem on that very
+/// polynomial: it must be the reference's, and the enclosure must hold it.
+#[test]
+fn walls_later_than_that() {
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let drawn = draw.wall(draw.damping, None, 4 + seed % 5);
+        let reference = drawn.exact.alpha().expect("the index exists");
+        let found = enclosure(&drawn);
+        assert_ne!(reference.compare(&q(found.lo())), Ordering::Less, "{:?}", drawn.scene);
+        assert_ne!(reference.compare(&q(found.hi())), Ordering::Greater, "{:?}", drawn.scene);
+        let width = tests::agreement::relative_width(found);
+        assert!(width <= 1e-9, "{found:?} is {width} wide");
+    }
+}
+
+#[test]
+fn filtered_walls_one_sample_late() {
+    for seed in 0..ROUNDS {
+        let mut draw = Draw::new(seed);
+        let a = short(draw.rng.random_range(0.0..0.99), 20);
+        let lag = (Q::from_integer(1.into()) - q(a)) / (Q::from_integer(1.into()) + q(a));
+        let alpha = draw.kt() * ratio(1, 2) + draw.b() * lag;
+        agree(&draw.wall(draw.damping, Some(a), 1), &alpha);
+    }
+}
+
+#[test]
+fn negative_dampers() {
+    for seed in 0..ROUNDS {
+        let mut draw = Draw::new(seed);
+        draw.stiffness = 0.0;
+        agree(&draw.wall(-draw.damping, None, 0), &draw.b());
+        agree(&draw.wall(-draw.damping, None, 1), &draw.b());
+    }
+}
+
+/// `2 B (z - 1) / (T (z + 1))`: a pole at -1 that is allowed, and no longer is when it is delayed.
+#[test]
+fn tustin_dampers() {
+    use firmware::environment::{Coefficients, Rational};
+    use tests::poly::Poly;
+    for seed in 0..ROUNDS {
+        let draw = Draw::new(seed);
+        let gain = 2.0 * draw.damping / draw.frame.period;
+        for delay in [0, 1] {
+            let environment = Environment::Rational(Rational {
+                numerator: Coefficients::new(&[gain, -gain]).expect("two coefficients"),
+                denominator: Coefficients::new(&[1.0, 1.0]).expect("two coefficients"),
+                delay,
+                unit_zeros: 0,
+            });
+            let over = Poly::integers(&[-1, 1]).scaled(&q(gain));
+            let under = Poly::integers(&[1, 1]).raised(delay);
+            let drawn = draw.frame.with(environment, (over, under));
+            if delay == 0 {
+                agree(&drawn, &-draw.b());
+            } else {
+                let assessment = assess(&drawn.scene);
+                assert!(assessment.alpha.is_none() && assessment.outcome.is_err());
+            }
+        }
+    }
+}
+
+/// Behind the standard coupling `2 b / T`, with a residual between zero and the damping.
+fn free(draw: &mut Draw) -> (f64, Q) {
+    let residual = short(draw.frame.delta * draw.rng.random_range(0.01..0.99), 24);
+    (residual, q(draw.frame.delta) - q(residual))
+}
+
+#[test]
+fn free_modes() {
+    for seed in 0..ROUNDS {
+        let mut draw = Draw::new(seed);
+        let (residual, be) = free(&mut draw);
+        let fraction = free_fraction(draw.frame.delta - residual, &draw.frame, 0);
+        agree(&draw.frame.with(Environment::FreeMode { residual, delay: 0 }, fraction), &be);
+    }
+}
+
+#[test]
+fn free_modes_with_a_wall() {
+    for seed in 0..ROUNDS {
+        let mut draw = Draw::new(seed);
+        let (residual, be) = free(&mut draw);
+        let half_kt = draw.kt() * ratio(1, 2);
+        for delay in [0, 1] {
+            let wall = wall_data(draw.stiffness, draw.damping, None, delay);
+            let free = free_fraction(draw.frame.delta - residual, &draw.frame, 0);
+            let fraction = sum_of(&free, &wall_fraction(&wall, draw.frame.period));
+            let drawn = draw.frame.with(Environment::FreeModeWall { residual, wall }, fraction);
+            let b = q(draw.frame.delta);
+            let alpha = if delay == 0 {
+                &be - &half_kt - draw.b()
+            } else {
+                let still = &half_kt - draw.b() + &be;
+                still.max(&half_kt + draw.b() + &b * &be / (&b + &be))
+            };
+            agree(&drawn, &alpha);
+        }
+    }
+}

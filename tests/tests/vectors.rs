@@ -1,0 +1,91 @@
+//! The published cases: verdicts under both rules, indices to 34 digits, reason codes.
+
+use firmware::certificate::{Answer, Assessment, assess};
+use firmware::passivity::interval::Interval;
+use tests::agreement::relative_width;
+use tests::exact::{Q, of_f64};
+use tests::vectors::{self, Case};
+
+fn encloses(interval: Interval, value: &Q) -> bool {
+    let end = |x| of_f64(x).expect("the ends are finite");
+    end(interval.lo()) <= *value && *value <= end(interval.hi())
+}
+
+/// The index is in its enclosure, which is narrow, and it is missing exactly where it should be.
+fn check_index(case: &Case, what: &str, found: Option<Interval>, wanted: &Option<Q>) {
+    match (found, wanted) {
+        (Some(interval), Some(value)) => {
+            assert!(encloses(interval, value), "{}: {what} {value} not in {interval:?}", case.name);
+            let width = relative_width(interval);
+            let limit = if *value == Q::from_integer(0.into()) { f64::INFINITY } else { 1e-9 };
+            assert!(width <= limit, "{}: {what} is {width} wide", case.name);
+            let size = interval.lo().abs().max(interval.hi().abs());
+            assert!(limit < 1.0 || size <= 1e-9, "{}: {what} {interval:?} is not zero", case.name);
+        }
+        (None, None) => {}
+        other => panic!("{}: {what} {other:?}", case.name),
+    }
+}
+
+fn check_answer(case: &Case, rule: &str, found: Answer, passes: bool) {
+    if case.is_on_the_line() {
+        assert_ne!(found, Answer::Pass, "{}: {rule}, alpha equals delta", case.name);
+    } else {
+        let wanted = if passes { Answer::Pass } else { Answer::Fail };
+        assert_eq!(found, wanted, "{}: {rule}", case.name);
+    }
+}
+
+/// The contract's reason codes that may be given for a case.
+fn codes(case: &Case) -> &'static [&'static str] {
+    let reason = case.reason.as_str();
+    if case.is_on_the_line() {
+        return &["shortage", "undecided"];
+    }
+    if case.exact {
+        return &["ok"];
+    }
+    match reason {
+        _ if reason.starts_with("alpha_min >=") => &["shortage"],
+        _ if reason.contains("angle") => &["residue_angle"],
+        _ if reason.starts_with("residue") => &["negative_residue"],
+        _ if reason.starts_with("repeated") => &["repeated_unit_pole"],
+        _ if reason.starts_with("pole outside") => &["unstable_pole"],
+        _ if reason.starts_with("improper") => &["improper"],
+        other => panic!("{}: what code is {other:?}?", case.name),
+    }
+}
+
+fn code(assessment: &Assessment) -> &'static str {
+    match &assessment.outcome {
+        Ok(()) => "ok",
+        Err(rejection) => rejection.reason(),
+    }
+}
+
+#[test]
+fn every_index_is_inside_its_enclosure() {
+    for case in vectors::all() {
+        let assessment = assess(&case.scene());
+        check_index(&case, "alpha", assessment.alpha, &case.alpha);
+        check_index(&case, "alpha_coupled", assessment.alpha_coupled, &case.alpha_coupled);
+    }
+}
+
+#[test]
+fn every_answer_is_right() {
+    for case in vectors::all() {
+        let assessment = assess(&case.scene());
+        check_answer(&case, "paper", assessment.paper, case.paper);
+        check_answer(&case, "exact", assessment.exact, case.exact);
+        assert_eq!(assessment.outcome.is_ok(), assessment.exact == Answer::Pass, "{}", case.name);
+    }
+}
+
+#[test]
+fn every_reason_is_right() {
+    for case in vectors::all() {
+        let code = code(&assess(&case.scene()));
+        assert!(codes(&case).contains(&code), "{}: reason {code}, {}", case.name, case.reason);
+    }
+}
