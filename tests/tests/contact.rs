@@ -102,7 +102,7 @@ fn accepted_contacts_stay_within_the_energy_they_started_with() {
 fn contacts_past_the_bound_break_it_and_are_refused() {
     let mut rng = ChaCha8Rng::seed_from_u64(6);
     let mut broken = 0;
-    for _ in 0..500 {
+    for _ in 0..2_000 {
         let contact = draw(&mut rng, 6.0);
         if contact.delay == 0 || bound(&contact) < 0.5 * contact.coupling {
             continue;

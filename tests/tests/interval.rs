@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use tests::exact::{Q, of_f64};
 use tests::floats::any_finite;
 
-const ROUNDS: u32 = 60_000;
+const ROUNDS: u32 = 20_000;
 
 /// An interval and two numbers inside it.
 fn draw(rng: &mut ChaCha8Rng) -> (Interval, [f64; 2]) {

@@ -48,6 +48,8 @@ fn codes(case: &Case) -> &'static [&'static str] {
     match reason {
         _ if reason.starts_with("alpha_min >=") => &["shortage"],
         _ if reason.contains("angle") => &["residue_angle"],
+        // Real and negative, but not a spring: both words describe it.
+        _ if reason.contains("at z=-1") => &["residue_angle", "negative_residue"],
         _ if reason.starts_with("residue") => &["negative_residue"],
         _ if reason.starts_with("repeated") => &["repeated_unit_pole"],
         _ if reason.starts_with("pole outside") => &["unstable_pole"],
