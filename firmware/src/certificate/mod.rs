@@ -2,6 +2,30 @@
 //!
 //! The same `const fn` judges at compile time, when the board starts, and for every change that
 //! arrives over the wire.
+//!
+//! ```
+//! use firmware::certificate::Certified;
+//! use firmware::environment::DamperWall;
+//! use firmware::scene::{Coupling, Device, Scene, Timing};
+//!
+//! type WallScene = Scene<DamperWall<1>>;
+//! const WALL: WallScene = Scene {
+//!     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+//!     timing: Timing { period: 0.001, worst_period: None },
+//!     coupling: Coupling::Spring { stiffness: 44.0 },
+//!     environment: DamperWall { stiffness: 22.0, damping: 0.01 },
+//!     torque_limit: None,
+//! };
+//! // A constant that would not pass stops the compiler here, with the sentence below.
+//! const CERTIFIED: Certified<WallScene> = WALL.certified();
+//! let alpha = CERTIFIED.assessment().alpha.unwrap();
+//! assert!(alpha.contains(0.021) && alpha.hi() < 0.022);
+//!
+//! let stiffer = Scene { environment: DamperWall { stiffness: 25.0, damping: 0.01 }, ..WALL };
+//! let rejection = stiffer.certify().unwrap_err();
+//! assert_eq!(rejection.reason(), "shortage");
+//! assert!(rejection.to_string().contains("it would pass with stiffness <= 23.9 N m/rad"));
+//! ```
 
 mod assumption;
 mod model;
