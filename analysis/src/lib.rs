@@ -5,5 +5,8 @@
 
 pub mod batch;
 pub mod command;
+pub mod device;
 pub mod file;
+pub mod hand;
+pub mod replay;
 pub mod verdict;

@@ -43,7 +43,7 @@ mod tree;
 use std::io::Read;
 use std::path::Path;
 
-pub use problem::{FileError, Problem};
+pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
 
 use problem::Fault;

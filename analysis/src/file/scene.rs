@@ -6,8 +6,9 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 use super::key::{self, Key};
 use super::problem::Fault;
 use super::section::{Found, Section};
-use super::simulation::{self, Hand, Simulation};
+use super::simulation::{self, Simulation};
 use super::tree::{Node, Value};
+use crate::device::Hand;
 
 /// Everything that a scene file says.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,6 +3,8 @@
 
 use std::path::PathBuf;
 
+use crate::device::Hand;
+
 use super::key::{self, Key};
 use super::problem::Fault;
 use super::section::{Found, Section};
@@ -38,17 +40,6 @@ pub enum HandTorque {
         /// Phase in rad at sample 0.
         phase: f64,
     },
-}
-
-/// A passive hand that holds the device: all three are 0 or more.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hand {
-    /// Inertia in kg m^2.
-    pub inertia: f64,
-    /// Damping in N m s/rad.
-    pub damping: f64,
-    /// Stiffness in N m/rad to the point where the hand is held.
-    pub stiffness: f64,
 }
 
 /// Reads `[simulation]`.

@@ -1,0 +1,67 @@
+//! What a hand does over time: where it wants to be, and when it lets go.
+
+use crate::device::{Grip, Hand};
+
+/// A hand's intention: it moves smoothly from one angle to the next, and lets go at the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Script {
+    /// The hand, as long as it holds the device.
+    pub hand: Hand,
+    /// Times in s, rising, with the angle in rad that the hand wants to be at then.
+    pub path: Vec<(f64, f64)>,
+    /// When it lets go, in s.
+    pub release: f64,
+}
+
+/// A hand of an ordinary grip: an arm's muscles around a knob, with a little of its mass.
+pub const GRIP: Hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
+
+impl Script {
+    /// Comes from outside, pushes in, holds, eases out, pushes in once more and lets go there.
+    pub fn push_and_let_go() -> Self {
+        let path =
+            vec![(0.25, 0.0), (0.5, -0.05), (1.25, 0.12), (1.75, 0.12), (2.5, -0.05), (3.25, 0.12)];
+        Self { hand: GRIP, path, release: 3.75 }
+    }
+
+    /// Swings to and fro and lets go in the middle of a swing, so that the device coasts.
+    pub fn swing_and_let_go() -> Self {
+        let swing = |n: i32| (0.25 + 0.5 * f64::from(n), if n % 2 == 0 { -0.3 } else { 0.3 });
+        let path = std::iter::once((0.0, 0.0)).chain((0..8).map(swing)).collect();
+        Self { hand: GRIP, path, release: 3.5 }
+    }
+
+    /// Where the hand wants to be at a time in s: smoothly from point to point.
+    pub fn position(&self, time: f64) -> f64 {
+        let next = self.path.partition_point(|&(at, _)| at <= time);
+        let (Some(&(begin, from)), Some(&(end, to))) =
+            (self.path.get(next.wrapping_sub(1)), self.path.get(next))
+        else {
+            let end = if next == 0 { self.path.first() } else { self.path.last() };
+            return end.map_or(0.0, |&(_, position)| position);
+        };
+        let s = (time - begin) / (end - begin);
+        // The cubic whose speed is zero at both ends.
+        from + (to - from) * s * s * (3.0 - 2.0 * s)
+    }
+
+    /// The grip over the tick from `start` to `end` in s.
+    pub fn grip(&self, start: f64, end: f64) -> Grip {
+        Grip { from: self.position(start), to: self.position(end) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_path_goes_through_its_points_and_rests_at_its_ends() {
+        let script = Script::push_and_let_go();
+        for &(time, position) in &script.path {
+            assert!((script.position(time) - position).abs() < 1e-15);
+        }
+        assert_eq!(script.position(0.0), 0.0);
+        assert_eq!(script.position(99.0), 0.12);
+    }
+}
