@@ -8,5 +8,8 @@ pub mod command;
 pub mod device;
 pub mod file;
 pub mod hand;
+pub mod minimum;
+pub mod quantity;
 pub mod replay;
+pub mod response;
 pub mod verdict;

@@ -1,8 +1,13 @@
 //! What the certificate says about a scene, as the fields that people and programs read.
 
-use firmware::certificate::{Answer, Assessment, Rejection, assess};
+use firmware::certificate::{Answer, Assessment, Assumptions, Loop, Rule, assess, certify};
+use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use serde::Serialize;
+
+use crate::minimum::least;
+use crate::quantity::significant;
+use crate::response::Response;
 
 /// The answer to "is this scene safe".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -61,7 +66,8 @@ pub struct Report {
     pub alpha: Enclosure,
     /// Index of `E'` (theory, section 4.1).
     pub alpha_coupled: Enclosure,
-    /// Passivity of the device in N m s/rad, scaled to the worst period.
+    /// Passivity of the device in N m s/rad, scaled to the worst period; the certificate compares
+    /// with the lower end of an enclosure of it.
     pub delta: f64,
     /// `delta` less the upper end of the index that decided, in N m s/rad: how much is to spare.
     pub margin: Option<f64>,
@@ -79,51 +85,37 @@ pub struct Report {
 /// Judges a scene that the person calls `name`.
 pub fn judge(name: &str, scene: &Scene) -> Report {
     let assessment = assess(scene);
-    let rejection = assessment.outcome.err();
-    let reason = rejection.as_ref().map_or("ok", reason);
-    let verdict = match rejection {
+    let rejection = certify(scene).err();
+    let verdict = match &rejection {
         None => Verdict::Certified,
-        Some(_) if reason == "undecided" => Verdict::Undecided,
+        Some(rejection) if rejection.is_undecided() => Verdict::Undecided,
         Some(_) => Verdict::Rejected,
     };
-    let delta = assessment.delta.lo();
-    let margin = deciding(&assessment).map(|alpha| delta - alpha.hi());
-    let mut report = Report {
+    let delta = assessment.delta.midpoint();
+    let margin = assessment.margin();
+    let remedies = rejection.map(|rejection| rejection.remedies());
+    Report {
         name: name.to_owned(),
         verdict,
         rules: Rules { paper: answer(assessment.paper), exact: answer(assessment.exact) },
-        reason,
+        reason: rejection.as_ref().map_or("ok", |rejection| rejection.reason()),
         alpha: enclosure(assessment.alpha),
         alpha_coupled: enclosure(assessment.alpha_coupled),
         delta,
         margin,
-        theta: assessment.cos_theta.map(angle),
-        assumptions: Vec::new(),
-        message: String::new(),
-        remedies: Vec::new(),
-    };
-    report.message =
-        rejection.map_or_else(|| passed(&report), |rejection| format!("{rejection:?}"));
-    report
-}
-
-type Interval = firmware::passivity::interval::Interval;
-
-/// The index that the verdict compares with delta: the nonlinear bound where the scene has one,
-/// otherwise that of `E'`.
-fn deciding(assessment: &Assessment) -> Option<Interval> {
-    assessment.bound.or(assessment.alpha_coupled)
-}
-
-fn passed(report: &Report) -> String {
-    match report.margin {
-        Some(margin) => format!(
-            "certified: no passive hand can make it oscillate; {margin:.6} N m s/rad of the \
-             device's {:.6} are to spare",
-            report.delta
-        ),
-        None => "certified: no passive hand can make it oscillate".to_owned(),
+        theta: minimum_angle(scene, &assessment),
+        assumptions: Assumptions::of(scene).iter().map(ToString::to_string).collect(),
+        message: rejection.map_or_else(|| passed(delta, margin), |rejection| rejection.to_string()),
+        remedies: remedies.iter().flat_map(|found| found.iter()).map(ToString::to_string).collect(),
     }
+}
+
+fn passed(delta: f64, margin: Option<f64>) -> String {
+    let to_spare = margin.map_or_else(String::new, |margin| {
+        let margin = significant(margin, 4);
+        format!("; of the device's {delta} N m s/rad of damping {margin} are to spare")
+    });
+    format!("certified: no passive hand can make it oscillate{to_spare}")
 }
 
 fn answer(answer: Answer) -> RuleAnswer {
@@ -138,11 +130,17 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
     Enclosure { lo: interval.map(Interval::lo), hi: interval.map(Interval::hi) }
 }
 
-/// The angle in the middle of an enclosure of its cosine.
-fn angle(cosine: Interval) -> f64 {
-    (0.5 * (cosine.lo() + cosine.hi())).clamp(-1.0, 1.0).acos()
-}
-
-fn reason(rejection: &Rejection) -> &'static str {
-    rejection.reason()
+/// Angle in rad at which the linear index is reached: looked for in the part of the circle that the
+/// certificate has enclosed. None where the real part is the same all around.
+fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
+    let cosine = assessment.cos_theta?;
+    let transfers = Loop::of(scene).ok()?;
+    let judged = match assessment.rule {
+        Rule::Exact => transfers.equivalent,
+        Rule::Nonlinear => transfers.environment,
+    };
+    let velocity = Response::new(judged).from_velocity(scene.timing.period);
+    let real = |theta: f64| velocity.at_angle(theta).re;
+    let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
+    least(real, angle(cosine.hi()), angle(cosine.lo()))
 }

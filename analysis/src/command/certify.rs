@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 
 use super::{Answer, CommandError};
+use crate::quantity::significant;
 use crate::verdict::{self, Enclosure, Report, Verdict};
 use crate::{batch, file};
 
@@ -53,7 +54,7 @@ pub fn text(report: &Report) -> String {
         ("delta", format!("{} N m s/rad", report.delta)),
     ];
     if let Some(margin) = report.margin {
-        rows.push(("margin", format!("{margin:.6e} N m s/rad")));
+        rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
     }
     if let Some(theta) = report.theta {
         let degrees = theta.to_degrees();
@@ -72,9 +73,13 @@ fn list(rows: &mut Vec<(&'static str, String)>, label: &'static str, items: &[St
     }
 }
 
+/// The middle of an enclosure to the digits that are certain, and how far it reaches.
 fn enclosure(enclosure: Enclosure) -> String {
     match enclosure {
-        Enclosure { lo: Some(lo), hi: Some(hi) } => format!("{lo} to {hi} N m s/rad"),
+        Enclosure { lo: Some(lo), hi: Some(hi) } => {
+            let reach = significant(0.5 * (hi - lo), 2);
+            format!("{} N m s/rad, to within {reach}", significant(0.5 * (lo + hi), 12))
+        }
         _ => "does not exist".to_owned(),
     }
 }

@@ -35,6 +35,7 @@ mod remedy;
 mod rules;
 
 pub use assumption::{Assumption, Assumptions};
+pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Relation, Remedies, Remedy};

@@ -181,3 +181,44 @@ const fn canceller_bound(n: &Numbers) -> Option<Interval> {
         _ => Some(be.abs()),
     }
 }
+
+/// A scene's linear transfer functions from position (rad) to torque (N m), as the certificate
+/// sees them: for pictures, and for simulating what was not certified.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loop {
+    /// The environment `E` alone.
+    pub environment: Transfer,
+    /// The total controller `C = E / (1 + V E)` (theory, section 2).
+    pub controller: Transfer,
+    /// `E'`, which behind the standard coupling is the same controller (theory, section 4.1).
+    pub equivalent: Transfer,
+}
+
+impl Loop {
+    /// The transfer functions of a scene, one-sidedness and torque limit left out.
+    ///
+    /// # Errors
+    /// Where the environment is not causal, the loop of coupling and environment has no solution,
+    /// or a number is out of range.
+    pub const fn of(scene: &Scene) -> Result<Self, Unbuildable> {
+        let n = Numbers::of(scene);
+        let environment = match transfer(&scene.environment, &n) {
+            Ok(environment) => environment,
+            Err(error) => return Err(error),
+        };
+        let controller = match environment.behind(n.compliance()) {
+            Ok(controller) => controller,
+            Err(error) => return Err(error),
+        };
+        let excess = n.excess_compliance();
+        let equivalent = if excess.contains(0.0) {
+            environment
+        } else {
+            match environment.behind(excess) {
+                Ok(equivalent) => equivalent,
+                Err(error) => return Err(error),
+            }
+        };
+        Ok(Self { environment, controller, equivalent })
+    }
+}

@@ -1,0 +1,27 @@
+//! Numbers as people write them.
+
+/// A number with so many significant digits and no trailing zeros, in exponential form where
+/// plain digits would be long.
+///
+/// ```
+/// use analysis::quantity::significant;
+/// assert_eq!(significant(0.021_000_000_000_06, 6), "0.021");
+/// assert_eq!(significant(-1234.567, 3), "-1230");
+/// assert_eq!(significant(1.25e-9, 2), "1.2e-9");
+/// assert_eq!(significant(0.0, 3), "0");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    let precision = digits.saturating_sub(1);
+    let exponential = format!("{value:.precision$e}");
+    let rounded: f64 = exponential.parse().unwrap_or(value);
+    let exponent = if rounded == 0.0 { 0.0 } else { rounded.abs().log10().floor() };
+    if !rounded.is_finite() || (-4.0..7.0).contains(&exponent) {
+        return format!("{rounded}");
+    }
+    match exponential.split_once('e') {
+        Some((mantissa, power)) if mantissa.contains('.') => {
+            format!("{}e{power}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => exponential,
+    }
+}
