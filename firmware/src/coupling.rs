@@ -127,3 +127,71 @@ impl<N: Number> Solver<N> {
         x.minus(torque.times(self.compliance))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn spring(stiffness: f64) -> Coupling {
+        Coupling::Spring { stiffness }
+    }
+
+    #[test]
+    fn refuses_loops_without_one_solution() {
+        let slopes = |line, wall| Slopes { line, wall };
+        let ill = |coupling, slopes| {
+            matches!(Solver::<f64>::new(coupling, slopes), Err(BuildError::IllPosed { .. }))
+        };
+        assert!(ill(spring(32.0), slopes(-32.0, 0.0)));
+        assert!(!ill(spring(32.0), slopes(-33.0, 0.0)));
+        assert!(ill(spring(32.0), slopes(-33.0, 5.0)));
+        assert!(ill(spring(32.0), slopes(0.0, -40.0)));
+        assert!(!ill(Coupling::Rigid, slopes(-33.0, 5.0)));
+    }
+
+    #[test]
+    fn a_rigid_coupling_puts_the_environment_where_the_device_is() {
+        let solver = Solver::<f32>::new(Coupling::Rigid, Slopes { line: 5.0, wall: 0.0 }).unwrap();
+        assert_eq!(solver.torque(Offer::Line(3.0)), 3.0);
+        assert_eq!(solver.environment_position(0.5, 3.0), 0.5);
+    }
+
+    proptest! {
+        #[test]
+        fn solves_a_line(k in 1.0..1e3_f64, slope in -0.9..50.0_f64, carry in -1.0..1.0_f64,
+                         x in -1.0..1.0_f64) {
+            let slope = slope * k;
+            let solver = Solver::<f64>::new(spring(k), Slopes { line: slope, wall: 0.0 }).unwrap();
+            let torque = solver.torque(Offer::Line(slope * x + carry));
+            let residual = torque - (slope * solver.environment_position(x, torque) + carry);
+            prop_assert!(residual.abs() <= 1e-13 * (1.0 + slope.abs()) * (1.0 + torque.abs()));
+        }
+
+        /// Against a search for the torque at which the loop's error changes sign, which knows
+        /// nothing of cases; at the face the wall may give anything up to its line.
+        #[test]
+        fn solves_a_line_and_a_wall(k in 1.0..1e3_f64, line in -0.9..5.0_f64,
+                                    wall in 0.01..20.0_f64, carry in -9.0..9.0_f64,
+                                    wall_carry in -9.0..9.0_f64, face in -0.5..0.5_f64,
+                                    x in -1.0..1.0_f64) {
+            let (line, wall) = (line * k, wall * k);
+            let solver = Solver::<f64>::new(spring(k), Slopes { line, wall }).unwrap();
+            let contact = Contact { torque: wall * (x - face) + wall_carry, depth: x - face };
+            let torque = solver.torque(Offer::LineAndWall(line * x + carry, contact));
+            let error = |torque: f64| {
+                let p = x - torque / k - face;
+                let pushed = if p > 0.0 { (wall * p + wall_carry).max(0.0) } else { 0.0 };
+                torque - (line * (x - torque / k) + carry + pushed)
+            };
+            let (mut below, mut above) = (-1e9, 1e9);
+            for _ in 0..200 {
+                let middle = 0.5 * (below + above);
+                if error(middle) < 0.0 { below = middle } else { above = middle }
+            }
+            prop_assert!((torque - below).abs() <= 1e-9 * (1.0 + torque.abs()),
+                "{torque} against {below}");
+        }
+    }
+}

@@ -69,3 +69,28 @@ impl fmt::Display for CodeOutOfRange {
 }
 
 impl core::error::Error for CodeOutOfRange {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn takes_every_code_and_nothing_else() {
+        for code in 0..=u16::MAX {
+            let taken = DacCode::new(code);
+            if code < 4096 {
+                assert_eq!(taken.map(DacCode::get), Ok(code));
+                assert_eq!(DacCode::from_low_bits(code), DacCode(code));
+            } else {
+                assert_eq!(taken, Err(CodeOutOfRange { code }));
+            }
+        }
+    }
+
+    #[test]
+    fn full_torque_is_as_far_from_the_middle_on_both_sides() {
+        assert_eq!(DacCode::MID_SCALE.offset(), 0);
+        assert_eq!(DacCode::MAX.offset(), 2047);
+        assert_eq!(DacCode(1).offset(), -2047);
+    }
+}

@@ -94,3 +94,49 @@ impl Position {
         self.count
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn wraps_both_ways_at_both_widths() {
+        let mut narrow = Position::new(CounterWidth::Bits16);
+        assert_eq!(narrow.update(RawCount::from(0xffff_u16)), -1);
+        assert_eq!(narrow.update(RawCount::from(2_u16)), 2);
+        assert_eq!(narrow.update(RawCount::from(0x7fff_u16)), 0x7fff);
+        assert_eq!(narrow.update(RawCount::from(0x8001_u16)), 0x8001);
+        assert_eq!(narrow.update(RawCount::from(0x7fff_u16)), 0x7fff);
+        let mut wide = Position::new(CounterWidth::Bits32);
+        assert_eq!(wide.update(RawCount::from(i32::MAX)), i64::from(i32::MAX));
+        assert_eq!(wide.update(RawCount::from(i32::MIN)), 1 << 31);
+        assert_eq!(wide.update(RawCount::from(i32::MIN + 7)), (1 << 31) + 7);
+        assert_eq!(wide.update(RawCount::from(i32::MAX)), i64::from(i32::MAX));
+    }
+
+    #[test]
+    fn ignores_what_is_above_the_width() {
+        let mut narrow = Position::new(CounterWidth::Bits16);
+        assert_eq!(narrow.update(RawCount::from(0xabcd_0005_u32)), 5);
+        assert_eq!(narrow.update(RawCount::from(0x1234_0007_u32)), 7);
+    }
+
+    proptest! {
+        #[test]
+        fn follows_any_path_whose_steps_are_below_half_the_range(
+            steps in proptest::collection::vec(-0x7fff_i64..=0x7fff, 1..200),
+            scale in prop_oneof![Just(1_i64), Just(0x1_0000)],
+        ) {
+            let width = if scale == 1 { CounterWidth::Bits16 } else { CounterWidth::Bits32 };
+            let mut position = Position::new(width);
+            let mut truth = 0_i64;
+            for step in steps {
+                truth += step * scale;
+                prop_assert_eq!(position.update(RawCount::from(truth as u32)), truth);
+                prop_assert_eq!(position.count(), truth);
+            }
+        }
+    }
+}

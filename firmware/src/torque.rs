@@ -72,3 +72,35 @@ impl<N: Number> Limiter<N> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn says_what_it_did() {
+        let limiter = Limiter::new(2.0_f32, LimitReason::Torque);
+        let limit = |wanted| limiter.limit(wanted, LimitReason::None);
+        assert_eq!(limit(2.0), (2.0, LimitReason::None));
+        assert_eq!(limit(2.1), (2.0, LimitReason::Torque));
+        assert_eq!(limit(-2.0), (-2.0, LimitReason::None));
+        assert_eq!(limit(f32::NEG_INFINITY), (-2.0, LimitReason::Torque));
+        assert_eq!(limit(f32::NAN), (0.0, LimitReason::NotANumber));
+        assert_eq!(limiter.limit(1.0, LimitReason::Angle), (1.0, LimitReason::Angle));
+        assert_eq!(limiter.limit(3.0, LimitReason::Angle), (2.0, LimitReason::Torque));
+    }
+
+    #[test]
+    fn has_a_word_for_every_reason() {
+        let reasons = [
+            (LimitReason::None, "none"),
+            (LimitReason::Torque, "torque"),
+            (LimitReason::Converter, "converter"),
+            (LimitReason::Angle, "angle"),
+            (LimitReason::NotANumber, "not-a-number"),
+        ];
+        for (reason, word) in reasons {
+            assert_eq!(reason.to_string(), word);
+        }
+    }
+}

@@ -6,6 +6,8 @@
 
 mod fixed_point;
 mod float;
+#[cfg(test)]
+mod tests;
 
 pub use fixed_point::Scaled;
 

@@ -1,0 +1,144 @@
+//! What the formats promise, for all of them alike where they promise the same.
+
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U24, U28, U31};
+use proptest::prelude::*;
+
+use super::*;
+
+type Q16 = FixedI32<U16>;
+
+const CENTRE: u16 = 2048;
+
+fn coefficient<N: Number>(value: f64) -> f64 {
+    N::coefficient_to_f64(N::coefficient(value).unwrap())
+}
+
+fn code<N: Number>(torque: f64, full_scale: f64) -> u16 {
+    let scale = N::code_scale(2047.0 / full_scale).unwrap();
+    N::from_f64(torque).unwrap().codes_below(CENTRE, scale)
+}
+
+fn middle_and_both_ends<N: Number>() {
+    for full_scale in [0.9, 0.1] {
+        assert_eq!(code::<N>(0.0, full_scale), 2048);
+        assert_eq!(code::<N>(full_scale, full_scale), 1);
+        assert_eq!(code::<N>(-full_scale, full_scale), 4095);
+        let step = full_scale / 2047.0;
+        assert_eq!(code::<N>(0.7 * step, full_scale), 2047);
+        assert_eq!(code::<N>(0.3 * step, full_scale), 2048);
+        assert_eq!(code::<N>(-0.3 * step, full_scale), 2048);
+        assert_eq!(code::<N>(-0.7 * step, full_scale), 2049);
+    }
+}
+
+#[test]
+fn the_code_is_in_the_middle_at_no_torque_and_rounds_to_nearest() {
+    middle_and_both_ends::<f32>();
+    middle_and_both_ends::<f64>();
+    middle_and_both_ends::<Q16>();
+    middle_and_both_ends::<FixedI32<U24>>();
+    middle_and_both_ends::<FixedI32<U31>>();
+}
+
+#[test]
+fn fixed_point_saturates_at_its_ends() {
+    assert_eq!(Q16::MAX.plus(Q16::DELTA), Q16::MAX);
+    assert_eq!(Number::minus(Q16::MIN, Q16::DELTA), Q16::MIN);
+    assert_eq!(Q16::MIN.negated(), Q16::MAX);
+    assert!(!Q16::MIN.within(Q16::from_num(1)));
+    let large = Q16::coefficient(1e6).unwrap();
+    assert_eq!(Q16::from_num(1).times(large), Q16::MAX);
+    assert_eq!(Q16::from_num(-1).times(large), Q16::MIN);
+    assert_eq!(Q16::MIN.times(Q16::coefficient(-1.0).unwrap()), Q16::MAX);
+}
+
+#[test]
+fn an_angle_beyond_its_range_stands_still_and_says_so() {
+    fn ends<N: Number>(last: i64, beyond: i64) {
+        let scale = N::angle_scale(1e-4).unwrap();
+        let inside = N::angle(1000, scale);
+        assert!(!inside.saturated && (inside.value.to_f64() - 0.1).abs() < 1e-5);
+        for (count, sign) in [(beyond, 1.0), (-beyond - 1, -1.0), (i64::MAX, 1.0), (i64::MIN, -1.0)]
+        {
+            let angle = N::angle(count, scale);
+            assert!(angle.saturated, "{count} in {}", N::FORMAT);
+            assert!(angle.value.to_f64() * sign > 0.0);
+        }
+        let (last, end) = (N::angle(last, scale), N::angle(beyond, scale));
+        assert!(!last.saturated && last.value <= end.value);
+    }
+    ends::<f32>((1 << 31) - 1, 1 << 31);
+    ends::<f64>((1 << 31) - 1, 1 << 31);
+    ends::<Q16>(327_670_000, 327_690_000);
+    ends::<FixedI32<U28>>(79_999, 80_001);
+}
+
+#[test]
+fn what_does_not_fit_is_named() {
+    let error = FixedI32::<U28>::from_f64(9.0).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "9 does not fit Q4.28: its magnitude may be at most 7.99999999627471"
+    );
+    for value in [f64::NAN, f64::INFINITY, -1e300, 3e9] {
+        assert!(Q16::coefficient(value).is_err());
+        assert!(Q16::from_f64(value).is_err());
+    }
+    for value in [f64::NAN, f64::INFINITY, -1e300] {
+        assert!(f32::coefficient(value).is_err() && f64::from_f64(value).is_err());
+    }
+}
+
+#[test]
+fn the_positive_part() {
+    fn of<N: Number>() {
+        for (value, positive) in [(-0.25, 0.0), (0.0, 0.0), (0.25, 0.25)] {
+            assert_eq!(N::from_f64(value).unwrap().positive_part().to_f64(), positive);
+        }
+    }
+    of::<f32>();
+    of::<f64>();
+    of::<Q16>();
+}
+
+proptest! {
+    #[test]
+    fn coefficients_keep_their_precision(value in -2e9..2e9_f64, power in 0..20) {
+        let value = value / 10_f64.powi(power);
+        prop_assert!((coefficient::<f32>(value) - value).abs() <= 6e-8 * value.abs());
+        prop_assert_eq!(coefficient::<f64>(value), value);
+        let bound = (value.abs() * 2_f64.powi(-31)).max(2_f64.powi(-32));
+        prop_assert!((coefficient::<Q16>(value) - value).abs() <= bound);
+    }
+
+    #[test]
+    fn a_fixed_product_is_the_nearest_or_saturates(bits: i32, value in -1e3..1e3_f64) {
+        let number = FixedI32::<U24>::from_bits(bits);
+        let factor = FixedI32::<U24>::coefficient(value).unwrap();
+        // Exact: 31 bits times 31 bits rounded once to 53, and the bound leaves that much room.
+        let exact = number.to_f64() * factor_to_f64(factor);
+        let (product, end) = (number.times(factor).to_f64(), FixedI32::<U24>::MAX.to_f64());
+        let nearest = exact.clamp(-end - 2_f64.powi(-24), end);
+        prop_assert!((product - nearest).abs() <= 0.5000001 * 2_f64.powi(-24));
+    }
+
+    #[test]
+    fn fixed_angles_are_right_to_a_step(count in -3_000_000..3_000_000_i64) {
+        let scale = Q16::angle_scale(1e-4).unwrap();
+        let angle = Q16::angle(count, scale).value.to_f64();
+        prop_assert!((angle - count as f64 * 1e-4).abs() <= 2_f64.powi(-16));
+    }
+
+    #[test]
+    fn codes_are_within_half_a_step(torque in -1.0..1.0_f64) {
+        let exact = f64::from(CENTRE) - torque * 2047.0;
+        prop_assert!((f64::from(code::<f32>(torque, 1.0)) - exact).abs() <= 0.5 + 2e-4);
+        prop_assert!((f64::from(code::<f64>(torque, 1.0)) - exact).abs() <= 0.5 + 1e-12);
+        prop_assert!((f64::from(code::<Q16>(torque, 1.0)) - exact).abs() <= 0.5 + 0.016);
+    }
+}
+
+fn factor_to_f64(factor: Scaled) -> f64 {
+    <FixedI32<U24> as Number>::coefficient_to_f64(factor)
+}

@@ -1,0 +1,108 @@
+//! What can go wrong between a certified scene and a servo.
+
+use core::fmt;
+
+use crate::number::{Number, OutOfRange};
+
+/// Why a certified scene cannot run with these transducers in this number format.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BuildError {
+    /// A scale, a period or a limit is zero, negative or not finite.
+    NotPositive {
+        /// What it is.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The scene's torque limit is above what the converter can give.
+    TorqueLimit {
+        /// The scene's limit in N m.
+        limit: f64,
+        /// The torque at the converter's largest code in N m.
+        full_scale: f64,
+    },
+    /// A constant of the scene does not fit the number format.
+    Unrepresentable {
+        /// What it is.
+        name: &'static str,
+        /// Value, bound and format.
+        reason: OutOfRange,
+    },
+    /// The loop of coupling and environment has no solution, or more than one.
+    IllPosed {
+        /// `1 + f / K_vc` with the environment's slope `f`, out of contact.
+        line: f64,
+        /// The same in contact with a wall that can only push.
+        contact: f64,
+    },
+    /// The environment is delayed by more samples than are stored.
+    Delay {
+        /// What was asked for.
+        delay: usize,
+        /// The most that there is.
+        largest: usize,
+    },
+    /// A numerator of higher degree than its denominator, or a denominator that is zero.
+    Improper {
+        /// Degree of the numerator.
+        numerator: usize,
+        /// Degree of the denominator.
+        denominator: usize,
+    },
+}
+
+impl BuildError {
+    /// Refuses what is not positive and finite.
+    pub(crate) fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::NotPositive { name, value })
+        }
+    }
+
+    /// Rounds a coefficient, or says which one does not fit.
+    pub(crate) fn coefficient<N: Number>(
+        name: &'static str,
+        value: f64,
+    ) -> Result<N::Coefficient, Self> {
+        N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
+    }
+
+    /// Rounds an angle or a torque, or says which one does not fit.
+    pub(crate) fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
+        N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
+    }
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPositive { name, value } => {
+                write!(f, "the {name} must be positive and finite, and is {value}")
+            }
+            Self::TorqueLimit { limit, full_scale } => write!(
+                f,
+                "the torque limit of {limit} N m is above the converter's full scale of \
+                 {full_scale} N m: lower it to that, or scale the amplifier up"
+            ),
+            Self::Unrepresentable { name, reason } => write!(f, "the {name}: {reason}"),
+            Self::IllPosed { line, contact } => write!(
+                f,
+                "coupling and environment have no unique solution: the loop gain 1 + f / K is \
+                 {line} out of contact and {contact} in contact, and must be positive; a stiffer \
+                 coupling or a delayed environment has one"
+            ),
+            Self::Delay { delay, largest } => {
+                write!(f, "a delay of {delay} samples is longer than the {largest} that are stored")
+            }
+            Self::Improper { numerator, denominator } => write!(
+                f,
+                "a numerator of degree {numerator} over a denominator of degree {denominator} \
+                 needs samples from the future"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for BuildError {}

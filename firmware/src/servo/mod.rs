@@ -1,0 +1,132 @@
+//! One tick: encoder count in, converter code out.
+
+mod build_error;
+mod transducers;
+
+pub use build_error::BuildError;
+pub use transducers::Transducers;
+
+use crate::certificate::Certified;
+use crate::coupling::Solver;
+use crate::dac::{Dac, DacCode};
+use crate::encoder::{Encoder, Position, RawCount};
+use crate::environment::{Law, Renderable, Setting};
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::torque::{LimitReason, Limiter};
+
+/// What a tick gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// What the converter shall hold.
+    pub code: DacCode,
+    /// Why this is less than the scene asked for.
+    pub limit: LimitReason,
+}
+
+/// The servo of a certified scene, computing in the number format `N`.
+///
+/// ```
+/// use firmware::encoder::{CounterWidth, RawCount};
+/// use firmware::environment::DelayedSpring;
+/// use firmware::scene::{Coupling, Device, Scene, Timing};
+/// use firmware::servo::{Servo, Transducers};
+///
+/// let scene = Scene {
+///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+///     timing: Timing { period: 1e-3, worst_period: None },
+///     coupling: Coupling::Spring { stiffness: 44.0 },
+///     environment: DelayedSpring::<1> { stiffness: 22.0 },
+///     torque_limit: None,
+/// };
+/// let transducers = Transducers {
+///     counts_per_turn: 61_440.0,
+///     counter: CounterWidth::Bits32,
+///     full_scale_torque: 1.0,
+/// };
+/// let mut servo: Servo<_, f32> = Servo::new(&scene.certified(), &transducers)?;
+/// assert_eq!(servo.tick(RawCount::from(100_u32)).code.get(), 2048); // one sample late
+/// assert!(servo.tick(RawCount::from(100_u32)).code.get() < 2048); // pushes back
+/// # Ok::<(), firmware::servo::BuildError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Servo<E: Renderable<N>, N: Number> {
+    position: Position,
+    angle_scale: N::Coefficient,
+    law: E::Law,
+    solver: Solver<N>,
+    limiter: Limiter<N>,
+    code_scale: N::Coefficient,
+    torque: N,
+    radians_per_count: f64,
+}
+
+impl<E: Renderable<N>, N: Number> Servo<E, N> {
+    /// The servo of a certified scene, at rest at zero.
+    ///
+    /// # Errors
+    /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
+    pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
+        Self::build(scene.scene(), transducers)
+    }
+
+    /// The servo of a scene that somebody else has judged.
+    pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
+        let radians_per_count = transducers.radians_per_count()?;
+        let codes_per_torque = transducers.codes_per_torque()?;
+        let law = scene.environment.law(&Setting::of(scene)?)?;
+        Ok(Self {
+            position: Position::new(transducers.counter),
+            angle_scale: N::angle_scale(radians_per_count)
+                .map_err(|reason| BuildError::Unrepresentable { name: "encoder step", reason })?,
+            solver: Solver::new(scene.coupling, law.slopes())?,
+            law,
+            limiter: transducers.limiter(scene.torque_limit)?,
+            code_scale: N::code_scale(codes_per_torque)
+                .map_err(|reason| BuildError::Unrepresentable { name: "codes per N m", reason })?,
+            torque: N::ZERO,
+            radians_per_count,
+        })
+    }
+
+    /// One tick. Angle, coupling and environment solved with the limited torque, converter code:
+    /// no division, no allocation, and nothing that could panic.
+    #[inline(always)]
+    pub fn tick(&mut self, raw: RawCount) -> Output {
+        let angle = N::angle(self.position.update(raw), self.angle_scale);
+        let wanted = self.solver.torque(self.law.offer(angle.value));
+        let standing_still = if angle.saturated { LimitReason::Angle } else { LimitReason::None };
+        let (torque, limit) = self.limiter.limit(wanted, standing_still);
+        self.law.advance(self.solver.environment_position(angle.value, torque));
+        self.torque = torque;
+        // The motor pushes against the coupling's deflection.
+        let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);
+        Output { code: DacCode::from_low_bits(code), limit }
+    }
+
+    /// One tick between an encoder and a converter that are at hand.
+    #[inline(always)]
+    pub fn update(&mut self, encoder: &mut impl Encoder, dac: &mut impl Dac) -> LimitReason {
+        let output = self.tick(encoder.read());
+        dac.write(output.code);
+        output.limit
+    }
+
+    /// Position in counts.
+    pub const fn count(&self) -> i64 {
+        self.position.count()
+    }
+
+    /// Angle of the device in rad.
+    pub fn angle_rad(&self) -> f64 {
+        self.position.count() as f64 * self.radians_per_count
+    }
+
+    /// Coupling torque `F` of the last tick in N m; the motor applies `-F`.
+    pub fn torque_nm(&self) -> f64 {
+        self.torque.to_f64()
+    }
+}
+
+#[cfg(test)]
+mod tests;

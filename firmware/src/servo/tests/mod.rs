@@ -1,0 +1,223 @@
+//! The servo as a whole: against another computation of the same loops, between its formats, at
+//! its limits.
+
+mod reference;
+mod robustness;
+
+use fixed::FixedI32;
+use fixed::types::extra::{U16, U20};
+use proptest::prelude::*;
+use reference::{Reference, impulse_response};
+
+use super::*;
+use crate::encoder::CounterWidth;
+use crate::environment::*;
+use crate::scene::{Coupling, Device, Timing};
+
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 1.0,
+};
+const TICKS: usize = 150;
+
+/// The paper's device behind the standard coupling.
+const fn scene<E>(environment: E) -> Scene<E> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        torque_limit: None,
+    }
+}
+
+/// A hand that pushes in, holds, trembles and comes back: counts, at most about 0.2 rad.
+fn hand() -> impl Iterator<Item = i32> {
+    (0..3000_i32).map(|k| {
+        let t = f64::from(k) * 1e-3;
+        (1200.0 * (3.0 * t).sin() + 700.0 * (11.0 * t).sin() + 40.0 * (150.0 * t).sin()) as i32
+    })
+}
+
+fn torques<E: Renderable<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
+    let tick = |count: i32| {
+        servo.tick(RawCount::from(count));
+        servo.torque_nm()
+    };
+    hand().map(tick).collect()
+}
+
+fn wall() -> impl Strategy<Value = Wall> {
+    let parameters = (0.1..1.0_f64, 0.0..0.9_f64, 0..=8_usize, proptest::option::of(0.1..0.9_f64));
+    (parameters, -0.1..0.1_f64, any::<bool>()).prop_map(
+        |((size, share, delay, filter), face, one_sided)| {
+            // The bound K T (n - 1/2) + B of the certificate, below delta = 0.022.
+            let index = 0.022 * size;
+            let stiffness = index * (1.0 - share) / (1e-3 * (delay as f64 - 0.5).abs());
+            Wall { stiffness, damping: index * share, filter, delay, face, one_sided }
+        },
+    )
+}
+
+fn rational() -> impl Strategy<Value = Rational> {
+    let degree = 1..=MAX_DEGREE;
+    degree.prop_flat_map(|degree| {
+        let poles = proptest::collection::vec(-0.5..0.8_f64, degree);
+        let numerator = proptest::collection::vec(-0.5..0.5_f64, 1..=degree);
+        (poles, numerator, 0..=2_usize).prop_map(|(poles, numerator, delay)| {
+            let mut denominator = vec![2.0];
+            for pole in poles {
+                let shifted = denominator.clone();
+                denominator.push(0.0);
+                for (d, s) in denominator.iter_mut().skip(1).zip(shifted) {
+                    *d -= pole * s;
+                }
+            }
+            Rational {
+                numerator: Coefficients::new(&numerator).unwrap(),
+                denominator: Coefficients::new(&denominator).unwrap(),
+                delay,
+                unit_zeros: 1,
+            }
+        })
+    })
+}
+
+fn environment() -> impl Strategy<Value = Environment> {
+    let residual = 0.002..0.022_f64;
+    prop_oneof![
+        wall().prop_map(|w| Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..w })),
+        wall().prop_map(Environment::DamperWall),
+        (residual.clone(), 0..=4_usize)
+            .prop_map(|(residual, delay)| Environment::FreeMode { residual, delay }),
+        (residual, wall())
+            .prop_map(|(residual, wall)| Environment::FreeModeWall { residual, wall }),
+        rational().prop_map(Environment::Rational),
+    ]
+}
+
+fn coupling() -> impl Strategy<Value = Coupling> {
+    let spring = (20.0..60.0_f64).prop_map(|stiffness| Coupling::Spring { stiffness });
+    prop_oneof![Just(Coupling::Spring { stiffness: 44.0 }), spring, Just(Coupling::Rigid)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+    #[test]
+    fn torques_are_those_of_the_whole_past(
+        environment in environment(),
+        coupling in coupling(),
+        torque_limit in proptest::option::of(0.05..1.0_f64),
+        steps in proptest::collection::vec(-150..150_i32, TICKS),
+    ) {
+        let scene = Scene { coupling, torque_limit, ..scene(environment) };
+        let limit = torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
+        // Some are past what can be certified, or have no coefficients; whatever can be built
+        // must be right, except that a loop that grows without bound forgets its digits.
+        let Ok(mut servo) = Servo::<_, f64>::build(&scene, &TRANSDUCERS) else { return Ok(()) };
+        let mut reference = Reference::new(&scene, limit, TICKS);
+        let mut count = 0;
+        for step in steps {
+            count += step - count / 16;
+            servo.tick(RawCount::from(count));
+            let expected = reference.tick(servo.angle_rad());
+            let error = (servo.torque_nm() - expected).abs();
+            prop_assert!(error <= 1e-8, "{} for {expected}", servo.torque_nm());
+        }
+    }
+}
+
+#[test]
+fn free_mode_is_equation_23() {
+    let (b, residual, period) = (0.022, 0.001, 1e-3);
+    let be = b - residual;
+    let numerator = [-2.0 * b * be, 2.0 * b * be];
+    let denominator = [period * (3.0 * b - residual), -period * (b - residual)];
+    let response = impulse_response(&numerator, &denominator, 3000);
+    let scene = scene(FreeMode::<0> { residual });
+    let certified = scene.certify().unwrap();
+    let mut servo: Servo<_, f64> = Servo::new(&certified, &TRANSDUCERS).unwrap();
+    let mut positions = Vec::new();
+    for count in hand() {
+        servo.tick(RawCount::from(count));
+        positions.push(servo.angle_rad() - servo.torque_nm() / 44.0);
+        let torque: f64 = positions.iter().rev().zip(&response).map(|(x, e)| x * e).sum();
+        assert!((torque - servo.torque_nm()).abs() < 1e-12);
+    }
+}
+
+/// Largest torque error against f64 in N m.
+fn error<E: Renderable<N> + Renderable<f64>, N: Number>(scene: &Scene<E>) -> f64 {
+    let exact = torques(Servo::<E, f64>::build(scene, &TRANSDUCERS).unwrap());
+    let rounded = torques(Servo::<E, N>::build(scene, &TRANSDUCERS).unwrap());
+    exact.iter().zip(&rounded).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
+    fn bounded<E>(scene: Scene<E>, gain: f64)
+    where
+        E: Renderable<f32> + Renderable<f64>,
+        E: Renderable<FixedI32<U16>> + Renderable<FixedI32<U20>>,
+    {
+        // A step of f32 at 0.2 rad, and half a step of the fixed formats a rounding: angle,
+        // compliance and law, so three halves in all; `gain` is the l1 norm of the loop's
+        // response (theory, section 6, item 7).
+        assert!(error::<_, f32>(&scene) <= 1.5 * 2_f64.powi(-26) * gain);
+        assert!(error::<_, FixedI32<U16>>(&scene) <= 1.5 * 2_f64.powi(-16) * gain);
+        assert!(error::<_, FixedI32<U20>>(&scene) <= 1.5 * 2_f64.powi(-20) * gain);
+    }
+    bounded(scene(DelayedSpring::<1> { stiffness: 22.0 }), 44.0);
+    bounded(scene(DamperWall::<1> { stiffness: 22.0, damping: 0.01 }), 924.0);
+    bounded(
+        scene(OneSided { face: 0.0, wall: DamperWall::<1> { stiffness: 22.0, damping: 0.01 } }),
+        924.0,
+    );
+    bounded(scene(FreeMode::<0> { residual: 0.001 }), 44.0);
+}
+
+/// Typed and as data, in every format.
+macro_rules! same_bits {
+    ($($environment:expr),* $(,)?) => {$({
+        let typed = scene($environment);
+        let data = scene(typed.environment.as_data());
+        same_bits!(@ typed, data, f32);
+        same_bits!(@ typed, data, f64);
+        same_bits!(@ typed, data, FixedI32<U16>);
+    })*};
+    (@ $typed:ident, $data:ident, $number:ty) => {
+        let bits = |torques: Vec<f64>| torques.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        let typed = bits(torques(Servo::<_, $number>::build(&$typed, &TRANSDUCERS).unwrap()));
+        let data = bits(torques(Servo::<_, $number>::build(&$data, &TRANSDUCERS).unwrap()));
+        assert!(typed.iter().any(|bits| bits << 1 != 0), "{:?} gives no torque", $typed);
+        assert_eq!(typed, data, "{:?}", $typed);
+    };
+}
+
+#[test]
+fn a_typed_scene_and_the_same_as_data_give_the_same_bits() {
+    let damper = DamperWall::<1> { stiffness: 12.0, damping: 0.005 };
+    let undelayed = DamperWall::<0> { stiffness: 20.0, damping: 0.01 };
+    let filtered = FilteredWall::<2> { stiffness: 5.0, damping: 0.01, filter: 0.8 };
+    same_bits![
+        DelayedSpring::<1> { stiffness: 22.0 },
+        DelayedSpring::<0> { stiffness: 22.0 },
+        DelayedSpring::<8> { stiffness: 2.0 },
+        damper,
+        undelayed,
+        filtered,
+        Placed { face: 0.05, wall: damper },
+        Placed { face: -0.05, wall: undelayed },
+        Placed { face: 0.02, wall: filtered },
+        OneSided { face: 0.05, wall: damper },
+        OneSided { face: -0.05, wall: undelayed },
+        OneSided { face: 0.02, wall: filtered },
+        OneSided { face: 0.02, wall: DelayedSpring::<3> { stiffness: 4.0 } },
+        FreeMode::<0> { residual: 0.001 },
+        FreeMode::<1> { residual: 0.015 },
+        FreeModeWall { residual: 0.015, wall: damper },
+        FreeModeWall { residual: 0.015, wall: OneSided { face: 0.05, wall: damper } },
+        FreeModeWall { residual: 0.015, wall: OneSided { face: 0.05, wall: undelayed } },
+    ];
+}

@@ -1,0 +1,50 @@
+//! The scales between the servo's numbers and the world's.
+
+use core::f64::consts::TAU;
+
+use super::BuildError;
+use crate::dac::DacCode;
+use crate::encoder::CounterWidth;
+use crate::number::Number;
+use crate::torque::{LimitReason, Limiter};
+
+/// The scales of what surrounds the servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transducers {
+    /// Encoder counts a turn of the device's axis, after quadrature and gearing.
+    pub counts_per_turn: f64,
+    /// Bits after which the counter wraps.
+    pub counter: CounterWidth,
+    /// Torque of the motor on the device's axis in N m at the converter's largest code.
+    pub full_scale_torque: f64,
+}
+
+impl Transducers {
+    pub(super) fn radians_per_count(&self) -> Result<f64, BuildError> {
+        let counts = self.counts_per_turn;
+        BuildError::unless_positive("counts per turn", counts)?;
+        Ok(TAU / counts)
+    }
+
+    pub(super) fn codes_per_torque(&self) -> Result<f64, BuildError> {
+        let full_scale = self.full_scale_torque;
+        BuildError::unless_positive("full-scale torque", full_scale)?;
+        Ok(f64::from(DacCode::CODES_TO_FULL_SCALE) / full_scale)
+    }
+
+    /// The limiter of a scene's torque limit, or else of the converter's range.
+    pub(super) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
+        let full_scale = self.full_scale_torque;
+        let (bound, reason) = match limit {
+            Some(limit) => (limit, LimitReason::Torque),
+            None => (full_scale, LimitReason::Converter),
+        };
+        BuildError::unless_positive("torque limit", bound)?;
+        if bound > full_scale {
+            return Err(BuildError::TorqueLimit { limit: bound, full_scale });
+        }
+        let bound = N::from_f64(bound)
+            .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;
+        Ok(Limiter::new(bound, reason))
+    }
+}
