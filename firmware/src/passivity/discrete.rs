@@ -165,3 +165,74 @@ const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Ob
         Err(Obstacle::Undecided(Doubt::ResidueSign))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::gamma;
+    use crate::passivity::polynomial::Polynomial;
+
+    fn function(numerator: &[f64], denominator: &[f64]) -> Transfer {
+        Transfer::new(
+            Polynomial::descending(numerator, false),
+            Polynomial::descending(denominator, false),
+        )
+    }
+
+    fn minimum(numerator: &[f64], denominator: &[f64]) -> Result<Interval, Obstacle> {
+        input_passivity(function(numerator, denominator), false).map(|found| found.minimum)
+    }
+
+    /// `Q` of equation 19 by the general test against its closed form.
+    #[test]
+    fn coupling_spring_is_output_strictly_passive_by_gamma() {
+        let (k, t, delta) = (Interval::exact(500.0), Interval::exact(0.0009765625), 0.5);
+        let delta = Interval::exact(delta);
+        let excess = Interval::ONE.div(k).sub(t.div(delta.double()));
+        let q = Transfer { scale: excess.div(t), shift: -1, ones: 1, ..function(&[1.0], &[1.0]) };
+        let general = output_passivity(q, false).unwrap().minimum;
+        let formula = gamma(k, t, delta).unwrap();
+        assert!(general.lo() <= formula.hi() && formula.lo() <= general.hi());
+        assert!(general.hi() - general.lo() < 1e-13);
+        assert_eq!(gamma(Interval::exact(2000.0), t, delta), None);
+    }
+
+    #[test]
+    fn strictness_of_first_order_lags() {
+        // 1 / (z - a) times (1 - a) z: real parts from (1 - a)/(1 + a) at z = -1 to 1 at z = 1.
+        assert!(minimum(&[0.5, 0.0], &[1.0, -0.5]).unwrap().contains(1.0 / 3.0));
+        let lag = output_passivity(function(&[0.5, 0.0], &[1.0, -0.5]), false).unwrap();
+        assert!(lag.minimum.contains(1.0));
+        // Trapezoidal integrator and differentiator: lossless, with a pole on the circle each.
+        assert!(minimum(&[1.0, 1.0], &[1.0, -1.0]).unwrap().is_zero());
+        assert!(minimum(&[1.0, -1.0], &[1.0, 1.0]).unwrap().is_zero());
+        // Both at once: (z^2 + 1) / (z^2 - 1), residues 1 at 1 and 1 at -1.
+        assert!(minimum(&[1.0, 0.0, 1.0], &[1.0, 0.0, -1.0]).unwrap().is_zero());
+    }
+
+    #[test]
+    fn boundary_poles_are_told_apart() {
+        let at = |n: &[f64], d: &[f64]| minimum(n, d).unwrap_err();
+        assert!(matches!(at(&[-1.0], &[1.0, -1.0]), Obstacle::NegativeResidue { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, 1.0]), Obstacle::ResidueAngle { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, -2.0, 1.0]), Obstacle::RepeatedUnitPole { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, 2.0, 1.0]), Obstacle::RepeatedUnitPole { .. }));
+        // A pair at cos(theta) = 0.625 beside a stable pole: found by the exact recursion.
+        assert!(matches!(
+            at(&[1.0, 0.0], &[1.0, -1.75, 1.625, -0.5]),
+            Obstacle::ResidueAngle { .. }
+        ));
+        // The same pair twice.
+        assert!(matches!(
+            at(&[1.0], &[1.0, -2.5, 3.5625, -2.5, 1.0]),
+            Obstacle::RepeatedUnitPole { .. } | Obstacle::Undecided(Doubt::SeveralPolePairs)
+        ));
+        assert!(matches!(at(&[1.0], &[1.0, -2.5, 1.0]), Obstacle::UnstablePole { .. }));
+    }
+
+    #[test]
+    fn a_circle_pole_pair_that_is_cancelled_is_no_pole() {
+        let found = minimum(&[1.0, -1.25, 1.0], &[1.0, -1.25, 1.0]).unwrap();
+        assert!(found.contains(1.0) && found.is_exact());
+    }
+}
