@@ -1,5 +1,7 @@
 //! From a counter that wraps to a position that does not.
 
+use core::hint::cold_path;
+
 /// Something that counts the steps of a quadrature encoder.
 pub trait Encoder {
     /// The counter now.
@@ -62,36 +64,59 @@ impl From<i32> for RawCount {
 /// ```
 /// use firmware::encoder::{CounterWidth, Position, RawCount};
 /// let mut position = Position::new(CounterWidth::Bits16);
-/// assert_eq!(position.update(RawCount::from(0x7000_u16)), 0x7000);
-/// assert_eq!(position.update(RawCount::from(0xc000_u16)), 0xc000);
-/// assert_eq!(position.update(RawCount::from(0x1000_u16)), 0x11000);
+/// for raw in [0x7000_u16, 0xc000, 0x1000] {
+///     position.update(RawCount::from(raw));
+/// }
+/// assert_eq!(position.count(), 0x1_1000);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Position {
-    count: i64,
+    /// The position less `laps` times 2^32; its low bits are the last reading.
+    count: i32,
+    /// Kept apart, so that a tick only has to see that it is zero: 64-bit arithmetic would cost
+    /// two instructions more.
+    laps: i32,
     width: CounterWidth,
+}
+
+/// A position in the range in which the servo computes angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// The nearest position in counts that 32 bits hold: the position itself, except after tens
+    /// of thousands of turns one way.
+    pub count: i32,
+    /// Whether it is not the position itself.
+    pub saturated: bool,
 }
 
 impl Position {
     /// A position of zero, to be fed by a counter of this width.
     pub const fn new(width: CounterWidth) -> Self {
-        Self { count: 0, width }
+        Self { count: 0, laps: 0, width }
     }
 
-    /// Takes a reading and gives the position in counts.
+    /// Takes a reading of the counter.
     #[inline(always)]
-    pub const fn update(&mut self, raw: RawCount) -> i64 {
-        // The low bits of the position are the last reading: their difference, taken at the
-        // counter's width, is the signed step.
+    pub const fn update(&mut self, raw: RawCount) -> Reading {
+        // The difference to the last reading, taken at the counter's width, is the signed step.
         let shift = self.width as u32;
-        let step = (raw.0.wrapping_sub(self.count as u32) << shift).cast_signed() >> shift;
-        self.count = self.count.wrapping_add(step as i64);
-        self.count
+        let step = (raw.0.wrapping_sub(self.count.cast_unsigned()) << shift).cast_signed() >> shift;
+        let (count, wrapped) = self.count.overflowing_add(step);
+        self.count = count;
+        if wrapped {
+            cold_path();
+            self.laps = self.laps.wrapping_add(if step < 0 { -1 } else { 1 });
+        }
+        if self.laps == 0 {
+            return Reading { count, saturated: false };
+        }
+        cold_path();
+        Reading { count: if self.laps < 0 { i32::MIN } else { i32::MAX }, saturated: true }
     }
 
     /// The position in counts.
     pub const fn count(&self) -> i64 {
-        self.count
+        ((self.laps as i64) << 32) + self.count as i64
     }
 }
 
@@ -101,26 +126,31 @@ mod tests {
 
     use super::*;
 
+    fn after(position: &mut Position, raw: RawCount) -> i64 {
+        position.update(raw);
+        position.count()
+    }
+
     #[test]
     fn wraps_both_ways_at_both_widths() {
         let mut narrow = Position::new(CounterWidth::Bits16);
-        assert_eq!(narrow.update(RawCount::from(0xffff_u16)), -1);
-        assert_eq!(narrow.update(RawCount::from(2_u16)), 2);
-        assert_eq!(narrow.update(RawCount::from(0x7fff_u16)), 0x7fff);
-        assert_eq!(narrow.update(RawCount::from(0x8001_u16)), 0x8001);
-        assert_eq!(narrow.update(RawCount::from(0x7fff_u16)), 0x7fff);
+        assert_eq!(after(&mut narrow, RawCount::from(0xffff_u16)), -1);
+        assert_eq!(after(&mut narrow, RawCount::from(2_u16)), 2);
+        assert_eq!(after(&mut narrow, RawCount::from(0x7fff_u16)), 0x7fff);
+        assert_eq!(after(&mut narrow, RawCount::from(0x8001_u16)), 0x8001);
+        assert_eq!(after(&mut narrow, RawCount::from(0x7fff_u16)), 0x7fff);
         let mut wide = Position::new(CounterWidth::Bits32);
-        assert_eq!(wide.update(RawCount::from(i32::MAX)), i64::from(i32::MAX));
-        assert_eq!(wide.update(RawCount::from(i32::MIN)), 1 << 31);
-        assert_eq!(wide.update(RawCount::from(i32::MIN + 7)), (1 << 31) + 7);
-        assert_eq!(wide.update(RawCount::from(i32::MAX)), i64::from(i32::MAX));
+        assert_eq!(after(&mut wide, RawCount::from(i32::MAX)), i64::from(i32::MAX));
+        assert_eq!(after(&mut wide, RawCount::from(i32::MIN)), 1 << 31);
+        assert_eq!(after(&mut wide, RawCount::from(i32::MIN + 7)), (1 << 31) + 7);
+        assert_eq!(after(&mut wide, RawCount::from(i32::MAX)), i64::from(i32::MAX));
     }
 
     #[test]
     fn ignores_what_is_above_the_width() {
         let mut narrow = Position::new(CounterWidth::Bits16);
-        assert_eq!(narrow.update(RawCount::from(0xabcd_0005_u32)), 5);
-        assert_eq!(narrow.update(RawCount::from(0x1234_0007_u32)), 7);
+        assert_eq!(after(&mut narrow, RawCount::from(0xabcd_0005_u32)), 5);
+        assert_eq!(after(&mut narrow, RawCount::from(0x1234_0007_u32)), 7);
     }
 
     proptest! {
@@ -134,8 +164,11 @@ mod tests {
             let mut truth = 0_i64;
             for step in steps {
                 truth += step * scale;
-                prop_assert_eq!(position.update(RawCount::from(truth as u32)), truth);
+                let reading = position.update(RawCount::from(truth as u32));
                 prop_assert_eq!(position.count(), truth);
+                let nearest = truth.clamp(i32::MIN.into(), i32::MAX.into());
+                prop_assert_eq!(i64::from(reading.count), nearest);
+                prop_assert_eq!(reading.saturated, nearest != truth);
             }
         }
     }

@@ -5,7 +5,7 @@ use core::hint::cold_path;
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
-use super::{Angle, Format, Number, OutOfRange, bounded};
+use super::{Format, Number, OutOfRange, bounded};
 
 /// A coefficient of the fixed-point formats: `mantissa / 2^shift`.
 ///
@@ -74,6 +74,12 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
         Self::checked_from_num(value).ok_or(out_of_range)
     }
 
+    fn bound_from_f64(value: f64) -> Result<Self, OutOfRange> {
+        let nearest = Self::from_f64(value)?;
+        let above = nearest.to_f64() > value;
+        Ok(if above { nearest.saturating_sub(Self::DELTA) } else { nearest })
+    }
+
     fn to_f64(self) -> f64 {
         self.to_num()
     }
@@ -121,10 +127,9 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
     }
 
     #[inline(always)]
-    fn angle(count: i64, scale: Scaled) -> Angle<Self> {
-        let (count, counted) = nearest(count);
-        let (bits, scaled) = scale.scale(count);
-        Angle { value: Self::from_bits(bits), saturated: !(counted && scaled) }
+    fn angle(count: i32, scale: Scaled) -> (Self, bool) {
+        let (bits, fits) = scale.scale(count);
+        (Self::from_bits(bits), fits)
     }
 
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {

@@ -1,8 +1,6 @@
 //! The formats of the floating-point unit: `f32` on the target, `f64` as the host's reference.
 
-use core::hint::cold_path;
-
-use super::{Angle, Format, Number, OutOfRange, bounded};
+use super::{Format, Number, OutOfRange, bounded};
 
 /// Largest magnitude of a coefficient or a constant. An angle is below 2^34 rad, so that no
 /// product of the tick comes near the 2^127 where `f32` would turn infinite.
@@ -17,6 +15,12 @@ macro_rules! floating_point {
 
             fn from_f64(value: f64) -> Result<Self, OutOfRange> {
                 bounded(value, LARGEST, $format).map(|value| value as $float)
+            }
+
+            fn bound_from_f64(value: f64) -> Result<Self, OutOfRange> {
+                let nearest = Self::from_f64(value)?;
+                let above = f64::from(nearest) > value;
+                Ok(if above { nearest.next_down() } else { nearest })
             }
 
             fn to_f64(self) -> f64 {
@@ -69,17 +73,8 @@ macro_rules! floating_point {
             }
 
             #[inline(always)]
-            fn angle(count: i64, scale: Self) -> Angle<Self> {
-                // One conversion instruction takes 32 bits; a count beyond them (days of spinning
-                // one way) holds the angle still and says so. Compared in halves, because LLVM
-                // makes six instructions of `i32::try_from`.
-                let (high, low) = ((count >> 32) as i32, count as i32);
-                if high == low >> 31 {
-                    return Angle { value: low as $float * scale, saturated: false };
-                }
-                cold_path();
-                let end = if high < 0 { i32::MIN } else { i32::MAX };
-                Angle { value: end as $float * scale, saturated: true }
+            fn angle(count: i32, scale: Self) -> (Self, bool) {
+                (count as $float * scale, true)
             }
 
             fn code_scale(codes_per_torque: f64) -> Result<Self, OutOfRange> {

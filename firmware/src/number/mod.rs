@@ -13,16 +13,6 @@ pub use fixed_point::Scaled;
 
 use core::fmt;
 
-/// An angle as the servo knows it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Angle<N> {
-    /// The angle in rad.
-    pub value: N,
-    /// Whether the count was beyond what the conversion can hold, so that the angle stands still
-    /// at the end of its range.
-    pub saturated: bool,
-}
-
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// What multiplies a number: a gain, a compliance, a scale.
@@ -34,6 +24,8 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
     /// Rounds a value in SI units to the format; an error if it does not fit.
     fn from_f64(value: f64) -> Result<Self, OutOfRange>;
+    /// Rounds a positive bound towards zero, so that what keeps within it keeps within the value.
+    fn bound_from_f64(value: f64) -> Result<Self, OutOfRange>;
     /// The number in SI units, exactly.
     fn to_f64(self) -> f64;
     /// Rounds a factor to the format's coefficients; an error if it does not fit.
@@ -66,8 +58,9 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
     /// The factor for [`Number::angle`] from the encoder's step in rad.
     fn angle_scale(radians_per_count: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// Angle of an encoder count.
-    fn angle(count: i64, scale: Self::Coefficient) -> Angle<Self>;
+    /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
+    /// the format's range.
+    fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
     /// The factor for [`Number::codes_below`] from the converter's codes per N m.
     fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;
     /// `centre - torque * scale` rounded to the nearest whole code, for results in `0..=4095`.

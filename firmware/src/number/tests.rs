@@ -54,24 +54,22 @@ fn fixed_point_saturates_at_its_ends() {
 }
 
 #[test]
-fn an_angle_beyond_its_range_stands_still_and_says_so() {
-    fn ends<N: Number>(last: i64, beyond: i64) {
+fn an_angle_beyond_its_format_stands_still_and_says_so() {
+    fn ends<N: Number>(last: i32, beyond: i32) {
         let scale = N::angle_scale(1e-4).unwrap();
-        let inside = N::angle(1000, scale);
-        assert!(!inside.saturated && (inside.value.to_f64() - 0.1).abs() < 1e-5);
-        for (count, sign) in [(beyond, 1.0), (-beyond - 1, -1.0), (i64::MAX, 1.0), (i64::MIN, -1.0)]
-        {
-            let angle = N::angle(count, scale);
-            assert!(angle.saturated, "{count} in {}", N::FORMAT);
-            assert!(angle.value.to_f64() * sign > 0.0);
+        for sign in [1, -1] {
+            let (inside, fits) = N::angle(last * sign, scale);
+            assert!(fits && (inside.to_f64() - f64::from(last * sign) * 1e-4).abs() < 1e-3);
+            let (end, fits) = N::angle(beyond * sign, scale);
+            assert!(!fits && end.to_f64().abs() >= inside.to_f64().abs());
         }
-        let (last, end) = (N::angle(last, scale), N::angle(beyond, scale));
-        assert!(!last.saturated && last.value <= end.value);
     }
-    ends::<f32>((1 << 31) - 1, 1 << 31);
-    ends::<f64>((1 << 31) - 1, 1 << 31);
     ends::<Q16>(327_670_000, 327_690_000);
     ends::<FixedI32<U28>>(79_999, 80_001);
+    for count in [i32::MIN, -1, 0, 1, i32::MAX] {
+        assert_eq!(f64::angle(count, 1e-4), (f64::from(count) * 1e-4, true));
+        assert_eq!(f32::angle(count, 1e-4), (count as f32 * 1e-4, true));
+    }
 }
 
 #[test]
@@ -124,10 +122,10 @@ proptest! {
     }
 
     #[test]
-    fn fixed_angles_are_right_to_a_step(count in -3_000_000..3_000_000_i64) {
+    fn fixed_angles_are_right_to_a_step(count in -3_000_000..3_000_000_i32) {
         let scale = Q16::angle_scale(1e-4).unwrap();
-        let angle = Q16::angle(count, scale).value.to_f64();
-        prop_assert!((angle - count as f64 * 1e-4).abs() <= 2_f64.powi(-16));
+        let angle = Q16::angle(count, scale).0.to_f64();
+        prop_assert!((angle - f64::from(count) * 1e-4).abs() <= 2_f64.powi(-16));
     }
 
     #[test]

@@ -93,11 +93,13 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// no division, no allocation, and nothing that could panic.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount) -> Output {
-        let angle = N::angle(self.position.update(raw), self.angle_scale);
-        let wanted = self.solver.torque(self.law.offer(angle.value));
-        let standing_still = if angle.saturated { LimitReason::Angle } else { LimitReason::None };
+        let reading = self.position.update(raw);
+        let (x, fits) = N::angle(reading.count, self.angle_scale);
+        let saturated = reading.saturated || !fits;
+        let wanted = self.solver.torque(self.law.offer(x));
+        let standing_still = if saturated { LimitReason::Angle } else { LimitReason::None };
         let (torque, limit) = self.limiter.limit(wanted, standing_still);
-        self.law.advance(self.solver.environment_position(angle.value, torque));
+        self.law.advance(self.solver.environment_position(x, torque));
         self.torque = torque;
         // The motor pushes against the coupling's deflection.
         let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);

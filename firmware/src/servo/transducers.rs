@@ -43,8 +43,10 @@ impl Transducers {
         if bound > full_scale {
             return Err(BuildError::TorqueLimit { limit: bound, full_scale });
         }
-        let bound = N::from_f64(bound)
+        let bound = N::bound_from_f64(bound)
             .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;
+        let name = "torque limit in the servo's number format";
+        BuildError::unless_positive(name, bound.to_f64())?;
         Ok(Limiter::new(bound, reason))
     }
 }

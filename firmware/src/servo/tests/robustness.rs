@@ -75,6 +75,11 @@ fn what_cannot_be_built_is_refused_in_a_sentence() {
         "the wall stiffness: 10000000000000 does not fit f32: its magnitude may be at most \
          1099511627776"
     );
+    let weak = Transducers { full_scale_torque: 1e-5, ..TRANSDUCERS };
+    assert_eq!(
+        Servo::<_, FixedI32<U16>>::build(&spring, &weak).unwrap_err().to_string(),
+        "the torque limit in the servo's number format must be positive and finite, and is 0"
+    );
     let of = |data: Rational| Servo::<_, f32>::build(&scene(data), &TRANSDUCERS).unwrap_err();
     let coefficients = |c: &[f64]| Coefficients::new(c).unwrap();
     let data = Rational {
@@ -135,11 +140,11 @@ where
     Environment: Renderable<N>,
 {
     let Ok(mut servo) = Servo::<Environment, N>::build(scene, transducers) else { return };
-    let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque) * (1.0 + 1e-6);
+    let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
     for raw in raw {
         let output = servo.tick(RawCount::from(*raw));
         assert!(output.code >= DacCode::new(1).unwrap() && output.code <= DacCode::MAX);
-        assert!(servo.torque_nm().abs() <= largest + 2_f64.powi(-16));
+        assert!(servo.torque_nm().abs() <= largest);
         if output.limit == LimitReason::NotANumber {
             assert_eq!(output.code, DacCode::MID_SCALE);
         }
