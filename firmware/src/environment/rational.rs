@@ -13,7 +13,7 @@ pub const MAX_DEGREE: usize = 8;
 /// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rational {
-    /// Numerator, descending powers of z, `numerator.0[..numerator.1]`.
+    /// Numerator, descending powers of z.
     pub numerator: Coefficients,
     /// Denominator, descending powers of z.
     pub denominator: Coefficients,
