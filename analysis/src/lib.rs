@@ -6,10 +6,12 @@
 pub mod batch;
 pub mod command;
 pub mod device;
+pub mod emulator;
 pub mod file;
 pub mod hand;
 pub mod minimum;
 pub mod quantity;
 pub mod replay;
 pub mod response;
+pub mod toolchain;
 pub mod verdict;

@@ -27,6 +27,14 @@ pub enum CounterWidth {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCount(u32);
 
+impl RawCount {
+    /// The content, with whatever is above the counter's width.
+    #[inline(always)]
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+}
+
 impl From<u16> for RawCount {
     #[inline(always)]
     fn from(count: u16) -> Self {

@@ -23,3 +23,5 @@ pub mod servo;
 
 pub mod number;
 pub mod text;
+
+pub mod board;

@@ -1,0 +1,48 @@
+//! The certificate as the emulated board computes it, for scenes that the host chooses.
+
+use std::path::Path;
+
+use firmware::board::question::{Question, Reply, ReplyWords, ask, reply};
+use firmware::environment::Rational;
+use firmware::scene::Scene;
+
+use super::{EmulatorError, Guest};
+
+/// An emulated board that judges scenes.
+pub struct Judge {
+    guest: Guest,
+}
+
+impl Judge {
+    /// Starts the judging program; see [`build_judge`](crate::toolchain::Toolchain::build_judge).
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self { guest: Guest::boot(elf)? })
+    }
+
+    /// Has the board judge a scene.
+    ///
+    /// # Errors
+    /// Where the board has ended or does not answer.
+    pub fn judge(&mut self, scene: &Scene<Rational>) -> Result<Reply, EmulatorError> {
+        let question = ask(scene).map(u64::to_le_bytes);
+        let mut bytes = [0; size_of::<ReplyWords>()];
+        self.guest.exchange(question.as_flattened(), &mut bytes)?;
+        let (words, _) = bytes.as_chunks();
+        let words: ReplyWords = std::array::from_fn(|i| u64::from_le_bytes(words[i]));
+        reply(&words).ok_or(EmulatorError::NoReply)
+    }
+
+    /// Ends the board.
+    ///
+    /// # Errors
+    /// Where it does not end, or ends with a failure.
+    pub fn finish(self) -> Result<(), EmulatorError> {
+        self.guest.finish().map(drop)
+    }
+}
+
+/// A question fits into a pipe at once, so that asking never waits for the board.
+const _: () = assert!(size_of::<Question>() <= 4096);

@@ -1,0 +1,61 @@
+//! The board's log: defmt's bytes on the emulator's standard output, as lines.
+
+use std::io::Read;
+use std::thread::JoinHandle;
+
+use defmt_decoder::{DecodeError, Table};
+
+/// Reads a program's log while it runs.
+pub struct LogReader {
+    lines: JoinHandle<Vec<String>>,
+}
+
+/// Turns a program's log into lines, with the strings that are in the program's file.
+pub struct LogDecoder {
+    table: Option<Table>,
+}
+
+impl LogReader {
+    /// A decoder for the program in an ELF file; a program without a log has empty ones.
+    pub fn of_program(elf: Vec<u8>) -> LogDecoder {
+        LogDecoder { table: Table::parse(&elf).ok().flatten() }
+    }
+
+    /// The lines, once the program has ended.
+    pub fn lines(self) -> Vec<String> {
+        self.lines.join().unwrap_or_else(|_| vec!["the log could not be decoded".into()])
+    }
+}
+
+impl LogDecoder {
+    /// Reads until the program ends. It has to be read while the program runs: a full pipe would
+    /// stop the board.
+    pub fn follow(self, mut output: impl Read + Send + 'static) -> LogReader {
+        LogReader {
+            lines: std::thread::spawn(move || {
+                let mut bytes = Vec::new();
+                // What came before an error of the pipe is still a log.
+                let _ = output.read_to_end(&mut bytes);
+                self.decode(&bytes)
+            }),
+        }
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Vec<String> {
+        let Some(table) = &self.table else { return Vec::new() };
+        let mut decoder = table.new_stream_decoder();
+        decoder.received(bytes);
+        let mut lines = Vec::new();
+        loop {
+            match decoder.decode() {
+                Ok(frame) => {
+                    let level = frame.level().map_or("print", |level| level.as_str());
+                    lines.push(format!("{level} {}", frame.display_message()));
+                }
+                Err(DecodeError::UnexpectedEof) => return lines,
+                // The encoding finds the start of the next frame by itself.
+                Err(DecodeError::Malformed) => lines.push("error a malformed frame".into()),
+            }
+        }
+    }
+}

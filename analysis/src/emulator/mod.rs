@@ -1,0 +1,232 @@
+//! A scene's program on the emulated board, in lockstep with this process.
+//!
+//! For each tick the board takes one count and gives one DAC code, through two pipes in a folder of
+//! the emulator's own; the board's log comes by the emulator's standard output. A guest that does
+//! not answer within [`PATIENCE`] is an error, and an emulator is never left behind.
+
+mod judge;
+mod log;
+mod pipes;
+mod report;
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+pub use judge::Judge;
+pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+
+use log::LogReader;
+use pipes::Pipes;
+
+/// The emulator's program.
+pub const QEMU: &str = "qemu-system-arm";
+
+/// How the emulated board is started; the runner in `.cargo/config.toml` says the same. With
+/// `icount` each instruction takes 32 ns of the board's time, whatever the host does meanwhile.
+const BOARD: [&str; 12] = [
+    "-machine",
+    "netduinoplus2",
+    "-display",
+    "none",
+    "-monitor",
+    "none",
+    "-serial",
+    "none",
+    "-icount",
+    "shift=5,sleep=off",
+    "-semihosting-config",
+    "enable=on,target=native",
+];
+
+/// How long the board may take for one answer. Its start takes a second at most; the rest is for a
+/// host that is busy with other things.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A running emulator.
+pub struct Emulator {
+    guest: Guest,
+}
+
+/// What can go wrong with an emulated board.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulatorError {
+    /// The emulator could not be started.
+    #[error("{QEMU} could not be started: {0}; `cargo demo` installs it or says how")]
+    Start(#[source] io::Error),
+    /// The pipes or their folder could not be made or used.
+    #[error("the pipe to the emulated board: {0}")]
+    Pipe(#[source] io::Error),
+    /// The program's file could not be read.
+    #[error("{path}: {source}")]
+    Program {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The board did not answer in time.
+    #[error("the emulated board has not answered for {} s, {what}; its log: {log}", .after.as_secs())]
+    Silent {
+        /// What was waited for.
+        what: &'static str,
+        /// How long.
+        after: Duration,
+        /// What the board had logged.
+        log: String,
+    },
+    /// The emulator ended before it was asked to, or with a failure.
+    #[error("the emulator ended with {status}, {what}; its log: {log}")]
+    Ended {
+        /// Its exit status.
+        status: ExitStatus,
+        /// What was waited for.
+        what: &'static str,
+        /// What the board and the emulator had said.
+        log: String,
+    },
+    /// The judging board gave an answer that is none.
+    #[error("the emulated board's reply is not understood: its program is of another version")]
+    NoReply,
+    /// The log does not say what a report needs.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+}
+
+impl Emulator {
+    /// Starts a scene's program.
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started; a program that refuses to run is noticed at the first
+    /// [`exchange`](Self::exchange).
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self { guest: Guest::boot(elf)? })
+    }
+
+    /// One tick: the board gets the encoder's raw count and gives its DAC code.
+    ///
+    /// # Errors
+    /// Where the board has ended or does not answer.
+    pub fn exchange(&mut self, raw_count: i32) -> Result<u16, EmulatorError> {
+        let mut code = [0; 2];
+        self.guest.exchange(&raw_count.to_le_bytes(), &mut code)?;
+        Ok(u16::from_le_bytes(code))
+    }
+
+    /// Ends the run and gives what the board measured and logged.
+    ///
+    /// # Errors
+    /// Where the board does not end, ends with a failure, or its log is not understood.
+    pub fn finish(self) -> Result<Report, EmulatorError> {
+        Ok(Report::read(self.guest.finish()?)?)
+    }
+}
+
+/// The emulator's process with what belongs to it; ends it when dropped.
+struct Guest {
+    process: Child,
+    pipes: Option<Pipes>,
+    log: Option<LogReader>,
+    folder: TempDir,
+}
+
+impl Guest {
+    fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        let program = |source| EmulatorError::Program { path: elf.into(), source };
+        let path = elf.canonicalize().map_err(program)?;
+        let decoder = LogReader::of_program(std::fs::read(&path).map_err(program)?);
+        let folder = TempDir::with_prefix("haptic-").map_err(EmulatorError::Pipe)?;
+        let pipes = Pipes::make(folder.path()).map_err(EmulatorError::Pipe)?;
+        let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
+        let mut process = Command::new(QEMU)
+            .args(BOARD)
+            .arg("-kernel")
+            .arg(path)
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(errors)
+            .spawn()
+            .map_err(EmulatorError::Start)?;
+        let log = process.stdout.take().map(|output| decoder.follow(output));
+        Ok(Self { process, pipes: Some(pipes), log, folder })
+    }
+
+    /// Gives bytes to the board and waits until it has filled `answer`.
+    fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
+        const WHAT: &str = "in the middle of a run";
+        let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
+        match pipes.exchange(question, answer, PATIENCE) {
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::TimedOut => Err(self.silent(WHAT)),
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Err(self.ended(WHAT)),
+            Err(error) => Err(EmulatorError::Pipe(error)),
+        }
+    }
+
+    /// Closes the pipe of questions, which ends the program, and gives its log.
+    fn finish(mut self) -> Result<Vec<String>, EmulatorError> {
+        const WHAT: &str = "at the end of a run";
+        self.pipes = None;
+        match self.wait(PATIENCE).map_err(EmulatorError::Pipe)? {
+            None => Err(self.silent(WHAT)),
+            Some(status) if !status.success() => Err(self.ended(WHAT)),
+            Some(_) => Ok(self.take_log()),
+        }
+    }
+
+    /// Waits for the process, but not for ever.
+    fn wait(&mut self, patience: Duration) -> io::Result<Option<ExitStatus>> {
+        let deadline = Instant::now() + patience;
+        loop {
+            match self.process.try_wait()? {
+                None if Instant::now() < deadline => std::thread::sleep(Duration::from_millis(1)),
+                status => return Ok(status),
+            }
+        }
+    }
+
+    /// The error of a board that does not answer.
+    fn silent(&mut self, what: &'static str) -> EmulatorError {
+        // Its log is complete only once it has ended.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+        EmulatorError::Silent { what, after: PATIENCE, log: self.last_words() }
+    }
+
+    /// The error of an emulator that has closed its end of a pipe.
+    fn ended(&mut self, what: &'static str) -> EmulatorError {
+        match self.wait(PATIENCE) {
+            Ok(Some(status)) => EmulatorError::Ended { status, what, log: self.last_words() },
+            Ok(None) => self.silent(what),
+            Err(error) => EmulatorError::Pipe(error),
+        }
+    }
+
+    fn take_log(&mut self) -> Vec<String> {
+        self.log.take().map(LogReader::lines).unwrap_or_default()
+    }
+
+    /// What the board and the emulator have said, for an error's sentence.
+    fn last_words(&mut self) -> String {
+        let mut words = self.take_log();
+        let errors = std::fs::read_to_string(self.folder.path().join(ERRORS)).unwrap_or_default();
+        words.extend(errors.lines().map(str::to_owned));
+        if words.is_empty() { "empty".into() } else { words.join(" | ") }
+    }
+}
+
+/// File of the emulator's own complaints, in its folder.
+const ERRORS: &str = "errors";
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        // Both fail only where the process has ended already.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

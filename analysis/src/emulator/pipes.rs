@@ -1,0 +1,75 @@
+//! The two pipes of the lockstep.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::os::fd::AsFd;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use nix::fcntl::OFlag;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::stat::Mode;
+use nix::unistd::mkfifo;
+
+/// This process's ends.
+pub struct Pipes {
+    counts: File,
+    codes: File,
+}
+
+impl Pipes {
+    /// Makes the pipes `counts` and `codes` in a folder and opens this side of them.
+    pub fn make(folder: &Path) -> io::Result<Self> {
+        let [counts, codes] = ["counts", "codes"].map(|name| folder.join(name));
+        for path in [&counts, &codes] {
+            mkfifo(path, Mode::S_IRUSR | Mode::S_IWUSR)?;
+        }
+        Ok(Self {
+            // Opened for both directions, because opening for writing alone waits for a reader.
+            counts: OpenOptions::new().read(true).write(true).open(counts)?,
+            // For reading alone, so that a guest that has gone away is an end of file; not
+            // blocking, because opening would wait for it to come.
+            codes: OpenOptions::new()
+                .read(true)
+                .custom_flags(OFlag::O_NONBLOCK.bits())
+                .open(codes)?,
+        })
+    }
+
+    /// Writes a question and reads an answer of known length.
+    ///
+    /// # Errors
+    /// `TimedOut` after the patience, `UnexpectedEof` where the guest has closed its end.
+    pub fn exchange(
+        &mut self,
+        question: &[u8],
+        mut answer: &mut [u8],
+        patience: Duration,
+    ) -> io::Result<()> {
+        self.counts.write_all(question)?;
+        let deadline = Instant::now() + patience;
+        while !answer.is_empty() {
+            self.wait(deadline)?;
+            match self.codes.read(answer) {
+                Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+                Ok(read) => answer = &mut answer[read..],
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Waits until there is something to read, or the guest has closed its end.
+    fn wait(&self, deadline: Instant) -> io::Result<()> {
+        let left = deadline.saturating_duration_since(Instant::now());
+        let timeout = PollTimeout::try_from(left).unwrap_or(PollTimeout::MAX);
+        let mut codes = [PollFd::new(self.codes.as_fd(), PollFlags::POLLIN)];
+        match poll(&mut codes, timeout) {
+            Ok(0) => Err(io::ErrorKind::TimedOut.into()),
+            Ok(_) | Err(nix::errno::Errno::EINTR) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+}

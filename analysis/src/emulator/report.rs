@@ -1,0 +1,225 @@
+//! What a run on the emulated board measured, read from its log's `key=value` lines.
+
+use std::collections::HashMap;
+use std::str::FromStr;
+
+/// What a run on the emulated board measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Ticks that the board ran.
+    pub ticks: u64,
+    /// Frames that the log missed because its queue was full.
+    pub dropped: u64,
+    /// Periods that began while the servo was still busy with one before.
+    pub overruns: u64,
+    /// How instructions were counted.
+    pub calibration: Calibration,
+    /// Instructions of a tick from raw count to DAC code, over all ticks; the measurement's own
+    /// are subtracted.
+    pub compute_instructions: Stats,
+    /// The same over the ticks that gave torque; `None` where there were none.
+    pub contact_instructions: Option<Stats>,
+    /// The same over the ticks that gave none.
+    pub free_instructions: Option<Stats>,
+    /// Instructions of everything that a tick runs in interrupts, the measuring included and the
+    /// lockstep's pipes excluded.
+    pub interrupt_instructions: Stats,
+    /// Instructions of the lockstep's two pipe calls in each tick.
+    pub lockstep_instructions: Stats,
+    /// Instructions that judging the scene took on the board.
+    pub certify_instructions: u64,
+    /// Bytes of stack used from reset until the scene was judged.
+    pub stack_bytes: u64,
+    /// The certificate's enclosures as the board found them.
+    pub board: CertificateBits,
+    /// The same as the compiler found them.
+    pub compiler: CertificateBits,
+    /// All lines of the log.
+    pub log: Vec<String>,
+}
+
+/// How instructions were counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Calibration {
+    /// Counts of the board's timer that an instruction takes.
+    pub per_instruction: u64,
+    /// Instructions of an empty measurement, subtracted from each.
+    pub overhead: u64,
+}
+
+/// Enclosures as bits, `(lo, hi)`; `None` where an index does not exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CertificateBits {
+    /// Index of the environment alone.
+    pub alpha: Option<(u64, u64)>,
+    /// Index behind the coupling.
+    pub alpha_coupled: Option<(u64, u64)>,
+}
+
+/// Numbers of instructions over a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stats {
+    /// How many there were.
+    pub count: u64,
+    /// The smallest.
+    pub min: u64,
+    /// The largest.
+    pub max: u64,
+    /// Their mean.
+    pub mean: f64,
+}
+
+/// The log does not say what a report needs.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the board's log has no number {key} in a line of {line}; the log: {log}")]
+pub struct ReportError {
+    /// What the line should begin with.
+    pub line: String,
+    /// The key in it.
+    pub key: String,
+    /// The whole log.
+    pub log: String,
+}
+
+impl Report {
+    /// Reads the log of a run.
+    pub(super) fn read(log: Vec<String>) -> Result<Self, ReportError> {
+        let lines = Lines::of(&log);
+        let (contact, free) = (lines.stats("spread=contact"), lines.stats("spread=free"));
+        let (interrupt, lockstep) =
+            (lines.stats("spread=interrupt"), lines.stats("spread=lockstep"));
+        let calibration = Calibration {
+            per_instruction: lines.number("per_instruction", "per_instruction")?,
+            overhead: lines.number("per_instruction", "overhead")?,
+        };
+        Ok(Self {
+            ticks: lines.number("ticks", "ticks")?,
+            dropped: lines.number("ticks", "dropped")?,
+            overruns: lines.number("ticks", "overruns")?,
+            compute_instructions: Stats::joined(contact, free),
+            contact_instructions: contact,
+            free_instructions: free,
+            interrupt_instructions: Stats::joined(interrupt, None),
+            lockstep_instructions: Stats::joined(lockstep, None),
+            certify_instructions: lines.number("certify_time", "certify_time")?
+                / calibration.per_instruction,
+            stack_bytes: lines.number("certify_time", "stack_bytes")?,
+            board: lines.certificate("board"),
+            compiler: lines.certificate("compiler"),
+            calibration,
+            log,
+        })
+    }
+}
+
+impl Stats {
+    /// The numbers of two groups together; of none, all is zero.
+    fn joined(a: Option<Self>, b: Option<Self>) -> Self {
+        match (a, b) {
+            (None, None) => Self { count: 0, min: 0, max: 0, mean: 0.0 },
+            (Some(one), None) | (None, Some(one)) => one,
+            (Some(a), Some(b)) => {
+                let count = a.count + b.count;
+                let sum = a.mean * a.count as f64 + b.mean * b.count as f64;
+                let (min, max) = (a.min.min(b.min), a.max.max(b.max));
+                Self { count, min, max, mean: sum / count as f64 }
+            }
+        }
+    }
+}
+
+/// The log's lines as keys and values.
+struct Lines<'a> {
+    lines: Vec<HashMap<&'a str, &'a str>>,
+    log: &'a [String],
+}
+
+impl<'a> Lines<'a> {
+    fn of(log: &'a [String]) -> Self {
+        let pairs = |line: &'a String| line.split(' ').filter_map(|w| w.split_once('=')).collect();
+        Self { lines: log.iter().map(pairs).collect(), log }
+    }
+
+    /// The line that has a key, or a key with its value (`key=value`).
+    fn find(&self, what: &str) -> Option<&HashMap<&'a str, &'a str>> {
+        let (key, value) = what.split_once('=').map_or((what, None), |(k, v)| (k, Some(v)));
+        self.lines.iter().find(|line| {
+            line.get(key).is_some_and(|found| value.is_none_or(|value| *found == value))
+        })
+    }
+
+    fn optional<T: FromStr>(&self, line: &str, key: &str) -> Option<T> {
+        self.find(line)?.get(key)?.parse().ok()
+    }
+
+    fn number(&self, line: &str, key: &str) -> Result<u64, ReportError> {
+        self.optional(line, key).ok_or_else(|| ReportError {
+            line: line.into(),
+            key: key.into(),
+            log: self.log.join(" | "),
+        })
+    }
+
+    fn stats(&self, line: &str) -> Option<Stats> {
+        let number = |key| self.optional::<u64>(line, key);
+        let count = number("count").filter(|count| *count > 0)?;
+        let mean = number("sum")? as f64 / count as f64;
+        Some(Stats { count, min: number("min")?, max: number("max")?, mean })
+    }
+
+    fn certificate(&self, by: &str) -> CertificateBits {
+        let ends = |index: &str| {
+            let line = self.lines.iter().find(|line| {
+                line.get("enclosure") == Some(&index) && line.get("by") == Some(&by)
+            })?;
+            let end = |key| line.get(key)?.parse().ok();
+            Some((end("lo")?, end("hi")?))
+        };
+        CertificateBits { alpha: ends("alpha"), alpha_coupled: ends("alpha_coupled") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log() -> Vec<String> {
+        let lines = "info per_instruction=32 overhead=7
+info enclosure=alpha by=compiler lo=1 hi=2
+info enclosure=alpha by=board lo=1 hi=3
+info enclosure=alpha_coupled by=board lo=18446744073709551615 hi=5
+info certify_time=3200 stack_bytes=900
+info ticks=4 dropped=1 overruns=2
+info spread=contact count=1 min=50 max=50 sum=50
+info spread=free count=3 min=40 max=42 sum=122
+info spread=interrupt count=2 min=100 max=102 sum=202";
+        lines.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn a_log_becomes_a_report() {
+        let report = Report::read(log()).unwrap();
+        assert_eq!(report.calibration, Calibration { per_instruction: 32, overhead: 7 });
+        assert_eq!((report.ticks, report.dropped, report.overruns), (4, 1, 2));
+        assert_eq!(report.certify_instructions, 100);
+        let compute = Stats { count: 4, min: 40, max: 50, mean: 43.0 };
+        assert_eq!(report.compute_instructions, compute);
+        assert_eq!(report.interrupt_instructions.mean, 101.0);
+        assert_eq!(report.compiler.alpha, Some((1, 2)));
+        assert_eq!(report.compiler.alpha_coupled, None);
+        assert_eq!(report.board.alpha_coupled, Some((u64::MAX, 5)));
+    }
+
+    #[test]
+    fn a_log_that_lacks_a_line_says_which() {
+        let log: Vec<_> = log().into_iter().filter(|line| !line.contains("ticks=")).collect();
+        let error = Report::read(log).unwrap_err();
+        assert_eq!((error.line.as_str(), error.key.as_str()), ("ticks", "ticks"));
+    }
+
+    #[test]
+    fn a_calibration_of_zero_is_no_calibration() {
+        let log = vec!["info per_instruction=0 overhead=0".to_owned()];
+        assert!(Report::read(log).is_err());
+    }
+}

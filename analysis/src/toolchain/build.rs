@@ -1,0 +1,299 @@
+//! Building programs for the board.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::TARGET;
+use super::plan::Compiler;
+use super::prepare::last_lines;
+use super::size::{SizeError, Sizes};
+
+/// The format that a scene's program computes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NumberFormat {
+    /// Single-precision floating point.
+    F32,
+    /// The scene's fixed-point format.
+    Fixed,
+}
+
+impl NumberFormat {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::F32, Self::Fixed];
+
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::Fixed => "fixed",
+        }
+    }
+}
+
+impl fmt::Display for NumberFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// Why a program could not be built.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// The source is not where it was when this program was built.
+    #[error("the workspace is no longer at {0}: run `haptic` from it by `cargo haptic`")]
+    NoWorkspace(PathBuf),
+    /// A file could not be read or written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is no such scene.
+    #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
+    NoScene {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        scenes: Vec<String>,
+    },
+    /// Cargo could not be started.
+    #[error("cargo could not be started: {0}")]
+    NoCargo(#[source] io::Error),
+    /// The program does not compile.
+    #[error("{program} does not compile for the board:\n{output}")]
+    Compile {
+        /// The program.
+        program: String,
+        /// What the compiler said.
+        output: String,
+    },
+    /// The program's size could not be read.
+    #[error("{path}: {source}")]
+    Size {
+        /// The program's file.
+        path: PathBuf,
+        /// Why.
+        source: SizeError,
+    },
+}
+
+/// What builds programs for the board; [`prepare`](super::prepare()) gives it.
+#[derive(Clone, Debug)]
+pub struct Toolchain {
+    compiler: Compiler,
+    workspace: Workspace,
+}
+
+/// Where the source is, and where what is built from it goes.
+#[derive(Clone, Debug)]
+pub(super) struct Workspace {
+    root: PathBuf,
+    output: PathBuf,
+}
+
+/// One build: what, and with which features.
+struct Job<'a> {
+    /// `--bin` or `--example`.
+    kind: &'static str,
+    name: &'a str,
+    features: &'a str,
+    /// Name of the built file.
+    file: String,
+}
+
+impl Toolchain {
+    pub(super) fn new(compiler: Compiler, workspace: Workspace) -> Self {
+        Self { compiler, workspace }
+    }
+
+    /// The compiler that builds.
+    pub fn compiler(&self) -> Compiler {
+        self.compiler
+    }
+
+    /// Names of the scenes that have a program, in the alphabet's order.
+    ///
+    /// # Errors
+    /// Where the source cannot be read.
+    pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
+        let folder = self.workspace.root.join("firmware/src/bin");
+        let failed = |source| BuildError::File { path: folder.clone(), source };
+        let mut scenes = Vec::new();
+        for entry in folder.read_dir().map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if let (Some(name), Some("rs")) =
+                (path.file_stem(), path.extension().and_then(|e| e.to_str()))
+            {
+                scenes.push(name.to_string_lossy().into_owned());
+            }
+        }
+        scenes.sort();
+        Ok(scenes)
+    }
+
+    /// Builds a scene's program for the emulated board, with its log, and gives its file.
+    ///
+    /// # Errors
+    /// Where there is no such scene, or it does not compile.
+    pub fn build_scene(&self, name: &str, format: NumberFormat) -> Result<PathBuf, BuildError> {
+        self.scene(name, format, "board-qemu,log", "")
+    }
+
+    /// Builds a scene's program in `f32` without log and measurements, and gives its size.
+    ///
+    /// # Errors
+    /// Where there is no such scene, or it does not compile.
+    pub fn size(&self, name: &str) -> Result<Sizes, BuildError> {
+        let path = self.scene(name, NumberFormat::F32, "board-qemu", "-bare")?;
+        let elf = fs::read(&path).map_err(|source| BuildError::File { path: path.clone(), source });
+        Sizes::of_elf(&elf?).map_err(|source| BuildError::Size { path, source })
+    }
+
+    /// Builds the program that judges scenes for [`Judge`](crate::emulator::Judge).
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
+        let (name, features) = ("vectors", "board-qemu,log");
+        self.build(&Job { kind: "--example", name, features, file: name.into() })
+    }
+
+    fn scene(
+        &self,
+        name: &str,
+        format: NumberFormat,
+        features: &str,
+        suffix: &str,
+    ) -> Result<PathBuf, BuildError> {
+        let scenes = self.scenes()?;
+        if !scenes.iter().any(|scene| scene == name) {
+            return Err(BuildError::NoScene { name: name.into(), scenes });
+        }
+        let features = match format {
+            NumberFormat::F32 => features.to_owned(),
+            NumberFormat::Fixed => format!("{features},fixed-point"),
+        };
+        let file = format!("{name}-{format}{suffix}");
+        self.build(&Job { kind: "--bin", name, features: &features, file })
+    }
+
+    fn build(&self, job: &Job<'_>) -> Result<PathBuf, BuildError> {
+        // Cargo puts each build of a program, whatever its features, in the same place; the lock
+        // keeps it there until it is copied.
+        let _alone = self.workspace.lock("build")?;
+        let output = self.cargo().args(job.arguments()).output().map_err(BuildError::NoCargo)?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr);
+            let output = last_lines(&said, 60);
+            return Err(BuildError::Compile { program: job.name.into(), output });
+        }
+        let folder = self.target_folder().join(TARGET).join("flash");
+        let built = match job.kind {
+            "--example" => folder.join("examples").join(job.name),
+            _ => folder.join(job.name),
+        };
+        self.workspace.keep(&built, &job.file)
+    }
+
+    /// Each compiler has a folder of its own: in a common one each would rebuild what the other
+    /// has built.
+    fn target_folder(&self) -> PathBuf {
+        self.workspace.output.join(match self.compiler {
+            Compiler::Own => "own",
+            Compiler::Debian => "debian",
+        })
+    }
+
+    /// Cargo, with nothing of the command that may have started this program.
+    fn cargo(&self) -> Command {
+        let mut command = match self.compiler {
+            Compiler::Own => Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into())),
+            Compiler::Debian => Command::new("/usr/bin/cargo"),
+        };
+        command.current_dir(&self.workspace.root);
+        for name in INHERITED {
+            command.env_remove(name);
+        }
+        command.env("CARGO_TARGET_DIR", self.target_folder()).arg("build");
+        if self.compiler == Compiler::Debian {
+            // Debian has no `core` for the target; its source is built with the program, which
+            // needs what is not yet stable in cargo.
+            command.env_remove("RUSTUP_TOOLCHAIN");
+            command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
+            command.env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld");
+            command.args(["-Zbuild-std=core", "-Zbuild-std-features=compiler-builtins-mem"]);
+        }
+        command
+    }
+}
+
+/// Variables that would change the build, or that belong to a build that started this program.
+const INHERITED: [&str; 9] = [
+    "RUSTFLAGS",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_BUILD_TARGET",
+    "CARGO_BUILD_RUSTFLAGS",
+    "CARGO_BUILD_TARGET_DIR",
+    "CARGO_INCREMENTAL",
+    "CARGO_MAKEFLAGS",
+    "RUSTC_WORKSPACE_WRAPPER",
+    "DEFMT_LOG",
+];
+
+impl Job<'_> {
+    fn arguments(&self) -> [&str; 10] {
+        let [kind, name, features] = [self.kind, self.name, self.features];
+        let build = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
+        let [a, b, c, d, e, f] = build;
+        [a, b, c, d, e, f, kind, name, "--features", features]
+    }
+}
+
+impl Workspace {
+    /// The workspace that this program was built from.
+    pub(super) fn find() -> Result<Self, BuildError> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let root = root.canonicalize().map_err(|_| BuildError::NoWorkspace(root))?;
+        let target = variable("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
+        // Relative to the workspace for cargo's own default, and to where cargo was started
+        // otherwise; an absolute path replaces either.
+        let output = root.join(target).join("thumb");
+        Ok(Self { root, output })
+    }
+
+    /// Waits for, and takes, a lock that other programs respect; it ends with the file.
+    pub(super) fn lock(&self, name: &str) -> Result<File, BuildError> {
+        let path = self.output.join(name).with_extension("lock");
+        let locked = fs::create_dir_all(&self.output).and_then(|()| {
+            let file = File::create(&path)?;
+            file.lock()?;
+            Ok(file)
+        });
+        locked.map_err(|source| BuildError::File { path, source })
+    }
+
+    /// Copies a program to a name of its own. A running emulator may have the last one open, so
+    /// that is replaced and not overwritten.
+    fn keep(&self, built: &Path, name: &str) -> Result<PathBuf, BuildError> {
+        let folder = self.output.join("programs");
+        let kept = folder.join(name);
+        let fresh = kept.with_extension("new");
+        let copied = fs::create_dir_all(&folder)
+            .and_then(|()| fs::copy(built, &fresh))
+            .and_then(|_| fs::rename(&fresh, &kept));
+        match copied {
+            Ok(()) => Ok(kept),
+            Err(source) => Err(BuildError::File { path: kept, source }),
+        }
+    }
+}
+
+fn variable(name: &str) -> Option<OsString> {
+    std::env::var_os(name).filter(|value| !value.is_empty())
+}

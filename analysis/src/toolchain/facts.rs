@@ -1,0 +1,69 @@
+//! What there is on this machine.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::plan::{Debian, Facts, Package, PackageState, Rust};
+use super::{TARGET, Version};
+use crate::emulator::QEMU;
+
+/// Looks at the machine. `lists_are_fresh`: the lists of packages have just been fetched.
+pub fn observe(lists_are_fresh: bool) -> Facts {
+    Facts {
+        rust: rust(),
+        rustup: says("rustup", &["--version"]).is_some(),
+        fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
+        qemu: says(QEMU, &["--version"]).as_deref().and_then(Version::find),
+        debian: debian(lists_are_fresh),
+        root: nix::unistd::geteuid().is_root(),
+    }
+}
+
+fn rust() -> Option<Rust> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let version = Version::find(&says(&rustc, &["--version"])?)?;
+    let folder = says(&rustc, &["--print", "target-libdir", "--target", TARGET]);
+    let has_target = folder.is_some_and(|folder| has_core(Path::new(folder.trim())));
+    Some(Rust { version, has_target })
+}
+
+/// Whether a folder of libraries holds a compiled `core`.
+fn has_core(folder: &Path) -> bool {
+    let Ok(entries) = folder.read_dir() else { return false };
+    entries.flatten().any(|entry| {
+        let name = entry.file_name();
+        name.to_string_lossy().starts_with("libcore-") && name.to_string_lossy().ends_with(".rlib")
+    })
+}
+
+fn debian(lists_are_fresh: bool) -> Option<Debian> {
+    says("apt-get", &["--version"])?;
+    Some(Debian { lists_are_fresh, packages: Package::ALL.map(package) })
+}
+
+fn package(package: Package) -> PackageState {
+    let name = package.name();
+    let installed = says("dpkg-query", &["-W", "-f=${db:Status-Status} ${Version}", name])
+        .and_then(|state| Version::find(state.strip_prefix("installed ")?));
+    if let Some(version) = installed {
+        return PackageState::Installed(version);
+    }
+    let candidate = says("apt-cache", &["policy", name]).and_then(|policy| {
+        let line = policy.lines().find_map(|line| line.trim().strip_prefix("Candidate:"))?;
+        Version::find(line)
+    });
+    candidate.map_or(PackageState::Unknown, PackageState::Available)
+}
+
+/// What a program prints, if it is there and content.
+fn says(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program)
+        .args(arguments)
+        // What is read here is not to depend on the person's language.
+        .env("LC_ALL", "C")
+        .stdin(Stdio::null())
+        .output()
+        .ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}

@@ -1,0 +1,206 @@
+//! The routes, machine by machine.
+
+use super::*;
+
+const OLD: Version = Version { major: 1, minor: 85 };
+const NEW: Version = Version { major: 1, minor: 96 };
+const QEMU_7: Version = Version { major: 7, minor: 2 };
+const QEMU_5: Version = Version { major: 5, minor: 2 };
+
+fn rust(version: Version, has_target: bool) -> Option<Rust> {
+    Some(Rust { version, has_target })
+}
+
+/// A machine with everything: rustup's toolchain with the target, and the emulator.
+fn complete() -> Facts {
+    Facts {
+        rust: rust(NEW, true),
+        rustup: true,
+        fetching_forbidden: false,
+        qemu: Some(QEMU_7),
+        debian: None,
+        root: false,
+    }
+}
+
+/// A Debian whose packages are all to be had and not installed.
+fn debian() -> Debian {
+    let available = PackageState::Available;
+    Debian { lists_are_fresh: false, packages: [NEW, NEW, NEW, QEMU_7, QEMU_7].map(available) }
+}
+
+fn installed() -> Debian {
+    let states = [NEW, NEW, NEW, QEMU_7, QEMU_7].map(PackageState::Installed);
+    Debian { lists_are_fresh: false, packages: states }
+}
+
+/// A Debian container without rustup's target and without the emulator, as root.
+fn bare_container() -> Facts {
+    Facts {
+        rust: rust(NEW, false),
+        fetching_forbidden: true,
+        qemu: None,
+        debian: Some(debian()),
+        root: true,
+        ..complete()
+    }
+}
+
+fn check(facts: &Facts, expected: Plan) {
+    assert_eq!(plan(facts), expected, "{facts:?}");
+}
+
+#[test]
+fn a_complete_machine_is_ready() {
+    check(&complete(), Plan::Ready(Compiler::Own));
+    // Also where fetching is forbidden, and without rustup: what is there serves.
+    check(&Facts { fetching_forbidden: true, ..complete() }, Plan::Ready(Compiler::Own));
+    check(&Facts { rustup: false, ..complete() }, Plan::Ready(Compiler::Own));
+}
+
+#[test]
+fn rustup_adds_the_target_where_it_may() {
+    let facts = Facts { rust: rust(NEW, false), ..complete() };
+    check(&facts, Plan::Do(Step::AddTarget));
+    // Before Debian's packages, which would be a second compiler.
+    check(&Facts { debian: Some(debian()), root: true, ..facts }, Plan::Do(Step::AddTarget));
+}
+
+#[test]
+fn rustup_fetches_nothing_where_it_is_forbidden() {
+    let compiler = Package::COMPILER.to_vec();
+    let facts = Facts { qemu: Some(QEMU_7), ..bare_container() };
+    check(&facts, Plan::Do(Step::Install(compiler)));
+    check(&Facts { debian: Some(installed()), ..facts }, Plan::Ready(Compiler::Debian));
+}
+
+#[test]
+fn root_on_debian_installs_all_that_is_missing_at_once() {
+    check(&bare_container(), Plan::Do(Step::Install(Package::ALL.to_vec())));
+    let mut debian = debian();
+    debian.packages[0] = PackageState::Installed(NEW);
+    let rest = Package::ALL[1..].to_vec();
+    let facts = Facts { debian: Some(debian), ..bare_container() };
+    check(&facts, Plan::Do(Step::Install(rest)));
+}
+
+#[test]
+fn the_emulator_alone_is_installed_where_it_alone_is_missing() {
+    let facts = Facts { qemu: None, debian: Some(debian()), root: true, ..complete() };
+    check(&facts, Plan::Do(Step::Install(vec![Package::Qemu])));
+    let facts = Facts { rust: rust(NEW, false), ..facts };
+    // One step at a time: the target is added after that.
+    check(&facts, Plan::Do(Step::Install(vec![Package::Qemu])));
+}
+
+#[test]
+fn a_person_who_is_not_root_is_told_the_packages() {
+    let facts = Facts { root: false, ..bare_container() };
+    check(&facts, Plan::Ask(vec![Request::Packages(Package::ALL.to_vec())]));
+}
+
+#[test]
+fn lists_are_fetched_before_a_package_is_given_up() {
+    let unknown = [PackageState::Unknown; Package::ALL.len()];
+    let stale = Debian { lists_are_fresh: false, packages: unknown };
+    let fresh = Debian { lists_are_fresh: true, packages: unknown };
+    let facts = Facts { debian: Some(stale.clone()), ..bare_container() };
+    check(&facts, Plan::Do(Step::FetchLists));
+    let compiler = Request::Compiler { found: Some(NEW), rustup: false };
+    let both = vec![compiler, Request::Emulator { found: None }];
+    check(&Facts { debian: Some(fresh), ..facts.clone() }, Plan::Ask(both.clone()));
+    // Only root can fetch them.
+    check(&Facts { root: false, ..facts }, Plan::Ask(both));
+}
+
+#[test]
+fn packages_that_are_too_old_do_not_serve() {
+    let mut old = debian();
+    old.lists_are_fresh = true;
+    old.packages[0] = PackageState::Available(OLD);
+    let facts = Facts { qemu: Some(QEMU_7), debian: Some(old.clone()), ..bare_container() };
+    let request = Request::Compiler { found: Some(NEW), rustup: false };
+    check(&facts, Plan::Ask(vec![request.clone()]));
+    old.packages[0] = PackageState::Installed(OLD);
+    check(&Facts { debian: Some(old), ..facts }, Plan::Ask(vec![request]));
+}
+
+#[test]
+fn elsewhere_the_person_is_told_what_to_get() {
+    let facts = Facts { rust: None, rustup: false, qemu: None, ..complete() };
+    let requests =
+        vec![Request::Compiler { found: None, rustup: false }, Request::Emulator { found: None }];
+    check(&facts, Plan::Ask(requests));
+    let facts = Facts { rust: rust(OLD, true), ..complete() };
+    check(&facts, Plan::Ask(vec![Request::Compiler { found: Some(OLD), rustup: true }]));
+    let facts = Facts { qemu: Some(QEMU_5), ..complete() };
+    check(&facts, Plan::Ask(vec![Request::Emulator { found: Some(QEMU_5) }]));
+}
+
+#[test]
+fn both_kinds_of_request_are_made_together() {
+    let mut packages = debian();
+    packages.packages[4] = PackageState::Unknown;
+    let facts = Facts { root: false, debian: Some(packages), ..bare_container() };
+    let requests =
+        vec![Request::Packages(Package::COMPILER.to_vec()), Request::Emulator { found: None }];
+    check(&facts, Plan::Ask(requests));
+}
+
+#[test]
+fn requests_are_commands() {
+    assert_eq!(
+        Request::Packages(vec![Package::Lld, Package::Qemu]).to_string(),
+        "install packages: sudo apt-get install -y --no-install-recommends lld qemu-system-arm"
+    );
+    assert_eq!(
+        Request::Compiler { found: Some(OLD), rustup: true }.to_string(),
+        "install Rust 1.95 or later with the target thumbv7em-none-eabihf: this is Rust 1.85; \
+         rustup update stable, then rustup target add thumbv7em-none-eabihf"
+    );
+}
+
+/// Whatever the machine, following the plan ends: each step changes the facts that asked for it.
+#[test]
+fn following_the_plan_ends() {
+    for bits in 0..256_u32 {
+        let bit = |n: u32| bits >> n & 1 == 1;
+        let mut facts = Facts {
+            rust: bit(0).then_some(Rust { version: NEW, has_target: bit(1) }),
+            rustup: bit(2),
+            fetching_forbidden: bit(3),
+            qemu: bit(4).then_some(QEMU_7),
+            debian: bit(5).then(debian),
+            root: bit(6),
+        };
+        if bit(7) {
+            facts.debian =
+                facts.debian.map(|d| Debian { packages: [PackageState::Unknown; 5], ..d });
+        }
+        let mut steps = 0;
+        while let Plan::Do(step) = plan(&facts) {
+            assert!(step != Step::AddTarget || !facts.fetching_forbidden);
+            take(&mut facts, step);
+            steps += 1;
+            assert!(steps <= 3, "{facts:?}");
+        }
+    }
+}
+
+/// What a step does to the machine.
+fn take(facts: &mut Facts, step: Step) {
+    match (step, &mut facts.debian) {
+        (Step::AddTarget, _) => facts.rust = rust(NEW, true),
+        (Step::FetchLists, Some(debian)) => debian.lists_are_fresh = true,
+        (Step::Install(packages), Some(debian)) => {
+            for package in packages {
+                let index = Package::ALL.iter().position(|p| *p == package).unwrap();
+                debian.packages[index] = PackageState::Installed(NEW);
+                if package == Package::Qemu {
+                    facts.qemu = Some(QEMU_7);
+                }
+            }
+        }
+        (step, None) => panic!("{step} without Debian"),
+    }
+}

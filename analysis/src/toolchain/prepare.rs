@@ -1,0 +1,128 @@
+//! From whatever machine this is to one that builds for the board, or to what its owner has to do.
+
+use std::io;
+use std::process::{Command, ExitStatus, Stdio};
+
+use super::build::{Toolchain, Workspace};
+use super::facts::observe;
+use super::plan::{Plan, Request, Step, plan};
+use super::{BuildError, TARGET};
+
+/// Why programs for the board cannot be built here.
+#[derive(Debug, thiserror::Error)]
+pub enum SetupError {
+    /// The person has to do something first.
+    #[error("building and running the board's programs needs more than this machine has:{}", bullets(.0))]
+    Missing(Vec<Request>),
+    /// A step could not be begun.
+    #[error("`{step}` could not be run: {source}")]
+    Unrunnable {
+        /// The step.
+        step: Step,
+        /// Why.
+        source: io::Error,
+    },
+    /// A step failed.
+    #[error("`{step}` ended with {status}:\n{output}")]
+    Failed {
+        /// The step.
+        step: Step,
+        /// Its exit status.
+        status: ExitStatus,
+        /// The end of what it said.
+        output: String,
+    },
+    /// A step was taken and has not helped.
+    #[error("`{0}` succeeded, and what it should bring is still missing")]
+    InVain(Step),
+    /// The workspace cannot be found or written to.
+    #[error(transparent)]
+    Workspace(#[from] BuildError),
+}
+
+fn bullets(requests: &[Request]) -> String {
+    requests.iter().map(|request| format!("\n  - {request}")).collect()
+}
+
+/// Makes sure that programs for the board can be built and run, and gives what builds them.
+///
+/// As root on Debian it installs what is missing; with rustup it adds the target, unless the
+/// machine's owner forbids that. `progress` is told each step before it is taken.
+///
+/// # Errors
+/// Elsewhere, [`SetupError::Missing`] says exactly what to install.
+pub fn prepare(progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
+    let workspace = Workspace::find()?;
+    // Two programs that install at the same time would find each other's half-done work.
+    let _alone = workspace.lock("setup")?;
+    let mut taken = Vec::new();
+    loop {
+        let step = match plan(&observe(taken.contains(&Step::FetchLists))) {
+            Plan::Ready(compiler) => return Ok(Toolchain::new(compiler, workspace)),
+            Plan::Ask(requests) => return Err(SetupError::Missing(requests)),
+            Plan::Do(step) => step,
+        };
+        if taken.contains(&step) {
+            return Err(SetupError::InVain(step));
+        }
+        progress(&step.to_string());
+        match (take(&step), &step) {
+            // A mirror may have dropped the versions that old lists name.
+            (Err(SetupError::Failed { .. }), Step::Install(_))
+                if !taken.contains(&Step::FetchLists) =>
+            {
+                progress(&Step::FetchLists.to_string());
+                take(&Step::FetchLists)?;
+                taken.push(Step::FetchLists);
+                take(&step)?;
+            }
+            (result, _) => result?,
+        }
+        taken.push(step);
+    }
+}
+
+/// Takes a step.
+fn take(step: &Step) -> Result<(), SetupError> {
+    let mut command = match step {
+        Step::AddTarget => command("rustup", &["target", "add", TARGET]),
+        Step::FetchLists => apt(&["update"]),
+        Step::Install(packages) => {
+            let mut command = apt(&["install", "-y", "--no-install-recommends"]);
+            command.args(packages.iter().map(|package| package.name()));
+            command
+        }
+    };
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|source| SetupError::Unrunnable { step: step.clone(), source })?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = [output.stdout, output.stderr].concat();
+    Err(SetupError::Failed {
+        step: step.clone(),
+        status: output.status,
+        output: last_lines(&String::from_utf8_lossy(&said), 20),
+    })
+}
+
+fn command(program: &str, arguments: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.args(arguments);
+    command
+}
+
+/// `apt-get` that asks nothing and waits for another one to finish.
+fn apt(arguments: &[&str]) -> Command {
+    let mut command = command("apt-get", &["-o", "DPkg::Lock::Timeout=600"]);
+    command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
+    command
+}
+
+/// The end of a long text.
+pub(super) fn last_lines(text: &str, count: usize) -> String {
+    let lines: Vec<_> = text.lines().collect();
+    lines[lines.len().saturating_sub(count)..].join("\n")
+}

@@ -1,0 +1,49 @@
+//! How much of a board's memory a program takes.
+
+use object::{Object, ObjectSection, SectionKind};
+
+/// Bytes that a program takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sizes {
+    /// Code, in flash.
+    pub text: u64,
+    /// Constants and the vector table, in flash.
+    pub rodata: u64,
+    /// Variables with a first value, in flash and RAM.
+    pub data: u64,
+    /// Variables that begin at zero or at nothing, in RAM.
+    pub bss: u64,
+}
+
+/// A file that is no program for the board.
+#[derive(Debug, thiserror::Error)]
+#[error("not an ELF file: {0}")]
+pub struct SizeError(#[from] object::read::Error);
+
+impl Sizes {
+    /// Bytes of flash.
+    pub fn flash(&self) -> u64 {
+        self.text + self.rodata + self.data
+    }
+
+    /// Bytes of RAM, the stack not included.
+    pub fn ram(&self) -> u64 {
+        self.data + self.bss
+    }
+
+    /// Sums up the sections of a program that are loaded.
+    pub(super) fn of_elf(bytes: &[u8]) -> Result<Self, SizeError> {
+        let mut sizes = Self::default();
+        for section in object::File::parse(bytes)?.sections() {
+            let part = match section.kind() {
+                SectionKind::Text => &mut sizes.text,
+                SectionKind::ReadOnlyData | SectionKind::ReadOnlyString => &mut sizes.rodata,
+                SectionKind::Data => &mut sizes.data,
+                SectionKind::UninitializedData => &mut sizes.bss,
+                _ => continue,
+            };
+            *part += section.size();
+        }
+        Ok(sizes)
+    }
+}

@@ -1,0 +1,28 @@
+//! Linker scripts of the programs that run on a board. The library and host builds need none.
+
+use std::env;
+use std::path::Path;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    if env::var_os("CARGO_CFG_TARGET_OS").is_none_or(|os| os != "none") {
+        return;
+    }
+    let manifest = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
+    let Some(root) = Path::new(&manifest).parent() else { return };
+    // All boards share the map in the workspace's root; a package without it (the library taken
+    // by somebody else) links nothing here.
+    let map = root.join("memory.x");
+    if !map.exists() {
+        return;
+    }
+    println!("cargo:rerun-if-changed={}", map.display());
+    println!("cargo:rustc-link-search={}", root.display());
+    for kind in ["bins", "examples"] {
+        println!("cargo:rustc-link-arg-{kind}=--nmagic");
+        println!("cargo:rustc-link-arg-{kind}=-Tlink.x");
+        if env::var_os("CARGO_FEATURE_LOG").is_some() {
+            println!("cargo:rustc-link-arg-{kind}=-Tdefmt.x");
+        }
+    }
+}

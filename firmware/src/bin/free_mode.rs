@@ -1,0 +1,44 @@
+//! Free motion: the device's own damping, cancelled but for a residual, at the paper's numbers
+//! (equations 22 and 23).
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use firmware::certificate::Certified;
+use firmware::encoder::CounterWidth;
+use firmware::environment::FreeMode;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+/// What the hand feels.
+pub type Environment = FreeMode<0>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: FreeMode { residual: 0.001 },
+    // A canceller that reaches its limit is outside the certificate, so it has none: its torque is
+    // 0.021 N m s/rad times the speed, far below full scale.
+    torque_limit: None,
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+/// The sensor and the motor that it runs on.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+};
+
+/// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.
+pub type Fixed = fixed::types::I12F20;
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: Fixed,
+}

@@ -1,0 +1,99 @@
+//! Where a scene runs: an emulated board, or the host, where it prints its certificate.
+//!
+//! A scene's program is its numbers and one call of [`scene_program!`](crate::scene_program); what
+//! that call becomes is chosen here, by the target that the program is built for.
+//!
+//! All of the firmware's `unsafe` is in the modules of the boards.
+
+pub mod question;
+pub mod report;
+
+#[cfg(all(target_os = "none", feature = "board-qemu"))]
+#[allow(unsafe_code)]
+pub mod qemu;
+
+/// What stops a board before its servo runs. The motor has not been driven then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StartError {
+    /// The scene did not pass when it was certified again on the board.
+    Rejected(crate::certificate::Rejection),
+    /// The scene cannot be rendered in its number format with its transducers.
+    Unbuildable(crate::servo::BuildError),
+    /// The board's timer cannot pace this period.
+    Period {
+        /// The scene's period in s.
+        period: f64,
+        /// The longest period in s that the timer can pace.
+        longest: f64,
+    },
+}
+
+impl core::fmt::Display for StartError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Rejected(rejection) => write!(f, "refused on the board: {rejection}"),
+            Self::Unbuildable(error) => write!(f, "no servo can be built: {error}"),
+            Self::Period { period, longest } => write!(
+                f,
+                "the period {period} s is not between 0 and {longest} s, the longest that the \
+                 board's timer can pace"
+            ),
+        }
+    }
+}
+
+/// Makes a program of a certified scene.
+///
+/// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), the
+/// transducers, and the type to compute in: `float` by default, `fixed` with the feature
+/// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
+#[macro_export]
+macro_rules! scene_program {
+    (
+        scene: $scene:ident: $environment:ty,
+        certified: $certified:ident,
+        transducers: $transducers:ident,
+        float: $float:ty,
+        fixed: $fixed:ty $(,)?
+    ) => {
+        /// Prints the certificate.
+        #[cfg(not(target_os = "none"))]
+        pub fn main() {
+            let data = $certified.scene().as_data();
+            print!("{}", $crate::board::report::Report::new(&$certified, &data));
+        }
+
+        #[cfg(target_os = "none")]
+        $crate::board_program!($scene: $environment, $certified, $transducers, $crate::chosen_number!($float, $fixed));
+    };
+}
+
+/// The number format of the two that the feature `fixed-point` chooses.
+#[cfg(feature = "fixed-point")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_number {
+    ($float:ty, $fixed:ty) => {
+        $fixed
+    };
+}
+
+/// The number format of the two that the feature `fixed-point` chooses.
+#[cfg(not(feature = "fixed-point"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! chosen_number {
+    ($float:ty, $fixed:ty) => {
+        $float
+    };
+}
+
+/// The program of a scene on a board that was not named.
+#[cfg(all(target_os = "none", not(feature = "board-qemu")))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_program {
+    ($($any:tt)*) => {
+        compile_error!("name the board that this program is for: --features board-qemu");
+    };
+}

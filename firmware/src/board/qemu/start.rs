@@ -1,0 +1,179 @@
+//! From reset to a running servo.
+
+use core::hint::black_box;
+
+use embassy_executor::{Executor, SpawnError, SpawnToken};
+use static_cell::StaticCell;
+
+use super::{EXIT_REFUSED, SERVO_EXECUTOR, ServoInterrupt, lockstep, pace};
+use crate::board::StartError;
+use crate::certificate::{Certified, Rejection};
+use crate::dac::Dac;
+use crate::encoder::Encoder;
+use crate::environment::Renderable;
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::servo::{Servo, Transducers};
+
+/// What a program brings.
+pub struct SceneProgram<E: 'static> {
+    /// The certificate from the compiler.
+    pub certified: &'static Certified<Scene<E>>,
+    /// The same judgement, for the board to repeat.
+    pub certify: fn(Scene<E>) -> Result<Certified<Scene<E>>, Rejection>,
+    /// Sensor and motor.
+    pub transducers: &'static Transducers,
+}
+
+/// The servo with its place between encoder and DAC.
+pub struct Seat<E: Renderable<N>, N: Number> {
+    servo: Servo<E, N>,
+    counts: lockstep::Counts,
+    codes: lockstep::Codes,
+    #[cfg(feature = "log")]
+    frames: super::log::Frames,
+}
+
+impl<E: Renderable<N>, N: Number> Seat<E, N> {
+    /// The servo's loop, one tick a period, until the host closes the pipe.
+    #[cfg(not(feature = "log"))]
+    pub async fn serve(mut self) {
+        loop {
+            pace::next().await;
+            let raw = self.counts.read();
+            if !self.counts.open() {
+                semihosting::process::exit(super::EXIT_DONE);
+            }
+            let output = self.servo.tick(raw);
+            self.codes.write(output.code);
+        }
+    }
+
+    /// The servo's loop, one tick a period, until the host closes the pipe; each tick is measured
+    /// and leaves a frame.
+    #[cfg(feature = "log")]
+    pub async fn serve(mut self) {
+        use super::{log::Frame, meter};
+        loop {
+            let due = pace::next().await;
+            let (interrupt, lockstep) = (meter::INTERRUPT.take(), meter::LOCKSTEP.take());
+            let raw = self.counts.read();
+            if !self.counts.open() {
+                return self.frames.end();
+            }
+            let (output, compute) = meter::tick(raw, |raw| self.servo.tick(raw));
+            self.codes.write(output.code);
+            self.frames.push(Frame { code: output.code, due, compute, interrupt, lockstep });
+        }
+    }
+}
+
+/// Certifies the scene again, builds its servo, and runs it with the task `serve`.
+pub fn run<E, N, S>(
+    program: SceneProgram<E>,
+    serve: fn(Seat<E, N>) -> Result<SpawnToken<S>, SpawnError>,
+) -> !
+where
+    E: Copy + Renderable<N>,
+    N: Number,
+    S: Send,
+{
+    let core = cortex_m::Peripherals::take().expect("the core is taken once");
+    #[cfg(feature = "log")]
+    let scale = super::meter::Scale::calibrate();
+    #[cfg(feature = "log")]
+    defmt::info!("per_instruction={} overhead={}", scale.per_instruction, scale.overhead);
+
+    let certified = match certify(&program) {
+        Ok(certified) => certified,
+        Err(error) => refuse(&error),
+    };
+    let (servo, reload) = match build(&certified, program.transducers) {
+        Ok(built) => built,
+        Err(error) => refuse(&error),
+    };
+    let Ok((counts, codes)) = lockstep::open() else { refuse(&"no host holds the pipes") };
+
+    #[cfg(feature = "log")]
+    let (frames, end) = super::log::frames();
+    let seat = Seat {
+        servo,
+        counts,
+        codes,
+        #[cfg(feature = "log")]
+        frames,
+    };
+    SERVO_EXECUTOR.start(ServoInterrupt).spawn(task(serve(seat)));
+    pace::start(core.SYST, reload);
+
+    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
+    EXECUTOR.init(Executor::new()).run(|spawner| {
+        #[cfg(feature = "log")]
+        spawner.spawn(task(super::log::log(end, scale)));
+        spawner.spawn(task(idle()));
+    })
+}
+
+/// Certifies on the board, and tells the host both certificates and what this one cost.
+fn certify<E: Copy>(program: &SceneProgram<E>) -> Result<Certified<Scene<E>>, StartError> {
+    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
+    let scene = *black_box(program.certified.scene());
+    #[cfg(feature = "log")]
+    let start = super::meter::now();
+    let certified = black_box((program.certify)(scene)).map_err(StartError::Rejected)?;
+    #[cfg(feature = "log")]
+    {
+        let time = super::meter::now().wrapping_sub(start);
+        super::log::certificate("compiler", program.certified.assessment());
+        super::log::certificate("board", certified.assessment());
+        defmt::info!("certify_time={} stack_bytes={}", time, super::meter::stack_used());
+    }
+    Ok(certified)
+}
+
+/// Builds the servo of a certified scene, and the timer's reload value for its period.
+fn build<E: Renderable<N>, N: Number>(
+    certified: &Certified<Scene<E>>,
+    transducers: &Transducers,
+) -> Result<(Servo<E, N>, u32), StartError> {
+    let servo = Servo::new(certified, transducers).map_err(StartError::Unbuildable)?;
+    let reload = pace::reload(certified.scene().timing.period)?;
+    Ok((servo, reload))
+}
+
+/// Ends a program that cannot start.
+fn refuse(reason: &dyn core::fmt::Display) -> ! {
+    #[cfg(feature = "log")]
+    defmt::error!("{}", defmt::Display2Format(reason));
+    #[cfg(not(feature = "log"))]
+    let _ = reason;
+    semihosting::process::exit(EXIT_REFUSED)
+}
+
+/// A task's token; each task here is spawned once, so its place is free.
+fn task<S>(token: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
+    token.unwrap_or_else(|error| refuse(&error))
+}
+
+/// Sleeps until the next interrupt whenever nothing else wants to run. The executor's own way to
+/// sleep, WFE, is no sleep in the emulator: time would pass an instruction at a time.
+#[embassy_executor::task]
+async fn idle() {
+    loop {
+        cortex_m::asm::wfi();
+        yield_now().await;
+    }
+}
+
+/// Lets the other tasks run once.
+pub(super) async fn yield_now() {
+    let mut yielded = false;
+    core::future::poll_fn(|context| {
+        if core::mem::replace(&mut yielded, true) {
+            return core::task::Poll::Ready(());
+        }
+        context.waker().wake_by_ref();
+        core::task::Poll::Pending
+    })
+    .await
+}

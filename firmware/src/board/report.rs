@@ -1,0 +1,72 @@
+//! What a scene's program says about itself on the host: its certificate.
+
+use core::fmt;
+
+use crate::certificate::{Answer, Assessment, Assumptions, Certified, Rule};
+use crate::passivity::interval::Interval;
+use crate::scene::Scene;
+
+/// A certificate as text.
+#[derive(Clone, Copy, Debug)]
+pub struct Report {
+    assessment: Assessment,
+    assumptions: Assumptions,
+}
+
+impl Report {
+    /// Of a certified scene, and of the same scene with its environment as data.
+    pub const fn new<E>(certified: &Certified<Scene<E>>, data: &Scene) -> Self {
+        Self { assessment: *certified.assessment(), assumptions: Assumptions::of(data) }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Assessment { alpha, alpha_coupled, bound, delta, paper, exact, rule, .. } =
+            self.assessment;
+        // Only a certified scene has a report.
+        writeln!(f, "verdict        certified")?;
+        writeln!(f, "rules          paper {}, exact {}", word(paper), word(exact))?;
+        writeln!(f, "judged by      {}", sentence(rule))?;
+        let indices =
+            [("alpha", alpha), ("alpha, coupled", alpha_coupled), ("alpha, bound", bound)];
+        for (name, index) in indices {
+            if let Some(index) = index {
+                writeln!(f, "{name:<14} {}", Enclosure(index))?;
+            }
+        }
+        writeln!(f, "{:<14} {}", "delta", Enclosure(delta))?;
+        if let Some(margin) = self.assessment.margin() {
+            writeln!(f, "margin         {margin:.9} N m s/rad")?;
+        }
+        writeln!(f, "provided that")?;
+        for assumption in self.assumptions.iter() {
+            writeln!(f, "  - {assumption}")?;
+        }
+        Ok(())
+    }
+}
+
+/// An enclosure with all its digits.
+struct Enclosure(Interval);
+
+impl fmt::Display for Enclosure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}, {}] N m s/rad", self.0.lo(), self.0.hi())
+    }
+}
+
+fn word(answer: Answer) -> &'static str {
+    match answer {
+        Answer::Pass => "pass",
+        Answer::Fail => "fail",
+        Answer::Undecided => "undecided",
+    }
+}
+
+fn sentence(rule: Rule) -> &'static str {
+    match rule {
+        Rule::Exact => "the exact rule, alpha with the coupling folded in < delta",
+        Rule::Nonlinear => "equations 17 to 19 with the bound for one-sided and limited scenes",
+    }
+}
