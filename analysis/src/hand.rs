@@ -5,6 +5,8 @@ use crate::device::{Grip, Hand};
 /// A hand's intention: it moves smoothly from one angle to the next, and lets go at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
+    /// What it does, in a few words.
+    pub story: &'static str,
     /// The hand, as long as it holds the device.
     pub hand: Hand,
     /// Times in s, rising, with the angle in rad that the hand wants to be at then.
@@ -21,14 +23,14 @@ impl Script {
     pub fn push_and_let_go() -> Self {
         let path =
             vec![(0.25, 0.0), (0.5, -0.05), (1.25, 0.12), (1.75, 0.12), (2.5, -0.05), (3.25, 0.12)];
-        Self { hand: GRIP, path, release: 3.75 }
+        Self { story: "a hand pushes in and lets go", hand: GRIP, path, release: 3.75 }
     }
 
     /// Swings to and fro and lets go in the middle of a swing, so that the device coasts.
     pub fn swing_and_let_go() -> Self {
         let swing = |n: i32| (0.25 + 0.5 * f64::from(n), if n % 2 == 0 { -0.3 } else { 0.3 });
         let path = std::iter::once((0.0, 0.0)).chain((0..8).map(swing)).collect();
-        Self { hand: GRIP, path, release: 3.5 }
+        Self { story: "a hand swings it and lets go", hand: GRIP, path, release: 3.5 }
     }
 
     /// Where the hand wants to be at a time in s: smoothly from point to point.

@@ -5,5 +5,5 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    analysis::command::run(analysis::command::Arguments::parse())
+    analysis::command::execute(analysis::command::Arguments::parse())
 }

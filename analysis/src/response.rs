@@ -77,6 +77,13 @@ pub struct Filter {
 }
 
 impl Filter {
+    /// Multiplies the state: a linear loop that is scaled as a whole goes on as before.
+    pub fn scale(&mut self, factor: f64) {
+        for value in &mut self.state {
+            *value *= factor;
+        }
+    }
+
     /// One tick.
     pub fn tick(&mut self, input: f64) -> f64 {
         let output = self.numerator[0] * input + self.state[0];

@@ -1,14 +1,24 @@
 //! The program's commands, one module each.
 
+pub mod bench;
 pub mod certify;
+pub mod demo;
+pub mod run;
 
 use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use firmware::certificate::Rejection;
 use thiserror::Error;
 
+use crate::chart::ChartError;
+use crate::emulator::EmulatorError;
 use crate::file::FileError;
+use crate::replay::ReplayError;
+use crate::scenario::ScenarioError;
+use crate::toolchain::{BuildError, SetupError};
 
 /// Certifies haptic scenes, runs them, and shows what they do.
 #[derive(Debug, Parser)]
@@ -28,6 +38,12 @@ pub struct Arguments {
 pub enum Command {
     /// Is a scene safe in every hand, and by how much?
     Certify(certify::Arguments),
+    /// Run a scene tick by tick, on this machine or on the emulated board.
+    Run(run::Arguments),
+    /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
+    Demo(demo::Arguments),
+    /// Measure what a certificate and a tick cost.
+    Bench(bench::Arguments),
 }
 
 /// The answer of a command that could be asked.
@@ -45,15 +61,80 @@ pub enum CommandError {
     /// A bad scene file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// No program and no file of that name.
+    #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
+    NoScene {
+        /// What was asked for.
+        name: String,
+        /// The programs that there are.
+        programs: String,
+    },
+    /// A scene file has no program for the board.
+    #[error(
+        "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
+         of its own, in firmware/src/bin"
+    )]
+    FileOnBoard {
+        /// The scene.
+        scene: String,
+    },
+    /// A program for the board has its transducers built in.
+    #[error(
+        "the program {program} is built for {counts_per_turn} counts a turn and {full_scale} N m \
+         at full scale; change its TRANSDUCERS, or run it on the host"
+    )]
+    OtherTransducers {
+        /// The program.
+        program: &'static str,
+        /// Its encoder's counts a turn.
+        counts_per_turn: f64,
+        /// Its motor's torque at full scale in N m.
+        full_scale: f64,
+    },
+    /// The certificate refuses the scene; exit status 1, for the question was good.
+    #[error("{0}")]
+    Refused(Box<Rejection>),
+    /// The servo cannot be built of the certified scene.
+    #[error(transparent)]
+    Servo(#[from] firmware::servo::BuildError),
+    /// A bad recording.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// The machine cannot build or run programs for the board.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A program does not build.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A run failed.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The emulated board failed.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    /// A file or folder could not be written.
+    #[error("{path}: {source}")]
+    Unwritable {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
 }
 
 /// Runs one command and turns its answer into the exit status.
-pub fn run(arguments: Arguments) -> ExitCode {
+pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
         Command::Certify(arguments) => certify::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Demo(arguments) => demo::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
     };
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
@@ -61,6 +142,10 @@ pub fn run(arguments: Arguments) -> ExitCode {
         // Whoever reads the answer has seen enough of it: `haptic ... | head` is no error.
         Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
+        }
+        Err(error @ CommandError::Refused(_)) => {
+            complain(&error);
+            ExitCode::FAILURE
         }
         Err(error) => {
             complain(&error);

@@ -18,18 +18,20 @@ pub const SCENE: Scene<Environment> = Scene {
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
     // A canceller that reaches its limit is outside the certificate, so it has none: its torque is
-    // 0.021 N m s/rad times the speed, far below full scale.
+    // 0.021 N m s/rad times the speed, below full scale in any ordinary hand.
     torque_limit: None,
 };
 
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-/// The sensor and the motor that it runs on.
+/// The sensor and the motor that it runs on. Full scale is what a speed of 12 rad/s needs: half a
+/// step of the converter keeps a device without friction turning at that torque over the residual,
+/// and the finer the step, the slower.
 pub const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
+    full_scale_torque: 0.25,
 };
 
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.

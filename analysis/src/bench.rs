@@ -1,0 +1,159 @@
+//! What a certificate and a tick cost, measured, each beside what it is compared with.
+
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use firmware::certificate::assess;
+use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use serde::Serialize;
+
+/// One measured figure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// What was measured.
+    pub name: String,
+    /// The figure.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is compared with, in the same unit; `None` where there is nothing.
+    pub against: Option<f64>,
+    /// `value / against`: below 1 is better.
+    pub ratio: Option<f64>,
+    /// Where the other figure comes from.
+    pub source: &'static str,
+}
+
+impl Figure {
+    /// A figure beside another one.
+    pub fn new(
+        name: impl Into<String>,
+        value: f64,
+        unit: &'static str,
+        against: Option<f64>,
+        source: &'static str,
+    ) -> Self {
+        let ratio = against.map(|against| value / against);
+        Self { name: name.into(), value, unit, against, ratio, source }
+    }
+}
+
+/// Environments to judge: low and high degrees, poles near and far, delays. The coefficients are
+/// products of pole pairs, so that the degree says how much there is to do.
+pub fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for degree in 0..=8 {
+        for (radius, delay) in [(0.0, 0), (0.3, 1), (0.7, 2), (0.95, 1), (0.99, 4)] {
+            let mut denominator = vec![1.0];
+            for pole in 0..degree {
+                let sign = if pole % 2 == 0 { 1.0 } else { -1.0 };
+                let pole = sign * radius * (1.0 - 0.05 * f64::from(pole));
+                denominator.push(0.0);
+                for index in (1..denominator.len()).rev() {
+                    denominator[index] -= pole * denominator[index - 1];
+                }
+            }
+            let numerator = denominator.iter().rev().map(|value| 3.0 * value).collect::<Vec<_>>();
+            let rational = Coefficients::new(&numerator).zip(Coefficients::new(&denominator));
+            scenes.extend(rational.map(|(numerator, denominator)| {
+                scene(Rational { numerator, denominator, delay, unit_zeros: 0 })
+            }));
+        }
+    }
+    scenes
+}
+
+fn scene(rational: Rational) -> Scene {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment: Environment::Rational(rational),
+        torque_limit: None,
+    }
+}
+
+/// Rounds of the measurement, of which the median counts.
+const ROUNDS: usize = 31;
+
+/// Median time in microseconds that one verdict takes on one core of this machine.
+pub fn verdict_time(scenes: &[Scene]) -> f64 {
+    let round = || {
+        let start = Instant::now();
+        for scene in scenes {
+            black_box(assess(black_box(scene)));
+        }
+        start.elapsed().as_secs_f64() * 1e6 / scenes.len() as f64
+    };
+    // The first fills caches and is thrown away.
+    round();
+    median((0..ROUNDS).map(|_| round()).collect())
+}
+
+/// The middle of some values; 0 of none.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Milliseconds that certificates add to the compilation of a program: the difference between two
+/// programs that are alike but for one certified scene constant, and for `COPIES` of them, so that
+/// the compiler's own start does not count. `rustc` gets the library as `firmware` lies.
+pub fn compile_time(rustc: &Path, library: &Path, dependencies: &Path) -> std::io::Result<f64> {
+    let folder = tempfile::tempdir()?;
+    let time = |copies: usize| -> std::io::Result<f64> {
+        let source = folder.path().join("scene.rs");
+        std::fs::write(&source, program(copies))?;
+        let mut times = Vec::new();
+        for _ in 0..COMPILATIONS {
+            let start = Instant::now();
+            let status = Command::new(rustc)
+                .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
+                .arg(folder.path().join("scene.rmeta"))
+                .arg(format!("--extern=firmware={}", library.display()))
+                .arg("-L")
+                .arg(format!("dependency={}", dependencies.display()))
+                .arg(&source)
+                .output()?;
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+            if !status.status.success() {
+                let said = String::from_utf8_lossy(&status.stderr).into_owned();
+                return Err(std::io::Error::other(said));
+            }
+        }
+        Ok(median(times))
+    };
+    Ok((time(COPIES)? - time(0)?) / COPIES as f64)
+}
+
+/// Certificates in the program that is compiled.
+const COPIES: usize = 8;
+/// Compilations of each program, of which the median counts.
+const COMPILATIONS: usize = 7;
+
+fn program(copies: usize) -> String {
+    let mut text = String::from(
+        "use firmware::{certificate::Certified, environment::*, scene::*};
+type Wall = OneSided<DamperWall<1>>;
+pub const fn scene(stiffness: f64) -> Scene<Wall> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment: OneSided { face: 0.0, wall: DamperWall { stiffness, damping: 0.01 } },
+        torque_limit: Some(1.0),
+    }
+}
+",
+    );
+    for copy in 0..copies {
+        text += &format!(
+            "pub const C{copy}: Certified<Scene<Wall>> = scene({:?}).certified();\n",
+            10.0 + copy as f64
+        );
+    }
+    text
+}

@@ -1,0 +1,129 @@
+//! Pictures as SVG: black on white, told apart by line style and labelled where they are, so that
+//! they can be read in print.
+
+pub mod growth;
+pub mod nyquist;
+pub mod trace;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use thiserror::Error;
+
+/// Width and height of a picture in pixels.
+pub const SIZE: (u32, u32) = (820, 560);
+
+/// Units of the drawing in a pixel. Coordinates are whole numbers, and a curve on whole pixels
+/// would be jagged.
+const UNITS: u32 = 8;
+
+/// Font of all text; every viewer has one by this name.
+const FONT: &str = "sans-serif";
+/// Size of titles.
+const TITLE: i32 = units(19);
+/// Size of axis labels and of labels in the picture.
+const LABEL: i32 = units(14);
+/// Room around a picture.
+const MARGIN: i32 = units(14);
+/// Room to the right, where the last number of the time axis stands out.
+const MARGIN_RIGHT: i32 = units(24);
+/// Room for the numbers and the name of a horizontal axis.
+const X_LABELS: i32 = units(48);
+/// The same for a vertical axis.
+const Y_LABELS: i32 = units(78);
+/// Grey of what is not allowed.
+const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);
+/// Grey of grid lines.
+const GRID: RGBColor = RGBColor(235, 235, 235);
+
+/// Pixels in units of the drawing.
+const fn units(pixels: i32) -> i32 {
+    pixels * UNITS as i32
+}
+
+/// A black line so many pixels wide.
+fn pen(width: u32) -> ShapeStyle {
+    BLACK.stroke_width(width * UNITS)
+}
+
+/// A broken line: pixels of ink, pixels of gap, width.
+fn broken(
+    points: impl IntoIterator<Item = (f64, f64)>,
+    ink: i32,
+    gap: i32,
+    width: u32,
+) -> DashedLineSeries<std::vec::IntoIter<(f64, f64)>, i32> {
+    let points: Vec<_> = points.into_iter().collect();
+    DashedLineSeries::new(points, units(ink), units(gap), pen(width))
+}
+
+/// Why a picture could not be drawn.
+#[derive(Debug, Error)]
+pub enum ChartError {
+    /// The file could not be written.
+    #[error("{path}: the picture cannot be written: {message}")]
+    Output {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
+    /// The scene has no transfer function to draw.
+    #[error("the environment has no transfer function to draw: {0:?}")]
+    NoTransfer(firmware::passivity::transfer::Unbuildable),
+    /// There is nothing to draw.
+    #[error("a picture needs at least two points")]
+    TooFewPoints,
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+
+/// Draws a picture into a file, or says which file could not be written.
+fn draw(path: &Path, picture: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<(), ChartError> {
+    let output = |message: String| ChartError::Output { path: path.to_owned(), message };
+    let (width, height) = (SIZE.0 * UNITS, SIZE.1 * UNITS);
+    let mut svg = String::new();
+    let drawn = {
+        let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
+        area.fill(&WHITE).and_then(|()| picture(&area)).and_then(|()| area.present())
+    };
+    drawn.map_err(|error| output(error.to_string()))?;
+    // The drawing keeps its units; only its size on the page is in pixels.
+    let drawing = format!("width=\"{width}\" height=\"{height}\" viewBox");
+    let page = format!("width=\"{}\" height=\"{}\" viewBox", SIZE.0, SIZE.1);
+    std::fs::write(path, svg.replacen(&drawing, &page, 1))
+        .map_err(|error| output(error.to_string()))
+}
+
+fn text(size: i32) -> TextStyle<'static> {
+    TextStyle::from((FONT, size)).color(&BLACK)
+}
+
+/// Text whose anchor is at the given side of it.
+fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+    text(LABEL).pos(Pos::new(horizontal, vertical))
+}
+
+/// A range with room on both sides; never empty.
+fn padded(range: Range<f64>, part: f64) -> Range<f64> {
+    let (middle, half) = (0.5 * (range.start + range.end), 0.5 * (range.end - range.start));
+    let least = middle.abs().max(1e-9) * 1e-6;
+    let half = (half * (1.0 + 2.0 * part)).max(least);
+    middle - half..middle + half
+}
+
+/// The range of some values; from zero to zero if there are none.
+fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let mut finite = values.filter(|value| value.is_finite());
+    let first = finite.next().unwrap_or(0.0);
+    finite.fold(first..first, |range, value| range.start.min(value)..range.end.max(value))
+}
+
+/// Numbers on an axis, with no more digits than its ticks need.
+fn axis_number(value: &f64) -> String {
+    if value.abs() < 1e-12 { "0".to_owned() } else { crate::quantity::significant(*value, 4) }
+}

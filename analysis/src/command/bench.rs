@@ -1,0 +1,205 @@
+//! `haptic bench`: what a certificate and a tick cost.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use clap::Args;
+use comfy_table::presets;
+use comfy_table::{CellAlignment, Table};
+
+use super::{Answer, CommandError};
+use crate::bench::{self, Figure};
+use crate::program::{self, Program};
+use crate::progress;
+use crate::quantity::significant;
+use crate::rig::SimulatedDevice;
+use crate::scenario::{Input, play};
+use crate::toolchain::{self, NumberFormat, Toolchain};
+
+/// Arguments of `haptic bench`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Print a JSON list
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Most time in microseconds that a verdict may take on one core.
+const VERDICT_BUDGET: f64 = 20.0;
+/// Published times in microseconds for one verdict by other means.
+const OTHERS: [(&str, f64, &str); 3] = [
+    ("slicot", 390.0, "a SLICOT-based test"),
+    ("roots", 360.0, "companion roots in numpy"),
+    ("lmi", 4000.0, "an LMI solver"),
+];
+/// Most milliseconds that a certificate may add to a compilation.
+const COMPILE_BUDGET: f64 = 50.0;
+/// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
+const CERTIFY_BUDGET: f64 = 3.4e6;
+/// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core,
+/// for the same job without a coupling.
+const C_CONTACT: f64 = 53.0;
+const C_FREE: f64 = 42.0;
+
+/// Ticks of each run in the emulator.
+const TICKS: usize = 5000;
+
+/// Measures and prints.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let mut figures = on_host();
+    for program in program::ALL {
+        on_target(&toolchain, program, &mut figures)?;
+    }
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        serde_json::to_writer(&mut out, &figures).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        writeln!(out, "{}", table(&figures))?;
+    }
+    out.flush()?;
+    Ok(Answer::Yes)
+}
+
+fn on_host() -> Vec<Figure> {
+    let time = bench::verdict_time(&bench::scenes());
+    let figure = |name: &str, against, source| {
+        Figure::new(format!("verdict, median: {name}"), time, "us", Some(against), source)
+    };
+    let mut figures = vec![figure("budget", VERDICT_BUDGET, "budget, one core")];
+    figures.extend(OTHERS.map(|(name, against, source)| figure(name, against, source)));
+    let spinner = progress::spinner("compiling certificates");
+    match compile_time() {
+        Ok(time) => figures.push(Figure::new(
+            "certificate, added to compilation",
+            time,
+            "ms",
+            Some(COMPILE_BUDGET),
+            "budget",
+        )),
+        Err(error) => eprintln!("the compile time of a certificate was not measured: {error}"),
+    }
+    spinner.finish_and_clear();
+    figures
+}
+
+/// Builds the library once and measures what a certified constant adds to a program that uses it.
+fn compile_time() -> io::Result<f64> {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(&cargo)
+        .current_dir(&workspace)
+        .args(["build", "--release", "--package", "firmware", "--lib", "--message-format=json"])
+        .output()?;
+    let library = library(&output.stdout)
+        .ok_or_else(|| io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))?;
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let dependencies = library.parent().map(|folder| folder.join("deps")).unwrap_or_default();
+    bench::compile_time(Path::new(&rustc), &library, &dependencies)
+}
+
+/// The path of the built library in cargo's messages.
+fn library(messages: &[u8]) -> Option<PathBuf> {
+    let messages = String::from_utf8_lossy(messages);
+    let mut artifacts = messages.lines().filter_map(|line| {
+        let message: serde_json::Value = serde_json::from_str(line).ok()?;
+        (message["target"]["name"] == "firmware").then_some(())?;
+        let files = message["filenames"].as_array()?;
+        files.iter().find_map(|file| {
+            file.as_str().filter(|file| file.ends_with(".rlib")).map(PathBuf::from)
+        })
+    });
+    artifacts.next_back()
+}
+
+fn on_target(
+    toolchain: &Toolchain,
+    program: &Program,
+    figures: &mut Vec<Figure>,
+) -> Result<(), CommandError> {
+    let name = program.name;
+    for format in NumberFormat::ALL {
+        let spinner = progress::spinner(&format!("{name} in {format}"));
+        let elf = toolchain.build_scene(name, format)?;
+        let mut controller = program.controller(format, &program.transducers)?;
+        let device = SimulatedDevice::new(
+            program.scene.device,
+            (program.script)(),
+            program.scene.timing.period,
+            program.transducers.counts_per_turn,
+            program.transducers.full_scale_torque,
+        );
+        let outcome =
+            play(Input::Hand(Box::new(device)), controller.as_mut(), Some(&elf), TICKS, || {})?;
+        spinner.finish_and_clear();
+        let Some(board) = outcome.board else { continue };
+        let is_measured_in_c = name == "damper_wall" && format == NumberFormat::F32;
+        let groups = [
+            ("contact", board.contact_instructions, C_CONTACT),
+            ("free", board.free_instructions, C_FREE),
+        ];
+        for (state, stats, c) in groups {
+            let Some(stats) = stats else { continue };
+            figures.push(Figure::new(
+                format!("{name}, {format}: tick, count to code, {state}, most"),
+                stats.max as f64,
+                "instructions",
+                is_measured_in_c.then_some(c),
+                if is_measured_in_c { "plain C at -O3 without a coupling" } else { "" },
+            ));
+        }
+        figures.push(Figure::new(
+            format!("{name}, {format}: tick, whole interrupt, mean"),
+            board.interrupt_instructions.mean,
+            "instructions",
+            None,
+            "",
+        ));
+        if format == NumberFormat::F32 {
+            figures.push(Figure::new(
+                format!("{name}: certificate on the target"),
+                board.certify_instructions as f64,
+                "instructions",
+                Some(CERTIFY_BUDGET),
+                "budget, 20 ms at 170 MHz",
+            ));
+        }
+    }
+    let size = toolchain.size(name)?;
+    for (what, bytes) in [("flash", size.flash()), ("RAM", size.ram())] {
+        figures.push(Figure::new(
+            format!("{name}: {what} without log"),
+            bytes as f64,
+            "bytes",
+            None,
+            "",
+        ));
+    }
+    Ok(())
+}
+
+fn table(figures: &[Figure]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["figure", "value", "unit", "against", "ratio", "which is"]);
+    for figure in figures {
+        let number =
+            |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));
+        table.add_row([
+            figure.name.clone(),
+            number(Some(figure.value)),
+            figure.unit.to_owned(),
+            number(figure.against),
+            number(figure.ratio),
+            figure.source.to_owned(),
+        ]);
+    }
+    for column in [1, 3, 4] {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}

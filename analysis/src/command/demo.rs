@@ -1,0 +1,223 @@
+//! `haptic demo`: the whole of it from one command.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use firmware::certificate::certify;
+use firmware::dac::DacCode;
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::run::FormatArgument;
+use super::{Answer, CommandError};
+use crate::chart::growth::growth;
+use crate::chart::nyquist::nyquist;
+use crate::chart::trace::trace;
+use crate::program::{self, Program};
+use crate::quantity::significant;
+use crate::rig::SimulatedDevice;
+use crate::scenario::{self, Input, Outcome, play};
+use crate::toolchain::{self, Toolchain};
+use crate::verdict::{self, Report, Verdict};
+use crate::{progress, unchecked};
+
+/// Arguments of `haptic demo`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Folder for the pictures
+    #[arg(long, value_name = "DIR", default_value = "target/demo")]
+    pub out: PathBuf,
+    /// Number format of the servo
+    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
+    pub format: FormatArgument,
+    /// Ticks of each run
+    #[arg(long, value_name = "N", default_value_t = super::run::TICKS)]
+    pub ticks: usize,
+}
+
+/// Free mode as the paper draws it (figure 9): damping 1, residual 0.05, the standard coupling.
+const FIGURE_9: Scene = Scene {
+    device: Device { inertia: 1e-3, damping: 1.0, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 2000.0 },
+    environment: Environment::FreeMode { residual: 0.05, delay: 0 },
+    torque_limit: None,
+};
+
+/// The delayed wall as the paper draws it (its last figure, equations 24 to 27).
+const DELAYED_WALL: Scene = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: Environment::DamperWall(Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: None,
+        delay: 1,
+        face: 0.0,
+        one_sided: false,
+    }),
+    torque_limit: None,
+};
+
+/// The same wall with one more sample of delay: past the line.
+const PAST_THE_LINE: Scene = Scene {
+    environment: Environment::DamperWall(Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: None,
+        delay: 2,
+        face: 0.0,
+        one_sided: false,
+    }),
+    ..DELAYED_WALL
+};
+
+/// Sets up, builds, certifies, runs and draws. The answer is no where a scene is not certified or
+/// a code of the emulated board differs from the host's.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let mut out = io::stdout().lock();
+    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let folder = &arguments.out;
+    std::fs::create_dir_all(folder)
+        .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;
+    let mut all_well = true;
+    for program in program::ALL {
+        let report = verdict::judge(program.name, &program.scene);
+        let outcome = emulate(&toolchain, program, arguments)?;
+        write!(out, "{}", section(program, &report, &outcome))?;
+        draw_run(folder, program, &outcome)?;
+        all_well &= report.verdict == Verdict::Certified && outcome.run.difference.is_none();
+    }
+    past_the_line(&mut out, folder)?;
+    nyquist(
+        &folder.join("nyquist_free_mode.svg"),
+        "Free mode: b = 1 N m s/rad, residual 0.05 N m s/rad, T = 1 ms",
+        &FIGURE_9,
+    )?;
+    nyquist(
+        &folder.join("nyquist_delayed_wall.svg"),
+        "Delayed wall: K = 22 N m/rad, B = 0.01 N m s/rad, T = 1 ms",
+        &DELAYED_WALL,
+    )?;
+    writeln!(out, "pictures: {}", folder.display())?;
+    out.flush()?;
+    Ok(if all_well { Answer::Yes } else { Answer::No })
+}
+
+fn emulate(
+    toolchain: &Toolchain,
+    program: &Program,
+    arguments: &Arguments,
+) -> Result<Outcome, CommandError> {
+    let spinner = progress::spinner(&format!("building {}", program.name));
+    let elf = toolchain.build_scene(program.name, arguments.format.into())?;
+    spinner.finish_and_clear();
+    let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
+    let device = SimulatedDevice::new(
+        program.scene.device,
+        (program.script)(),
+        program.scene.timing.period,
+        program.transducers.counts_per_turn,
+        program.transducers.full_scale_torque,
+    );
+    let ticks = arguments.ticks;
+    let bar = progress::bar(ticks as u64, program.name);
+    let stepper = progress::stepper(&bar);
+    let outcome =
+        play(Input::Hand(Box::new(device)), controller.as_mut(), Some(&elf), ticks, stepper)?;
+    bar.finish_and_clear();
+    Ok(outcome)
+}
+
+fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
+    let damping = |value: Option<f64>| {
+        value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
+    };
+    let verdict = format!("{:?}", report.verdict).to_lowercase();
+    let rows = [
+        ("verdict", verdict),
+        ("alpha", damping(report.alpha.hi)),
+        ("delta", damping(Some(report.delta))),
+        ("margin", damping(report.margin)),
+    ];
+    let mut text = format!("{}\n", report.name);
+    for (label, value) in rows {
+        text += &format!("  {label}: {value}\n");
+    }
+    for line in super::run::text(outcome).lines() {
+        text += &format!("  {line}\n");
+    }
+    text + &coasting(program, outcome) + "\n"
+}
+
+/// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
+const AT_REST: f64 = 1e-3;
+
+/// What keeps a device turning that the hand has let go of: nothing in the linear theory, but the
+/// converter rounds, and the simulated device has no friction at all.
+fn coasting(program: &Program, outcome: &Outcome) -> String {
+    let speed = outcome.final_speed.unwrap_or(0.0);
+    let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
+    if speed < AT_REST || ended < (program.script)().release {
+        return String::new();
+    }
+    let full_scale = program.transducers.full_scale_torque;
+    let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    format!(
+        "  still turning at the end: {} rad/s; friction of half a converter step, {} N m, stops it\n",
+        significant(speed, 2),
+        significant(half_step, 2)
+    )
+}
+
+fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), CommandError> {
+    let script = (program.script)();
+    let title = format!("{}: {}", program.name, script.story);
+    let mut picture = scenario::trace(title, program.scene.timing.period, &outcome.run, &script);
+    picture.face = face(&program.scene.environment);
+    trace(&folder.join(format!("{}.svg", program.name)), &picture)?;
+    Ok(())
+}
+
+/// Where a one-sided wall begins, in rad.
+fn face(environment: &Environment) -> Option<f64> {
+    match environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => wall.one_sided.then_some(wall.face),
+        Environment::FreeMode { .. } | Environment::Rational(_) => None,
+    }
+}
+
+fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError> {
+    writeln!(out, "past the line: the same wall, two samples late instead of one")?;
+    match certify(&PAST_THE_LINE) {
+        Ok(_) => writeln!(out, "  certified")?,
+        Err(rejection) => writeln!(out, "  {rejection}")?,
+    }
+    match unchecked::worst_hand(&PAST_THE_LINE) {
+        None => writeln!(out, "  no hand was found in which it oscillates")?,
+        Some(found) => {
+            let per_tick = found.per_second.powf(PAST_THE_LINE.timing.period);
+            writeln!(
+                out,
+                "  without the check: in a passive hand of {} kg m^2 and {} N m/rad a touch grows \
+                 by {} % a tick, a thousandfold in {} ms",
+                significant(found.hand.inertia, 3),
+                found.hand.stiffness,
+                significant(100.0 * (per_tick - 1.0), 3),
+                significant(1e3 * 1e3_f64.ln() / found.per_second.ln(), 3)
+            )?;
+            growth(
+                &folder.join("past_the_line.svg"),
+                "Past the line: what the refused wall would have done",
+                PAST_THE_LINE.timing.period,
+                &found.position,
+            )?;
+        }
+    }
+    writeln!(out)?;
+    Ok(())
+}

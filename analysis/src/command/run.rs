@@ -1,0 +1,325 @@
+//! `haptic run`: a scene, tick by tick, on the host or on the emulated board.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use firmware::encoder::CounterWidth;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+use serde::Serialize;
+
+use super::{Answer, CommandError};
+use crate::controller::{Controller, controller};
+use crate::device::Energy;
+use crate::file;
+use crate::hand::Script;
+use crate::program::{self, Program};
+use crate::progress;
+use crate::quantity::significant;
+use crate::rig::{Difference, SimulatedDevice};
+use crate::scenario::{Input, Outcome, play};
+use crate::toolchain::{self, NumberFormat};
+use crate::{replay, rig};
+
+/// Where a scene runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// On this machine.
+    Host,
+    /// On the emulated board, and on this machine beside it: every code is compared.
+    Qemu,
+}
+
+/// Number format of the servo, as the command line names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatArgument {
+    /// Single-precision floating point.
+    F32,
+    /// The scene's fixed-point format; a scene file's is I8F24.
+    Fixed,
+}
+
+impl From<FormatArgument> for NumberFormat {
+    fn from(format: FormatArgument) -> Self {
+        match format {
+            FormatArgument::F32 => Self::F32,
+            FormatArgument::Fixed => Self::Fixed,
+        }
+    }
+}
+
+/// Arguments of `haptic run`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    /// Where it runs
+    #[arg(long, value_enum, default_value_t = Target::Host)]
+    pub target: Target,
+    /// Recorded counts (column `count`), one a tick, in place of the simulated device
+    #[arg(long, value_name = "FILE.csv")]
+    pub replay: Option<PathBuf>,
+    /// Encoder counts a turn; the program's own if left out
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub counts_per_rev: Option<f64>,
+    /// Motor torque in N m at the converter's largest code; the program's own if left out
+    #[arg(long, value_name = "TORQUE", value_parser = positive)]
+    pub full_scale: Option<f64>,
+    /// Number format of the servo
+    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
+    pub format: FormatArgument,
+    /// Ticks to run; a recording ends with its last row
+    #[arg(long, value_name = "N")]
+    pub ticks: Option<usize>,
+    /// Print a row a tick: tick,count,angle,torque,code,limit
+    #[arg(long, conflicts_with = "json")]
+    pub csv: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
+pub const TICKS: usize = 5000;
+
+/// Torque in N m at full scale for a scene file that has no limit of its own.
+const FULL_SCALE: f64 = 5.0;
+
+/// Counts a turn for a scene file that does not say its encoder's step.
+const COUNTS_PER_TURN: f64 = 65_536.0;
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err(format!("`{text}` must be a finite number greater than 0")),
+    }
+}
+
+/// What is to be run, whatever it came from.
+struct Question {
+    name: String,
+    scene: Scene,
+    transducers: Transducers,
+    script: Script,
+    controller: Box<dyn Controller>,
+    /// The program for the board, where there is one.
+    program: Option<&'static Program>,
+}
+
+/// The answer as JSON.
+#[derive(Serialize)]
+struct Summary<'a> {
+    scene: &'a str,
+    target: &'a str,
+    format: &'a str,
+    ticks: usize,
+    peak_torque: f64,
+    energy: Option<Energy>,
+    codes_equal: Option<usize>,
+    difference: Option<Difference>,
+    instructions: Option<Instructions>,
+}
+
+/// Instructions a tick on the emulated board.
+#[derive(Serialize)]
+struct Instructions {
+    compute_mean: f64,
+    compute_max: u64,
+    interrupt_mean: f64,
+    interrupt_max: u64,
+}
+
+/// Runs a scene and prints what came of it. The answer is no where a code of the emulated board
+/// differs from the host's.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let counts = arguments.replay.as_deref().map(replay::load).transpose()?;
+    let mut question = question(arguments)?;
+    let elf = match arguments.target {
+        Target::Host => None,
+        Target::Qemu => Some(build(&question, arguments)?),
+    };
+    let ticks = match &counts {
+        Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
+        None => arguments.ticks.unwrap_or(TICKS),
+    };
+    let input = match &counts {
+        Some(counts) => Input::Recording(counts),
+        None => Input::Hand(Box::new(SimulatedDevice::new(
+            question.scene.device,
+            question.script.clone(),
+            question.scene.timing.period,
+            question.transducers.counts_per_turn,
+            question.transducers.full_scale_torque,
+        ))),
+    };
+    let bar = progress::bar(ticks as u64, &question.name);
+    let stepper = progress::stepper(&bar);
+    let outcome = play(input, question.controller.as_mut(), elf.as_deref(), ticks, stepper)?;
+    bar.finish_and_clear();
+    print(arguments, &question.name, &outcome)?;
+    Ok(if outcome.run.difference.is_none() { Answer::Yes } else { Answer::No })
+}
+
+fn question(arguments: &Arguments) -> Result<Question, CommandError> {
+    match Program::find(&arguments.scene) {
+        Some(program) => of_program(program, arguments),
+        None => of_file(arguments),
+    }
+}
+
+fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Question, CommandError> {
+    let built_for = program.transducers;
+    let transducers = Transducers {
+        counts_per_turn: arguments.counts_per_rev.unwrap_or(built_for.counts_per_turn),
+        full_scale_torque: arguments.full_scale.unwrap_or(built_for.full_scale_torque),
+        ..built_for
+    };
+    if arguments.target == Target::Qemu && transducers != built_for {
+        return Err(CommandError::OtherTransducers {
+            program: program.name,
+            counts_per_turn: built_for.counts_per_turn,
+            full_scale: built_for.full_scale_torque,
+        });
+    }
+    Ok(Question {
+        name: program.name.to_owned(),
+        scene: program.scene,
+        transducers,
+        script: (program.script)(),
+        controller: program.controller(arguments.format.into(), &transducers)?,
+        program: Some(program),
+    })
+}
+
+fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
+    let name = &arguments.scene;
+    if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
+        let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
+        return Err(CommandError::NoScene { name: name.clone(), programs: programs.join(", ") });
+    }
+    let file = file::load(name)?;
+    let certified =
+        file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let from_step = file.encoder_step.map(|step| std::f64::consts::TAU / step);
+    let transducers = Transducers {
+        counts_per_turn: arguments.counts_per_rev.or(from_step).unwrap_or(COUNTS_PER_TURN),
+        counter: CounterWidth::Bits32,
+        full_scale_torque: arguments.full_scale.or(file.scene.torque_limit).unwrap_or(FULL_SCALE),
+    };
+    let controller = match arguments.format {
+        FormatArgument::F32 => controller::<_, f32>(&certified, &transducers)?,
+        FormatArgument::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
+    };
+    let mut script = Script::push_and_let_go();
+    script.hand = file.hand.unwrap_or(script.hand);
+    let (name, scene) = (file.name, file.scene);
+    Ok(Question { name, scene, transducers, script, controller, program: None })
+}
+
+fn build(question: &Question, arguments: &Arguments) -> Result<PathBuf, CommandError> {
+    let Some(program) = question.program else {
+        return Err(CommandError::FileOnBoard { scene: question.name.clone() });
+    };
+    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let spinner = progress::spinner(&format!("building {}", program.name));
+    let elf = toolchain.build_scene(program.name, arguments.format.into())?;
+    spinner.finish_and_clear();
+    Ok(elf)
+}
+
+fn print(arguments: &Arguments, name: &str, outcome: &Outcome) -> Result<(), CommandError> {
+    let mut out = io::BufWriter::new(io::stdout().lock());
+    if arguments.csv {
+        csv(&mut out, &outcome.run)?;
+    } else if arguments.json {
+        let summary = summary(arguments, name, outcome);
+        serde_json::to_writer(&mut out, &summary).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{}", text(outcome))?;
+    }
+    out.flush()?;
+    if let Some(difference) = &outcome.run.difference {
+        let rig::Difference { tick, count, host, target } = difference;
+        eprintln!(
+            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
+             the target"
+        );
+    }
+    Ok(())
+}
+
+fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summary<'a> {
+    let on_board = outcome.board.is_some();
+    Summary {
+        scene: name,
+        target: if on_board { "qemu" } else { "host" },
+        format: NumberFormat::from(arguments.format).name(),
+        ticks: outcome.run.ticks.len(),
+        peak_torque: outcome.run.peak_torque(),
+        energy: outcome.energy,
+        codes_equal: on_board.then_some(outcome.run.equal),
+        difference: outcome.run.difference,
+        instructions: outcome.board.as_ref().map(|board| Instructions {
+            compute_mean: board.compute_instructions.mean,
+            compute_max: board.compute_instructions.max,
+            interrupt_mean: board.interrupt_instructions.mean,
+            interrupt_max: board.interrupt_instructions.max,
+        }),
+    }
+}
+
+/// The rows of a run as CSV.
+pub fn csv(out: &mut impl Write, run: &rig::Run) -> Result<(), io::Error> {
+    rows(out, run).map_err(|error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    })
+}
+
+fn rows(out: &mut impl Write, run: &rig::Run) -> csv::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(["tick", "count", "angle", "torque", "code", "limit"])?;
+    for (number, tick) in run.ticks.iter().enumerate() {
+        writer.write_record(&[
+            number.to_string(),
+            tick.count.to_string(),
+            tick.angle.to_string(),
+            tick.torque.to_string(),
+            tick.code.to_string(),
+            tick.limit.to_string(),
+        ])?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// What a run gave, for a person.
+pub fn text(outcome: &Outcome) -> String {
+    let run = &outcome.run;
+    let mut rows = vec![
+        ("ticks", run.ticks.len().to_string()),
+        ("peak torque", format!("{} N m", significant(run.peak_torque(), 4))),
+    ];
+    if let Some(energy) = outcome.energy {
+        let millijoule = |joule: f64| format!("{} mJ", significant(1e3 * joule, 4));
+        rows.push(("energy the hand put in", millijoule(energy.given)));
+        rows.push(("energy the hand got back", millijoule(energy.got_back)));
+    }
+    if let Some(board) = &outcome.board {
+        rows.push(("codes equal", format!("{} of {}", run.equal, run.ticks.len())));
+        let (compute, whole) = (&board.compute_instructions, &board.interrupt_instructions);
+        rows.push((
+            "instructions per tick",
+            format!(
+                "{} to {} from count to code, {} on average; {} on average in the whole interrupt",
+                compute.min,
+                compute.max,
+                significant(compute.mean, 3),
+                significant(whole.mean, 3)
+            ),
+        ));
+    }
+    rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
+}

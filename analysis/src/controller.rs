@@ -1,0 +1,55 @@
+//! A servo with its types forgotten, so that programs can hold one of any scene and format.
+
+use firmware::certificate::Certified;
+use firmware::encoder::RawCount;
+use firmware::environment::Renderable;
+use firmware::number::Number;
+use firmware::scene::Scene;
+use firmware::servo::{BuildError, Servo, Transducers};
+use firmware::torque::LimitReason;
+
+/// What a tick gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// Position in counts, extended over the counter's wraps.
+    pub count: i64,
+    /// Angle of the device in rad.
+    pub angle: f64,
+    /// Coupling torque `F` in N m; the motor applies `-F`.
+    pub torque: f64,
+    /// Code of the converter.
+    pub code: u16,
+    /// Why the torque is less than the scene asked for.
+    pub limit: LimitReason,
+}
+
+/// A servo of some certified scene in some number format.
+pub trait Controller {
+    /// One tick with the counter's content.
+    fn tick(&mut self, raw: i32) -> Tick;
+}
+
+impl<E: Renderable<N>, N: Number> Controller for Servo<E, N> {
+    fn tick(&mut self, raw: i32) -> Tick {
+        let output = Servo::tick(self, RawCount::from(raw));
+        Tick {
+            count: self.count(),
+            angle: self.angle_rad(),
+            torque: self.torque_nm(),
+            code: output.code.get(),
+            limit: output.limit,
+        }
+    }
+}
+
+/// Builds the servo of a certified scene in the format `N`.
+pub fn controller<E, N>(
+    scene: &Certified<Scene<E>>,
+    transducers: &Transducers,
+) -> Result<Box<dyn Controller>, BuildError>
+where
+    E: Renderable<N> + 'static,
+    N: Number + 'static,
+{
+    Ok(Box::new(Servo::<E, N>::new(scene, transducers)?))
+}

@@ -1,0 +1,75 @@
+//! The scenes that have a program for the board, as that program's own file says them.
+
+#[path = "../../firmware/src/bin/damper_wall.rs"]
+pub mod damper_wall;
+#[path = "../../firmware/src/bin/delayed_spring.rs"]
+pub mod delayed_spring;
+#[path = "../../firmware/src/bin/free_mode.rs"]
+pub mod free_mode;
+
+use firmware::scene::Scene;
+use firmware::servo::{BuildError, Transducers};
+
+use crate::controller::{Controller, controller};
+use crate::hand::Script;
+use crate::toolchain::NumberFormat;
+
+/// A scene with a program of its own.
+#[derive(Debug)]
+pub struct Program {
+    /// Name of the program.
+    pub name: &'static str,
+    /// Its scene as data.
+    pub scene: Scene,
+    /// The encoder and the motor that it is built for.
+    pub transducers: Transducers,
+    /// What a hand does to show it.
+    pub script: fn() -> Script,
+    build: Build,
+}
+
+/// Builds a program's servo on the host.
+type Build = fn(NumberFormat, &Transducers) -> Result<Box<dyn Controller>, BuildError>;
+
+impl Program {
+    /// Its servo on the host, with other transducers where a recording comes from another encoder.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had with these transducers in this format.
+    pub fn controller(
+        &self,
+        format: NumberFormat,
+        transducers: &Transducers,
+    ) -> Result<Box<dyn Controller>, BuildError> {
+        (self.build)(format, transducers)
+    }
+
+    /// The program of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|program| program.name == name)
+    }
+}
+
+macro_rules! programs {
+    ($($module:ident, $script:path;)*) => {
+        /// All programs, in the order in which they are shown.
+        pub const ALL: &[Program] = &[$(Program {
+            name: stringify!($module),
+            scene: $module::SCENE.as_data(),
+            transducers: $module::TRANSDUCERS,
+            script: $script,
+            build: |format, transducers| match format {
+                NumberFormat::F32 => controller::<_, f32>(&$module::CERTIFIED, transducers),
+                NumberFormat::Fixed => {
+                    controller::<_, $module::Fixed>(&$module::CERTIFIED, transducers)
+                }
+            },
+        }),*];
+    };
+}
+
+programs! {
+    delayed_spring, Script::push_and_let_go;
+    damper_wall, Script::push_and_let_go;
+    free_mode, Script::swing_and_let_go;
+}

@@ -1,0 +1,37 @@
+//! Progress bars: on standard error, only where somebody is watching, only for what takes long.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Steps between two updates of the bar; a step is far shorter than a glance.
+const STRIDE: u64 = 64;
+
+/// A bar over so many steps, with a word for what they are. It draws nothing unless standard error
+/// is a terminal.
+pub fn bar(steps: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(10));
+    // The template is a constant; were it wrong, the plain bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{msg:>18} [{bar:40}] {pos}/{len} {eta}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_message(what.to_owned());
+    bar
+}
+
+/// A moving sign for work that has no steps to count.
+pub fn spinner(what: &str) -> ProgressBar {
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    spinner.set_message(what.to_owned());
+    spinner.enable_steady_tick(std::time::Duration::from_millis(120));
+    spinner
+}
+
+/// Something to call once a step.
+pub fn stepper(bar: &ProgressBar) -> impl FnMut() + '_ {
+    let mut steps = 0;
+    move || {
+        steps += 1;
+        if steps % STRIDE == 0 {
+            bar.inc(STRIDE);
+        }
+    }
+}

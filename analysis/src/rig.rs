@@ -1,0 +1,185 @@
+//! A device with encoder, motor and hand around a servo: one tick after the other.
+
+use firmware::dac::DacCode;
+use firmware::scene::Device;
+
+use crate::controller::{Controller, Tick};
+use crate::device::{Energy, Hand, HeldDevice, Motion, SimulatedEncoder};
+use crate::hand::Script;
+
+/// Where counts come from, and where the converter's codes go to.
+pub trait Plant {
+    /// The counter's content now; `None` at the end of a recording.
+    fn count(&mut self) -> Option<i32>;
+    /// Holds the code until the next tick.
+    fn hold(&mut self, code: u16);
+}
+
+/// A recording: what the converter does changes nothing.
+pub struct Recording<'a> {
+    counts: std::slice::Iter<'a, i32>,
+}
+
+impl<'a> Recording<'a> {
+    /// Plays the counts, one a tick.
+    pub fn new(counts: &'a [i32]) -> Self {
+        Self { counts: counts.iter() }
+    }
+}
+
+impl Plant for Recording<'_> {
+    fn count(&mut self) -> Option<i32> {
+        self.counts.next().copied()
+    }
+
+    fn hold(&mut self, _: u16) {}
+}
+
+/// A simulated device in a hand that follows a script.
+pub struct SimulatedDevice {
+    held: HeldDevice,
+    free: HeldDevice,
+    script: Script,
+    encoder: SimulatedEncoder,
+    period: f64,
+    torque_per_code: f64,
+    ticks: u64,
+    motion: Motion,
+    energy: Energy,
+}
+
+impl SimulatedDevice {
+    /// A device at rest at zero, stepped by `period` s, with an encoder of `counts_per_turn` and a
+    /// motor that gives `full_scale` N m at the converter's largest code.
+    pub fn new(
+        device: Device,
+        script: Script,
+        period: f64,
+        counts_per_turn: f64,
+        full_scale: f64,
+    ) -> Self {
+        Self {
+            held: HeldDevice::new(device, script.hand, period),
+            free: HeldDevice::new(device, Hand::default(), period),
+            script,
+            encoder: SimulatedEncoder::new(counts_per_turn),
+            period,
+            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
+            ticks: 0,
+            motion: Motion::default(),
+            energy: Energy::default(),
+        }
+    }
+
+    /// How the device moves now.
+    pub fn motion(&self) -> Motion {
+        self.motion
+    }
+
+    /// Energy that passed between hand and device so far.
+    pub fn energy(&self) -> Energy {
+        self.energy
+    }
+}
+
+impl Plant for SimulatedDevice {
+    fn count(&mut self) -> Option<i32> {
+        Some(self.encoder.read(self.motion.position))
+    }
+
+    fn hold(&mut self, code: u16) {
+        let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
+        let torque = codes * self.torque_per_code;
+        let start = self.ticks as f64 * self.period;
+        self.ticks += 1;
+        let grip = self.script.grip(start, self.ticks as f64 * self.period);
+        let is_held = start < self.script.release;
+        let device = if is_held { &self.held } else { &self.free };
+        let (motion, work) = device.step(self.motion, torque, grip);
+        self.motion = motion;
+        if is_held {
+            self.energy.add(work);
+        }
+    }
+}
+
+/// Somebody else who runs the same servo on the same counts.
+pub trait Twin {
+    /// Why it could not answer.
+    type Error;
+    /// Its code for a count.
+    fn exchange(&mut self, raw: i32) -> Result<u16, Self::Error>;
+}
+
+/// The first tick whose codes were not equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Difference {
+    /// Which tick, counted from 0.
+    pub tick: usize,
+    /// The counter's content.
+    pub count: i32,
+    /// The host's code.
+    pub host: u16,
+    /// The other's code.
+    pub target: u16,
+}
+
+/// What a run gave.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// The ticks in order; the codes are the host's.
+    pub ticks: Vec<Tick>,
+    /// Ticks whose codes were equal to the twin's.
+    pub equal: usize,
+    /// The first that was not.
+    pub difference: Option<Difference>,
+}
+
+impl Run {
+    /// Largest coupling torque in N m, without sign.
+    pub fn peak_torque(&self) -> f64 {
+        self.ticks.iter().fold(0.0, |peak, tick| tick.torque.abs().max(peak))
+    }
+}
+
+/// Runs so many ticks at most. With a twin it is the twin's codes that move the device, and the
+/// servo here is compared with it. `progress` is told of each tick.
+pub fn run<T: Twin>(
+    plant: &mut dyn Plant,
+    controller: &mut dyn Controller,
+    mut twin: Option<&mut T>,
+    ticks: usize,
+    mut progress: impl FnMut(),
+) -> Result<Run, T::Error> {
+    let mut run = Run::default();
+    while run.ticks.len() < ticks
+        && let Some(count) = plant.count()
+    {
+        let tick = controller.tick(count);
+        let code = match twin.as_mut() {
+            Some(twin) => twin.exchange(count)?,
+            None => tick.code,
+        };
+        if code == tick.code {
+            run.equal += 1;
+        } else if run.difference.is_none() {
+            let (number, host) = (run.ticks.len(), tick.code);
+            run.difference = Some(Difference { tick: number, count, host, target: code });
+        }
+        plant.hold(code);
+        run.ticks.push(tick);
+        progress();
+    }
+    Ok(run)
+}
+
+/// No twin: for runs on the host alone.
+pub enum Alone {}
+
+impl Twin for Alone {
+    type Error = std::convert::Infallible;
+
+    fn exchange(&mut self, _: i32) -> Result<u16, Self::Error> {
+        match *self {}
+    }
+}

@@ -1,0 +1,122 @@
+//! A scene run over counts: on the host, and on the emulated board beside it.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use crate::chart::trace::Trace;
+use crate::controller::Controller;
+use crate::device::Energy;
+use crate::emulator::{Emulator, EmulatorError, Report};
+use crate::hand::Script;
+use crate::rig::{Alone, Plant, Recording, Run, SimulatedDevice, Twin, run};
+
+/// What comes into a servo.
+pub enum Input<'a> {
+    /// A simulated device in a hand.
+    Hand(Box<SimulatedDevice>),
+    /// Recorded counts.
+    Recording(&'a [i32]),
+}
+
+/// What a run gave, with what the emulated board measured if it took part.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The ticks.
+    pub run: Run,
+    /// Energy that passed between hand and device; none where the counts were recorded.
+    pub energy: Option<Energy>,
+    /// Speed of the device at the end, in rad/s; none where the counts were recorded.
+    pub final_speed: Option<f64>,
+    /// What the board measured.
+    pub board: Option<Report>,
+}
+
+/// Why a run ended before its time.
+#[derive(Debug, Error)]
+pub enum ScenarioError {
+    /// The emulated board failed.
+    #[error("at tick {tick}: {source}")]
+    Board {
+        /// The tick, counted from 0.
+        tick: usize,
+        /// How.
+        source: EmulatorError,
+    },
+    /// The emulated board could not be started or did not end.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+}
+
+/// Runs a servo, for so many ticks at most, and the program `elf` on the emulated board beside it,
+/// if there is one. `progress` is told of each tick.
+///
+/// # Errors
+/// Where the emulated board cannot be started, fails, or does not end.
+pub fn play(
+    input: Input<'_>,
+    controller: &mut dyn Controller,
+    elf: Option<&Path>,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<Outcome, ScenarioError> {
+    match input {
+        Input::Hand(mut device) => {
+            let mut outcome = beside(device.as_mut(), controller, elf, ticks, progress)?;
+            outcome.energy = Some(device.energy());
+            outcome.final_speed = Some(device.motion().velocity.abs());
+            Ok(outcome)
+        }
+        Input::Recording(counts) => {
+            beside(&mut Recording::new(counts), controller, elf, ticks, progress)
+        }
+    }
+}
+
+fn beside(
+    plant: &mut dyn Plant,
+    controller: &mut dyn Controller,
+    elf: Option<&Path>,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<Outcome, ScenarioError> {
+    let Some(elf) = elf else {
+        let Ok(run) = run::<Alone>(plant, controller, None, ticks, progress);
+        return Ok(Outcome { run, energy: None, final_speed: None, board: None });
+    };
+    let mut board = Board { emulator: Emulator::boot(elf)?, tick: 0 };
+    let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+    Ok(Outcome { run, energy: None, final_speed: None, board: Some(board.emulator.finish()?) })
+}
+
+/// The emulated board, which knows the tick that it is in.
+struct Board {
+    emulator: Emulator,
+    tick: usize,
+}
+
+impl Twin for Board {
+    type Error = ScenarioError;
+
+    fn exchange(&mut self, raw: i32) -> Result<u16, ScenarioError> {
+        let tick = self.tick;
+        self.tick += 1;
+        self.emulator.exchange(raw).map_err(|source| ScenarioError::Board { tick, source })
+    }
+}
+
+/// What a picture shows of a run: its position, its torque, and where the hand wanted to be.
+pub fn trace(title: String, period: f64, run: &Run, script: &Script) -> Trace {
+    let time = |tick: usize| tick as f64 * period;
+    let held = (0..run.ticks.len()).map(time).take_while(|&time| time < script.release);
+    Trace {
+        title,
+        period,
+        position: run.ticks.iter().map(|tick| tick.angle).collect(),
+        hand: held.map(|time| script.position(time)).collect(),
+        torque: run.ticks.iter().map(|tick| tick.torque).collect(),
+        limit: run.ticks.iter().map(|tick| tick.limit).collect(),
+        release: Some(script.release).filter(|&release| release < time(run.ticks.len())),
+        face: None,
+    }
+}
