@@ -1,0 +1,170 @@
+//! `certify` over all of `f64`: no input makes it panic, none that is not finite passes, and what
+//! it says is consistent.
+
+use firmware::certificate::{Answer, Rule, assess, certify};
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::passivity::interval::Interval;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use proptest::prelude::*;
+
+/// Any bits, the edges of the format, and numbers such as people write.
+fn float() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        1 => any::<u64>().prop_map(f64::from_bits),
+        1 => proptest::num::f64::ANY,
+        1 => prop::sample::select(vec![0.0, -0.0, 1.0, f64::NAN, f64::INFINITY, f64::MAX, 5e-324]),
+        4 => 1e-4..1e3,
+        1 => -1e3..-1e-4,
+    ]
+}
+
+/// Numbers that make sense, so that the rest of the scene is looked at.
+fn positive() -> impl Strategy<Value = f64> {
+    prop_oneof![8 => (-12.0..9.0).prop_map(|x: f64| x.exp2()), 1 => float()]
+}
+
+fn wall() -> impl Strategy<Value = Wall> {
+    let filter = prop::option::of(prop_oneof![0.0..1.0, float()]);
+    let delay = prop_oneof![0_usize..9, any::<usize>()];
+    (float(), float(), filter, delay, float(), any::<bool>()).prop_map(
+        |(stiffness, damping, filter, delay, face, one_sided)| Wall {
+            stiffness,
+            damping,
+            filter,
+            delay,
+            face,
+            one_sided,
+        },
+    )
+}
+
+fn coefficients() -> impl Strategy<Value = Coefficients> {
+    prop::collection::vec(prop_oneof![4 => -2.0..2.0, 1 => float()], 1..=9)
+        .prop_map(|c| Coefficients::new(&c).expect("one to nine coefficients"))
+}
+
+fn environment() -> impl Strategy<Value = Environment> {
+    let small = || prop_oneof![4 => 0_usize..9, 1 => any::<usize>()];
+    let rational = (coefficients(), coefficients(), small(), small());
+    prop_oneof![
+        wall().prop_map(Environment::DelayedSpring),
+        wall().prop_map(Environment::DamperWall),
+        (float(), small()).prop_map(|(residual, delay)| Environment::FreeMode { residual, delay }),
+        (float(), wall()).prop_map(|(residual, wall)| Environment::FreeModeWall { residual, wall }),
+        rational.prop_map(|(numerator, denominator, delay, unit_zeros)| {
+            Environment::Rational(Rational { numerator, denominator, delay, unit_zeros })
+        }),
+    ]
+}
+
+fn scene() -> impl Strategy<Value = Scene> {
+    let device = (positive(), positive(), prop::option::of(positive()))
+        .prop_map(|(inertia, damping, passivity)| Device { inertia, damping, passivity });
+    let timing = (positive(), prop::option::weighted(0.2, positive()))
+        .prop_map(|(period, worst_period)| Timing { period, worst_period });
+    let coupling = prop_oneof![
+        Just(Coupling::Rigid),
+        positive().prop_map(|stiffness| Coupling::Spring { stiffness }),
+    ];
+    (device, timing, coupling, environment(), prop::option::weighted(0.2, positive())).prop_map(
+        |(device, timing, coupling, environment, torque_limit)| Scene {
+            device,
+            timing,
+            coupling,
+            environment,
+            torque_limit,
+        },
+    )
+}
+
+/// Whether every number of the scene is finite.
+fn is_finite(scene: &Scene) -> bool {
+    let wall = |w: &Wall| {
+        let all = [w.stiffness, w.damping, w.filter.unwrap_or(0.0), w.face];
+        all.iter().all(|x| x.is_finite())
+    };
+    let environment = match &scene.environment {
+        Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall(w),
+        Environment::FreeMode { residual, .. } => residual.is_finite(),
+        Environment::FreeModeWall { residual, wall: w } => residual.is_finite() && wall(w),
+        Environment::Rational(r) => {
+            let all = r.numerator.as_slice().iter().chain(r.denominator.as_slice());
+            all.into_iter().all(|x| x.is_finite())
+        }
+    };
+    let stiffness = match scene.coupling {
+        Coupling::Rigid => 1.0,
+        Coupling::Spring { stiffness } => stiffness,
+    };
+    let device = &scene.device;
+    let rest = [
+        device.inertia,
+        device.damping,
+        device.passivity.unwrap_or(1.0),
+        scene.timing.period,
+        scene.timing.worst_period.unwrap_or(1.0),
+        stiffness,
+        scene.torque_limit.unwrap_or(1.0),
+    ];
+    environment && rest.iter().all(|x| x.is_finite())
+}
+
+/// A pass that the numbers beside it do not bear out would be an unsafe machine.
+fn consistent(scene: &Scene) -> Result<(), TestCaseError> {
+    let assessment = assess(scene);
+    let intervals =
+        [assessment.alpha, assessment.alpha_coupled, assessment.bound, assessment.cos_theta];
+    for interval in intervals.into_iter().flatten().chain([assessment.delta]) {
+        prop_assert!(interval.lo() <= interval.hi(), "{interval:?}");
+    }
+    let below =
+        |index: Option<Interval>| index.is_some_and(|index| index.hi() < assessment.delta.lo());
+    if assessment.exact == Answer::Pass {
+        prop_assert!(is_finite(scene) && below(assessment.alpha_coupled), "{assessment:?}");
+    }
+    if assessment.paper == Answer::Pass {
+        let index =
+            if assessment.rule == Rule::Exact { assessment.alpha } else { assessment.bound };
+        prop_assert!(is_finite(scene) && below(index), "{assessment:?}");
+        prop_assert!(matches!(scene.coupling, Coupling::Spring { .. }), "{assessment:?}");
+    }
+    let deciding = match assessment.rule {
+        Rule::Exact => assessment.exact,
+        Rule::Nonlinear => assessment.paper,
+    };
+    prop_assert_eq!(assessment.outcome.is_ok(), deciding == Answer::Pass);
+    if assessment.outcome.is_ok() {
+        prop_assert!(below(assessment.deciding_index()), "{assessment:?}");
+        prop_assert!(assessment.margin().is_some_and(|m| m >= 0.0), "{assessment:?}");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn what_is_said_is_consistent(scene in scene()) {
+        consistent(&scene)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..Default::default() })]
+
+    /// The whole answer, remedies and sentence included.
+    #[test]
+    fn every_scene_gets_an_answer(scene in scene()) {
+        match certify(&scene) {
+            Ok(assessment) => prop_assert!(assessment.outcome.is_ok()),
+            Err(rejection) => {
+                let sentence = rejection.to_string();
+                prop_assert!(sentence.starts_with("rejected: ") || sentence.starts_with("undecided: "));
+                prop_assert!(!rejection.reason().is_empty() && rejection.reason() != "ok");
+                for remedy in rejection.remedies().iter() {
+                    prop_assert!(!remedy.to_string().is_empty());
+                }
+            }
+        }
+    }
+}
