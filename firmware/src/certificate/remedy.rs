@@ -160,6 +160,10 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
         }
         (fails, passes) = (passes, passes * factor);
         octave += 1;
+        // The smallest numbers halve to zero, which has no digits to round to.
+        if passes == 0.0 {
+            return None;
+        }
     }
     let mut i = 0;
     while i < REFINEMENTS && fails != passes {
