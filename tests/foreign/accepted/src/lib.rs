@@ -1,0 +1,24 @@
+//! A knob by somebody who wants the certificate and nothing else.
+#![no_std]
+
+use firmware::certificate::Certified;
+use firmware::environment::DamperWall;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+/// A detent that is computed one sample late.
+pub const DETENT: Certified<Scene<DamperWall<1>>> = Scene {
+    device: Device { inertia: 1e-5, damping: 0.01, passivity: None },
+    timing: Timing { period: 0.0005, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: DamperWall { stiffness: 12.0, damping: 0.004 },
+    torque_limit: None,
+}
+.certified();
+
+/// Largest index in N m s/rad that the detent can have.
+pub const ALPHA: f64 = match DETENT.assessment().alpha_coupled {
+    Some(alpha) => alpha.hi(),
+    None => f64::INFINITY,
+};
+
+const _: () = assert!(ALPHA < 0.01, "a certificate with no margin");

@@ -1,0 +1,17 @@
+//! The same knob with too much damping in the detent.
+#![no_std]
+
+use firmware::certificate::Certified;
+use firmware::environment::DamperWall;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+/// A detent that is computed one sample late.
+pub const DETENT: Certified<Scene<DamperWall<1>>> = Scene {
+    device: Device { inertia: 1e-5, damping: 0.01, passivity: None },
+    timing: Timing { period: 0.0005, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: DamperWall { stiffness: 12.0, damping: 0.008 },
+    torque_limit: None,
+}
+.certified();
+

@@ -1,0 +1,17 @@
+//! A stiffness that is no number.
+use firmware::certificate::Certified;
+use firmware::environment::*;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+const SCENE: Scene<DelayedSpring<1>> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: DelayedSpring { stiffness: f64::NAN },
+    torque_limit: None,
+};
+const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
+
+fn main() {
+    let _ = CERTIFIED;
+}

@@ -1,0 +1,1 @@
+//! Nothing is exported: the programs are in `refused` and `accepted`, the test in `tests`.

@@ -1,0 +1,68 @@
+//! Somebody else's crate uses the library for its certificate alone: no embassy comes with it, a
+//! safe constant builds, an unsafe one does not.
+
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A copy of `foreign/NAME` away from the workspace, with the workspace's versions of everything.
+fn copy(name: &str) -> TempDir {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = here.parent().expect("the workspace is above");
+    let from = here.join("foreign").join(name);
+    let to = tempfile::tempdir().expect("a temporary folder");
+    let manifest = std::fs::read_to_string(from.join("Cargo.toml")).expect("the manifest");
+    let firmware = root.join("firmware");
+    let manifest =
+        manifest.replace("../../../firmware", firmware.to_str().expect("a path in UTF-8"));
+    std::fs::write(to.path().join("Cargo.toml"), manifest).expect("a writable folder");
+    std::fs::copy(root.join("Cargo.lock"), to.path().join("Cargo.lock")).expect("the lock file");
+    std::fs::create_dir(to.path().join("src")).expect("a writable folder");
+    std::fs::copy(from.join("src/lib.rs"), to.path().join("src/lib.rs")).expect("the source");
+    to
+}
+
+fn cargo(folder: &TempDir, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO"))
+        .args(arguments)
+        .arg("--offline")
+        .current_dir(folder.path())
+        // Kept from run to run and shared, so that the firmware is built once.
+        .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("foreign"))
+        .env_remove("RUSTFLAGS")
+        .output()
+        .expect("cargo starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_safe_scene_builds() {
+    let output = cargo(&copy("accepted"), &["build"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+#[test]
+fn an_unsafe_scene_does_not() {
+    let output = cargo(&copy("refused"), &["build"]);
+    let said = text(&output.stderr);
+    assert!(!output.status.success(), "it built: {said}");
+    for part in ["alpha = 0.011 N m s/rad", "delta = 0.01 N m s/rad", "damping <= 0.00699"] {
+        assert!(said.contains(part), "{part:?} is not in: {said}");
+    }
+}
+
+#[test]
+fn no_executor_no_logger_and_no_hardware_come_with_it() {
+    let folder = copy("accepted");
+    for target in ["all", "thumbv7em-none-eabihf"] {
+        let output = cargo(&folder, &["tree", "--target", target, "--edges", "normal,build"]);
+        let tree = text(&output.stdout);
+        assert!(output.status.success() && tree.contains("firmware"), "{}", text(&output.stderr));
+        for unwanted in ["embassy", "cortex-m", "defmt", "stm32", "semihosting"] {
+            assert!(!tree.contains(unwanted), "{unwanted} in\n{tree}");
+        }
+    }
+}
