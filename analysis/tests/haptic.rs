@@ -1,0 +1,180 @@
+//! The program as somebody runs it: exit status, standard output, standard error.
+
+use std::io::{Read, Write};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+const WALL: &str = r#"{"name": "wall", "device": {"inertia": 2.2e-5, "damping": 0.022}, "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type": "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
+
+fn haptic(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_vec();
+    // A program that has seen enough may close its input.
+    let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    output
+}
+
+fn lines(output: &Output) -> Vec<Value> {
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn yes_no_and_a_bad_question_have_their_exit_status() {
+    let status = |scene: &str| haptic(&["certify", "-"], scene.as_bytes()).status.code();
+    assert_eq!(status(WALL), Some(0));
+    assert_eq!(status(&WALL.replace("0.01", "0.02")), Some(1));
+    // The wall at the line itself: never a yes.
+    assert_eq!(status(&WALL.replace("\"stiffness\": 22", "\"stiffness\": 24")), Some(1));
+    assert_eq!(status(&WALL.replace("0.001", "0")), Some(2));
+    assert_eq!(status(""), Some(2));
+    assert_eq!(haptic(&["certify", "no such file"], b"").status.code(), Some(2));
+    assert_eq!(haptic(&["certify"], b"").status.code(), Some(2));
+    assert_eq!(haptic(&["conjure"], b"").status.code(), Some(2));
+}
+
+#[test]
+fn json_has_the_fields_of_the_contract_and_nothing_else_is_printed() {
+    let output = haptic(&["certify", "--json", "-"], WALL.as_bytes());
+    assert!(output.stderr.is_empty());
+    let [answer] = &lines(&output)[..] else { panic!("one object") };
+    let keys = answer.as_object().unwrap().keys().map(String::as_str).collect::<Vec<_>>();
+    let mut fields = [
+        "name",
+        "verdict",
+        "rules",
+        "reason",
+        "alpha",
+        "alpha_coupled",
+        "delta",
+        "margin",
+        "theta",
+        "assumptions",
+        "message",
+        "remedies",
+    ];
+    fields.sort_unstable();
+    assert_eq!(keys, fields);
+    assert_eq!(answer["verdict"], "certified");
+    assert_eq!(answer["rules"], serde_json::json!({"paper": "pass", "exact": "pass"}));
+    assert_eq!(answer["reason"], "ok");
+    assert_eq!(answer["delta"], 0.022);
+    let alpha = |end: &str| answer["alpha"][end].as_f64().unwrap();
+    assert!(alpha("lo") <= 0.021 && 0.021 <= alpha("hi") && alpha("hi") - alpha("lo") < 1e-14);
+    assert!((answer["margin"].as_f64().unwrap() - 0.001).abs() < 1e-14);
+    assert!((answer["theta"].as_f64().unwrap() - std::f64::consts::PI).abs() < 1e-9);
+    assert!(answer["assumptions"].as_array().unwrap().len() >= 3);
+    assert_eq!(answer["remedies"], serde_json::json!([]));
+}
+
+#[test]
+fn an_index_that_does_not_exist_is_null() {
+    let spring = WALL
+        .replace("damper-wall", "delayed-spring")
+        .replace("\"damping\": 0.01, ", "")
+        .replace("\"stiffness\": 22", "\"stiffness\": -22");
+    let output = haptic(&["certify", "--json", "-"], spring.as_bytes());
+    assert_eq!(output.status.code(), Some(1));
+    let answer = &lines(&output)[0];
+    assert_eq!(answer["reason"], "negative_residue");
+    assert_eq!(answer["alpha"], serde_json::json!({"lo": null, "hi": null}));
+}
+
+#[test]
+fn a_batch_answers_line_for_line_in_order() {
+    let scene = |index: usize| WALL.replace("\"wall\"", &format!("\"scene {index}\""));
+    let mut input: Vec<Vec<u8>> = (0..3000).map(|index| scene(index).into_bytes()).collect();
+    input[7] = b"nonsense".to_vec();
+    input[8] = b"".to_vec();
+    input[9] = b"{\"name\": \"\xff\"}".to_vec();
+    input[10] = vec![b'x'; 200_000];
+    let output = haptic(&["certify", "--batch", "-"], &input.join(&b'\n'));
+    assert_eq!(output.status.code(), Some(0));
+    let answers = lines(&output);
+    assert_eq!(answers.len(), input.len());
+    for (index, answer) in answers.iter().enumerate() {
+        if (7..=10).contains(&index) {
+            let error = answer["error"].as_str().unwrap();
+            assert!(error.starts_with(&format!("<stdin>:{}:", index + 1)), "{error}");
+            assert!(error.len() < 300);
+        } else {
+            assert_eq!(answer["name"], format!("scene {index}"));
+        }
+    }
+}
+
+#[test]
+fn a_batch_answers_before_its_input_ends() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .args(["certify", "--batch", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let mut stdout = child.stdout.take().unwrap();
+    for _ in 0..3 {
+        stdin.write_all(format!("{WALL}\n").as_bytes()).unwrap();
+        let mut byte = [0];
+        while byte != *b"\n" {
+            stdout.read_exact(&mut byte).unwrap();
+        }
+    }
+    // Whoever read the answers goes away: no complaint.
+    drop(stdout);
+    drop(stdin.write_all(format!("{WALL}\n").repeat(10).as_bytes()));
+    drop(stdin);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn a_recording_runs_on_the_host_tick_by_tick() {
+    let folder = tempfile::tempdir().unwrap();
+    let recording = folder.path().join("counts.csv");
+    let counts: String = (0..200).map(|tick| format!("{},{}\n", tick, tick * 5)).collect();
+    std::fs::write(&recording, format!("time,count\n{counts}")).unwrap();
+    let path = recording.to_str().unwrap();
+    let output = haptic(&["run", "damper_wall", "--replay", path, "--csv"], b"");
+    assert_eq!(output.status.code(), Some(0));
+    let mut reader = csv::Reader::from_reader(&output.stdout[..]);
+    assert_eq!(
+        reader.headers().unwrap(),
+        vec!["tick", "count", "angle", "torque", "code", "limit"]
+    );
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 200);
+    assert_eq!((&rows[199][0], &rows[199][1]), ("199", "995"));
+    // Deeper into the wall the motor pushes harder back.
+    assert!(rows[199][4].parse::<u16>().unwrap() < rows[100][4].parse().unwrap());
+    std::fs::write(&recording, "time,count\n0,1\n1,many\n").unwrap();
+    let bad = haptic(&["run", "damper_wall", "--replay", path], b"");
+    assert_eq!(bad.status.code(), Some(2));
+    let said = String::from_utf8(bad.stderr).unwrap();
+    assert!(said.contains(":3: column `count`: `many`"), "{said}");
+}
+
+#[test]
+fn scene_files_and_programs_run_on_the_host() {
+    for arguments in [&["run", "-"][..], &["run", "free_mode", "--format", "fixed"]] {
+        let output = haptic(arguments, WALL.as_bytes());
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(String::from_utf8(output.stdout).unwrap().starts_with("ticks: 5000\n"));
+    }
+    // Refused, unknown, and a file where a program is needed.
+    let rejected = WALL.replace("0.01", "0.02");
+    assert_eq!(haptic(&["run", "-"], rejected.as_bytes()).status.code(), Some(1));
+    assert_eq!(haptic(&["run", "nothing"], b"").status.code(), Some(2));
+    assert_eq!(haptic(&["run", "-", "--target", "qemu"], WALL.as_bytes()).status.code(), Some(2));
+    let other = ["run", "damper_wall", "--target", "qemu", "--counts-per-rev", "4096"];
+    assert_eq!(haptic(&other, b"").status.code(), Some(2));
+}

@@ -1,0 +1,301 @@
+//! Scene files: what is read, what is refused and with which words, and that nothing panics.
+
+use analysis::file::{self, FileError, Format, SceneFile};
+use firmware::environment::{Environment, Wall};
+use firmware::scene::Coupling;
+use proptest::prelude::*;
+
+const WALL: &str = r#"name = "delayed wall"
+[device]
+inertia = 2.2e-5
+damping = 0.022
+[servo]
+period = 0.001
+[coupling]
+stiffness = 44.0
+[environment]
+type = "damper-wall"
+stiffness = 22.0
+damping = 0.01
+delay = 1
+"#;
+
+const FULL: &str = r#"{
+  "name": "everything",
+  "device": {"inertia": 2.2e-5, "damping": 0.022, "passivity": 0.021},
+  "servo": {"period": 1e-3, "worst_period": 2e-3},
+  "coupling": {"stiffness": 20},
+  "environment": {"type": "free-mode-wall", "residual": 0.01, "stiffness": 3, "damping": -0.001,
+                  "delay": 2, "filter": 0.5, "face": 0.1, "one_sided": true},
+  "simulation": {"samples": 10, "position": 0.1, "velocity": -1,
+                 "torque_sine": {"amplitude": 1, "omega": 30, "phase": 0}},
+  "human": {"inertia": 1e-4, "damping": 0, "stiffness": 2},
+  "limits": {"torque": 0.5, "encoder_step": 1e-4}
+}"#;
+
+fn toml(text: &str) -> Result<SceneFile, FileError> {
+    file::parse("scene.toml", Format::Toml, text)
+}
+
+fn json(text: &str) -> Result<SceneFile, FileError> {
+    file::parse("scene.json", Format::Json, text)
+}
+
+/// The wall with one line replaced; what comes out must start with the file and the line.
+fn refused(line: &str, replacement: &str, place: &str, words: &[&str]) {
+    let text = WALL.replacen(line, replacement, 1);
+    assert_ne!(text, WALL, "{line} is not in the file");
+    let message = toml(&text).expect_err(&text).to_string();
+    assert!(message.starts_with(&format!("scene.toml:{place}: ")), "{message}");
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in {message:?}");
+    }
+}
+
+#[test]
+fn both_formats_say_the_same() {
+    let wall = toml(WALL).unwrap();
+    assert_eq!(wall.name, "delayed wall");
+    assert_eq!(wall.scene.coupling, Coupling::Spring { stiffness: 44.0 });
+    let expected = Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: None,
+        delay: 1,
+        face: 0.0,
+        one_sided: false,
+    };
+    assert_eq!(wall.scene.environment, Environment::DamperWall(expected));
+    let same = r#"{"name": "delayed wall", "device": {"inertia": 2.2e-5, "damping": 0.022},
+        "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type":
+        "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
+    assert_eq!(json(same).unwrap(), wall);
+}
+
+#[test]
+fn every_table_is_read() {
+    let full = json(FULL).unwrap();
+    assert_eq!(full.scene.torque_limit, Some(0.5));
+    assert_eq!(full.encoder_step, Some(1e-4));
+    assert_eq!(full.scene.timing.worst_period, Some(2e-3));
+    assert_eq!(full.hand.unwrap().stiffness, 2.0);
+    assert_eq!(full.simulation.unwrap().samples, 10);
+    let rational = WALL.replace("damper-wall", "rational").replace(
+        "stiffness = 22.0\ndamping = 0.01",
+        "numerator = [0, 1, -1]\ndenominator = [2, 0]\nunit_zeros = 1",
+    );
+    let Environment::Rational(rational) = toml(&rational).unwrap().scene.environment else {
+        panic!("not rational");
+    };
+    assert_eq!(rational.numerator.as_slice(), [1.0, -1.0]);
+    assert_eq!((rational.delay, rational.unit_zeros), (1, 1));
+}
+
+#[test]
+fn without_a_coupling_the_connection_is_rigid() {
+    let rigid = WALL.replace("[coupling]\nstiffness = 44.0\n", "");
+    assert_eq!(toml(&rigid).unwrap().scene.coupling, Coupling::Rigid);
+}
+
+#[test]
+fn a_bad_number_is_named_with_its_line_value_and_bound() {
+    let positive = "a finite number greater than 0";
+    refused("period = 0.001", "period = 0", "6:10", &["`servo.period` = 0 ", positive, " s"]);
+    refused("period = 0.001", "period = -1e-3", "6:10", &["-1e-3", positive]);
+    refused("period = 0.001", "period = nan", "6:10", &["nan", positive]);
+    refused("period = 0.001", "period = inf", "6:10", &["inf", positive]);
+    refused("period = 0.001", "period = 1e999", "6:10", &["1e999", positive]);
+    refused("period = 0.001", "period = \"1 ms\"", "6:10", &["\"1 ms\" is a string", positive]);
+    refused("inertia = 2.2e-5", "inertia = 0.0", "3:11", &["`device.inertia`", "kg m^2"]);
+    refused("damping = 0.022", "damping = -0.022", "4:11", &["`device.damping`", "or more"]);
+    refused("stiffness = 44.0", "stiffness = 0", "8:13", &["`coupling.stiffness`", positive]);
+    let delay = "a whole number from 0 to 8";
+    refused("delay = 1", "delay = 9", "13:9", &["`environment.delay` = 9", delay]);
+    refused("delay = 1", "delay = 0.5", "13:9", &["0.5", delay]);
+    refused("delay = 1", "delay = -1", "13:9", &["-1", delay]);
+    refused("delay = 1", "delay = true", "13:9", &["true is true or false", delay]);
+    refused(
+        "delay = 1",
+        "delay = 1\nfilter = 1.0",
+        "14:10",
+        &["`environment.filter`", "less than 1"],
+    );
+    refused(
+        "period = 0.001",
+        "period = 0.001\nworst_period = 0.0005",
+        "7:16",
+        &["shorter", "0.001"],
+    );
+}
+
+#[test]
+fn negative_springs_and_dampers_are_the_certificates_to_judge() {
+    for (line, negative) in
+        [("stiffness = 22.0", "stiffness = -22"), ("damping = 0.01", "damping = -1")]
+    {
+        assert!(toml(&WALL.replacen(line, negative, 1)).is_ok(), "{negative}");
+    }
+}
+
+#[test]
+fn a_missing_key_is_named_with_the_line_of_its_table() {
+    refused("name = \"delayed wall\"\n", "", "1:1", &["`name` is missing"]);
+    refused("inertia = 2.2e-5\n", "", "2:1", &["`device.inertia` is missing", "kg m^2"]);
+    refused("period = 0.001\n", "", "5:1", &["`servo.period` is missing"]);
+    refused("delay = 1\n", "", "9:1", &["`environment.delay` is missing", "from 0 to 8"]);
+    refused("[servo]\nperiod = 0.001\n", "", "1:1", &["`servo` is missing"]);
+    refused("type = \"damper-wall\"\n", "", "9:1", &["`environment.type`", "\"free-mode\""]);
+}
+
+#[test]
+fn an_unknown_key_is_named_with_what_was_meant() {
+    refused("period =", "perod =", "6:1", &["`servo.perod`", "`period` is"]);
+    refused(
+        "delay = 1",
+        "delay = 1\ncolour = 3",
+        "14:1",
+        &["`environment.colour`", "its keys are type"],
+    );
+    refused("delay = 1", "delay = 1\n[colour]", "14:2", &["`colour`"]);
+    refused("\"damper-wall\"", "\"wall\"", "10:8", &["\"wall\"", "\"damper-wall\""]);
+    let spring = WALL.replace("damper-wall", "delayed-spring");
+    assert!(toml(&spring).unwrap_err().to_string().contains("a delayed-spring [environment]"));
+    let chain = WALL.replace("inertia = 2.2e-5", "[[device.mass]]\ninertia = 1");
+    assert!(toml(&chain).unwrap_err().to_string().contains("more than a rigid body"));
+}
+
+#[test]
+fn a_key_is_set_once() {
+    refused("period = 0.001", "period = 0.001\nperiod = 0.001", "7:1", &["`period`", "twice"]);
+    let twice = FULL.replacen("\"name\"", "\"name\": 1, \"name\"", 1);
+    assert!(json(&twice).unwrap_err().to_string().contains("twice"));
+}
+
+#[test]
+fn polynomials_are_bounded() {
+    let with = |numerator: &str, denominator: &str, zeros: u32| {
+        let text = format!(
+            r#"{{"name": "r", "device": {{"inertia": 1, "damping": 1}}, "servo": {{"period": 1}},
+            "environment": {{"type": "rational", "numerator": {numerator},
+            "denominator": {denominator}, "unit_zeros": {zeros}}}}}"#
+        );
+        json(&text).map(|_| ()).map_err(|error| error.to_string())
+    };
+    assert_eq!(with("[0]", "[1]", 0), Ok(()));
+    assert_eq!(with("[1,2,3,4,5,6,7,8,9]", "[0,0,1]", 0), Ok(()));
+    assert!(with("[]", "[1]", 0).unwrap_err().contains("1 to 9 finite numbers"));
+    assert!(with("[1]", "[0,0]", 0).unwrap_err().contains("`environment.denominator`"));
+    assert!(with("[1,2,3,4,5,6,7,8,9,10]", "[1]", 0).unwrap_err().contains("numerator"));
+    assert!(with("[1, \"a\"]", "[1]", 0).unwrap_err().contains("numerator[1]"));
+    assert!(with("[1, 1e999]", "[1]", 0).unwrap_err().contains("numerator[1]"));
+    assert!(with("[1,2]", "[1]", 8).unwrap_err().contains("unit_zeros"));
+}
+
+#[test]
+fn json_is_json_and_nothing_more() {
+    for text in ["", "[1]", "nul", "{\"a\": 1,}", "{a: 1}", "{} {}", "{\"a\" 1}", "// x\n{}"] {
+        assert!(json(text).is_err(), "{text}");
+    }
+    assert!(json(&"[".repeat(100_000)).is_err());
+    assert!(toml(&format!("a = {}", "[".repeat(100_000))).is_err());
+    assert!(toml(&format!("{}b = 1", "a.".repeat(100_000))).is_err());
+}
+
+#[test]
+fn messages_stay_short_whatever_the_file() {
+    let long = "x".repeat(1_000_000);
+    let texts = [
+        format!("name = \"{long}\"\n{long}"),
+        format!("{long} = 1"),
+        format!("[{long}]"),
+        WALL.replace("22.0", &format!("\"{long}\"")),
+        WALL.replace("damper-wall", &long),
+        WALL.replace("delay = 1", &format!("delay = 1\n{long} = 1")),
+    ];
+    for text in texts {
+        let error = toml(&text).unwrap_err();
+        assert!(error.to_string().len() < 600 && error.report(false).len() < 1200, "{error}");
+    }
+}
+
+#[test]
+fn the_report_shows_the_line() {
+    let error = toml(&WALL.replace("period = 0.001", "period = 0")).unwrap_err();
+    let report = error.report(false);
+    assert!(report.contains("6 | period = 0") && report.contains('^'), "{report}");
+}
+
+/// A scene file with a few pieces cut out, doubled, or written over.
+fn mutated(text: &'static str) -> impl Strategy<Value = String> {
+    let edit = (any::<prop::sample::Index>(), 0..12_usize, ".{0,6}", any::<bool>());
+    prop::collection::vec(edit, 1..6).prop_map(move |edits| {
+        let mut characters: Vec<char> = text.chars().collect();
+        for (at, length, new, doubles) in edits {
+            let start = at.index(characters.len() + 1);
+            let end = (start + length).min(characters.len());
+            let old: String = characters[start..end].iter().collect();
+            let new = if doubles { old.repeat(2) } else { new };
+            characters.splice(start..end, new.chars());
+        }
+        characters.into_iter().collect()
+    })
+}
+
+/// Reads a text in both formats and judges what is a scene: none of it may panic.
+fn survive(text: &str) {
+    for format in [Format::Toml, Format::Json] {
+        match file::parse("scene", format, text) {
+            Ok(file) => drop(analysis::verdict::judge(&file.name, &file.scene)),
+            Err(error) => {
+                assert!(error.line >= 1 && error.column >= 1);
+                assert!(error.to_string().starts_with("scene:"));
+                error.report(false);
+            }
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read_or_refused(text in "\\PC{0,200}") {
+        survive(&text);
+    }
+
+    #[test]
+    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        match file::text_of("scene", 1, &bytes) {
+            Ok(text) => survive(text),
+            Err(error) => prop_assert!(error.to_string().contains("UTF-8")),
+        }
+    }
+
+    #[test]
+    fn pieces_of_the_grammar_are_read_or_refused(
+        pieces in prop::collection::vec(
+            prop::sample::select(vec![
+                "name", "=", "\"a\"", "[", "]", "[[", "]]", "{", "}", "device", ".", "inertia", "1", "-",
+                "1e400", "nan", ",", ":", "\n", "environment", "type", "\"rational\"", "'", "\"\"\"", "\\u0000",
+                "true", "null", "1979-05-27", "#", "\u{feff}", "é",
+            ]),
+            0..60,
+        )
+    ) {
+        survive(&pieces.concat());
+    }
+
+    #[test]
+    fn a_damaged_scene_is_read_or_refused(toml in mutated(WALL), json in mutated(FULL)) {
+        survive(&toml);
+        survive(&json);
+    }
+
+    #[test]
+    fn every_finite_number_is_read_as_it_is(value in any::<f64>().prop_filter("finite", |v| v.is_finite())) {
+        let text = WALL.replace("stiffness = 22.0", &format!("stiffness = {value:?}"));
+        let Environment::DamperWall(wall) = toml(&text).unwrap().scene.environment else {
+            panic!("not a wall");
+        };
+        prop_assert_eq!(wall.stiffness.to_bits(), value.to_bits());
+        survive(&text);
+    }
+}
