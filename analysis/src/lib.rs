@@ -1,25 +1,35 @@
-//! Host side of the haptic servo.
+//! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
-//! The modules are in the order in which a question passes through them: a [`file`] says what is
-//! asked, [`verdict`] what is answered; [`command`] is the program in front of both.
+//! The modules are in the order in which a question passes through them: a [`mod@file`] says what
+//! is asked, [`verdict`] what the certificate answers, [`batch`] both for many scenes.
+
+pub mod command;
+
+pub mod file;
 
 pub mod batch;
-pub mod bench;
-pub mod chart;
-pub mod command;
+pub mod verdict;
+
+// What runs: a program's scene in a servo, with a simulated device or a recording around it.
 pub mod controller;
 pub mod device;
-pub mod emulator;
-pub mod file;
 pub mod hand;
-pub mod minimum;
 pub mod program;
-pub mod progress;
-pub mod quantity;
 pub mod replay;
-pub mod response;
 pub mod rig;
 pub mod scenario;
+
+// The board, emulated, and what builds for it.
+pub mod emulator;
 pub mod toolchain;
+
+// What scenes would do that are refused.
+pub mod response;
 pub mod unchecked;
-pub mod verdict;
+
+// What is shown and measured.
+pub mod bench;
+pub mod chart;
+pub mod minimum;
+pub mod progress;
+pub mod quantity;
