@@ -18,11 +18,9 @@ fn main() {
     }
     println!("cargo:rerun-if-changed={}", map.display());
     println!("cargo:rustc-link-search={}", root.display());
-    for kind in ["bins", "examples"] {
-        println!("cargo:rustc-link-arg-{kind}=--nmagic");
-        println!("cargo:rustc-link-arg-{kind}=-Tlink.x");
-        if env::var_os("CARGO_FEATURE_LOG").is_some() {
-            println!("cargo:rustc-link-arg-{kind}=-Tdefmt.x");
-        }
+    println!("cargo:rustc-link-arg-bins=--nmagic");
+    println!("cargo:rustc-link-arg-bins=-Tlink.x");
+    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+        println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
     }
 }

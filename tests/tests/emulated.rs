@@ -3,19 +3,24 @@
 //! Fails if a single DAC code differs, if a certificate differs by a bit between compiler, host
 //! and board, or if the board drops a frame or misses a tick.
 
+use std::path::Path;
 use std::sync::LazyLock;
+use std::time::Duration;
 
-use analysis::emulator::{Emulator, Report};
+use analysis::emulator::{Emulator, EmulatorError, Judge, Report};
 use analysis::toolchain::{NumberFormat, Toolchain, prepare};
-use firmware::certificate::Certified;
+use firmware::board::question::{Ends, Reply};
+use firmware::certificate::{Certified, assess};
 use firmware::encoder::RawCount;
 use firmware::environment::Renderable;
 use firmware::number::Number;
+use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use firmware::servo::{Servo, Transducers};
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use tests::vectors;
 
 // The programs' own files: their scenes have no second copy.
 #[path = "../../firmware/src/bin/damper_wall.rs"]
@@ -79,6 +84,10 @@ where
     report
 }
 
+fn bits(index: Option<Interval>) -> Ends {
+    index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
+}
+
 /// What holds for every run.
 fn check<E>(report: &Report, certified: &Certified<Scene<E>>) {
     assert_eq!((report.ticks, report.dropped, report.overruns), (TICKS as u64, 0, 0));
@@ -86,14 +95,73 @@ fn check<E>(report: &Report, certified: &Certified<Scene<E>>) {
     assert_eq!(report.compute_instructions.count, TICKS as u64);
     assert!(report.interrupt_instructions.min > report.compute_instructions.min);
     let assessment = certified.assessment();
-    let bits = |index: Option<firmware::passivity::interval::Interval>| {
-        index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
-    };
     for found in [report.board, report.compiler] {
         assert_eq!(found.alpha, bits(assessment.alpha));
         assert_eq!(found.alpha_coupled, bits(assessment.alpha_coupled));
     }
     assert!(report.board.alpha.is_some());
+    // Judging may not need more instructions than 20 ms of a core at 170 MHz.
+    assert!(report.certify_instructions <= 3_400_000, "{}", report.certify_instructions);
+    assert!(report.stack_used < report.stack_size, "the stack was used up");
+}
+
+/// The board's judgement of all reference cases is that of the host, bit for bit.
+#[test]
+fn the_board_judges_as_the_host_does() {
+    let elf = TOOLCHAIN.build_judge().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = Judge::boot(&elf).unwrap();
+    let mut most = 0;
+    for case in vectors::all() {
+        let scene = case.scene();
+        let reply = board.judge(&scene).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        let found = assess(&scene);
+        let expected = Reply {
+            alpha: bits(found.alpha),
+            alpha_coupled: bits(found.alpha_coupled),
+            paper: found.paper,
+            exact: found.exact,
+            instructions: reply.instructions,
+        };
+        assert_eq!(reply, expected, "{}", case.name);
+        assert!(reply.instructions > 0);
+        most = most.max(reply.instructions);
+    }
+    board.finish().unwrap();
+    println!("instructions of the longest judgement: {most}");
+}
+
+/// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.
+#[test]
+fn programs_without_a_log_fit_the_smallest_board() {
+    for scene in TOOLCHAIN.scenes().unwrap() {
+        let sizes = TOOLCHAIN.size(&scene).unwrap_or_else(|error| panic!("{error}"));
+        println!("{scene} {sizes:?}");
+        assert!(sizes.text > 0 && sizes.flash() <= 128 << 10);
+        assert!(sizes.bss > 0 && sizes.ram() <= 22 << 10);
+    }
+}
+
+/// A program that never answers is an error after a while, and not a wait for ever.
+#[test]
+fn a_board_that_does_nothing_is_an_error() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    // Stack pointer, reset vector, and a branch to itself.
+    let image = [0, 0x10, 0, 0x20, 9, 0, 0, 0, 0xfe, 0xe7];
+    std::fs::write(file.path(), image).unwrap();
+    let mut board = Emulator::boot(file.path()).unwrap().with_patience(Duration::from_millis(500));
+    let error = board.exchange(0).unwrap_err();
+    assert!(matches!(error, EmulatorError::Silent { .. }), "{error}");
+}
+
+/// A program that crashes is an error at once.
+#[test]
+fn a_board_that_crashes_is_an_error() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let mut board = Emulator::boot(file.path()).unwrap();
+    let error = board.exchange(0).unwrap_err();
+    assert!(matches!(error, EmulatorError::Ended { .. }), "{error}");
+    let missing = Emulator::boot(Path::new("no/such/program"));
+    assert!(matches!(missing, Err(EmulatorError::Program { .. })));
 }
 
 macro_rules! emulated {

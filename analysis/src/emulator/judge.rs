@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use firmware::board::question::{Question, Reply, ReplyWords, ask, reply};
-use firmware::environment::Rational;
 use firmware::scene::Scene;
 
 use super::{EmulatorError, Guest};
@@ -26,7 +25,7 @@ impl Judge {
     ///
     /// # Errors
     /// Where the board has ended or does not answer.
-    pub fn judge(&mut self, scene: &Scene<Rational>) -> Result<Reply, EmulatorError> {
+    pub fn judge(&mut self, scene: &Scene) -> Result<Reply, EmulatorError> {
         let question = ask(scene).map(u64::to_le_bytes);
         let mut bytes = [0; size_of::<ReplyWords>()];
         self.guest.exchange(question.as_flattened(), &mut bytes)?;

@@ -43,8 +43,8 @@ const BOARD: [&str; 12] = [
     "enable=on,target=native",
 ];
 
-/// How long the board may take for one answer. Its start takes a second at most; the rest is for a
-/// host that is busy with other things.
+/// How long the board may take for one answer, unless it is told otherwise. Its start takes a second
+/// at most; the rest is for a host that is busy with other things.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A running emulator.
@@ -107,6 +107,13 @@ impl Emulator {
         Ok(Self { guest: Guest::boot(elf)? })
     }
 
+    /// The same with another patience.
+    #[must_use]
+    pub fn with_patience(mut self, patience: Duration) -> Self {
+        self.guest.patience = patience;
+        self
+    }
+
     /// One tick: the board gets the encoder's raw count and gives its DAC code.
     ///
     /// # Errors
@@ -132,6 +139,7 @@ struct Guest {
     pipes: Option<Pipes>,
     log: Option<LogReader>,
     folder: TempDir,
+    patience: Duration,
 }
 
 impl Guest {
@@ -153,14 +161,16 @@ impl Guest {
             .spawn()
             .map_err(EmulatorError::Start)?;
         let log = process.stdout.take().map(|output| decoder.follow(output));
-        Ok(Self { process, pipes: Some(pipes), log, folder })
+        Ok(Self { process, pipes: Some(pipes), log, folder, patience: PATIENCE })
     }
 
     /// Gives bytes to the board and waits until it has filled `answer`.
     fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
         const WHAT: &str = "in the middle of a run";
         let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
-        match pipes.exchange(question, answer, PATIENCE) {
+        let process = &mut self.process;
+        let mut ended = || process.try_wait().map(|status| status.is_some());
+        match pipes.exchange(question, answer, self.patience, &mut ended) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => Err(self.silent(WHAT)),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Err(self.ended(WHAT)),
@@ -172,7 +182,7 @@ impl Guest {
     fn finish(mut self) -> Result<Vec<String>, EmulatorError> {
         const WHAT: &str = "at the end of a run";
         self.pipes = None;
-        match self.wait(PATIENCE).map_err(EmulatorError::Pipe)? {
+        match self.wait().map_err(EmulatorError::Pipe)? {
             None => Err(self.silent(WHAT)),
             Some(status) if !status.success() => Err(self.ended(WHAT)),
             Some(_) => Ok(self.take_log()),
@@ -180,8 +190,8 @@ impl Guest {
     }
 
     /// Waits for the process, but not for ever.
-    fn wait(&mut self, patience: Duration) -> io::Result<Option<ExitStatus>> {
-        let deadline = Instant::now() + patience;
+    fn wait(&mut self) -> io::Result<Option<ExitStatus>> {
+        let deadline = Instant::now() + self.patience;
         loop {
             match self.process.try_wait()? {
                 None if Instant::now() < deadline => std::thread::sleep(Duration::from_millis(1)),
@@ -195,12 +205,12 @@ impl Guest {
         // Its log is complete only once it has ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
-        EmulatorError::Silent { what, after: PATIENCE, log: self.last_words() }
+        EmulatorError::Silent { what, after: self.patience, log: self.last_words() }
     }
 
     /// The error of an emulator that has closed its end of a pipe.
     fn ended(&mut self, what: &'static str) -> EmulatorError {
-        match self.wait(PATIENCE) {
+        match self.wait() {
             Ok(Some(status)) => EmulatorError::Ended { status, what, log: self.last_words() },
             Ok(None) => self.silent(what),
             Err(error) => EmulatorError::Pipe(error),
@@ -215,7 +225,8 @@ impl Guest {
     fn last_words(&mut self) -> String {
         let mut words = self.take_log();
         let errors = std::fs::read_to_string(self.folder.path().join(ERRORS)).unwrap_or_default();
-        words.extend(errors.lines().map(str::to_owned));
+        // The emulator's complaint; what follows it are the contents of all registers.
+        words.extend(errors.lines().take(2).map(str::to_owned));
         if words.is_empty() { "empty".into() } else { words.join(" | ") }
     }
 }

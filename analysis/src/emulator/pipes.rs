@@ -37,20 +37,29 @@ impl Pipes {
         })
     }
 
-    /// Writes a question and reads an answer of known length.
+    /// Writes a question and reads an answer of known length. `ended` says whether the guest has
+    /// ended; it is asked now and then, because one that has never opened the pipe cannot close it.
     ///
     /// # Errors
-    /// `TimedOut` after the patience, `UnexpectedEof` where the guest has closed its end.
+    /// `TimedOut` after the patience, `UnexpectedEof` where the guest has ended.
     pub fn exchange(
         &mut self,
         question: &[u8],
         mut answer: &mut [u8],
         patience: Duration,
+        ended: &mut dyn FnMut() -> io::Result<bool>,
     ) -> io::Result<()> {
         self.counts.write_all(question)?;
         let deadline = Instant::now() + patience;
         while !answer.is_empty() {
-            self.wait(deadline)?;
+            while !self.has_something()? {
+                if ended()? {
+                    return Err(io::ErrorKind::UnexpectedEof.into());
+                }
+                if Instant::now() >= deadline {
+                    return Err(io::ErrorKind::TimedOut.into());
+                }
+            }
             match self.codes.read(answer) {
                 Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
                 Ok(read) => answer = &mut answer[read..],
@@ -61,15 +70,16 @@ impl Pipes {
         Ok(())
     }
 
-    /// Waits until there is something to read, or the guest has closed its end.
-    fn wait(&self, deadline: Instant) -> io::Result<()> {
-        let left = deadline.saturating_duration_since(Instant::now());
-        let timeout = PollTimeout::try_from(left).unwrap_or(PollTimeout::MAX);
+    /// Waits a little until there is something to read, or the guest has closed its end.
+    fn has_something(&self) -> io::Result<bool> {
         let mut codes = [PollFd::new(self.codes.as_fd(), PollFlags::POLLIN)];
-        match poll(&mut codes, timeout) {
-            Ok(0) => Err(io::ErrorKind::TimedOut.into()),
-            Ok(_) | Err(nix::errno::Errno::EINTR) => Ok(()),
+        match poll(&mut codes, PollTimeout::from(BETWEEN_LOOKS)) {
+            Ok(ready) => Ok(ready > 0),
+            Err(nix::errno::Errno::EINTR) => Ok(false),
             Err(error) => Err(error.into()),
         }
     }
 }
+
+/// Time in ms between two looks at whether the guest has ended.
+const BETWEEN_LOOKS: u8 = 50;

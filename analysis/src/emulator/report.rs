@@ -17,9 +17,10 @@ pub struct Report {
     /// Instructions of a tick from raw count to DAC code, over all ticks; the measurement's own
     /// are subtracted.
     pub compute_instructions: Stats,
-    /// The same over the ticks that gave torque; `None` where there were none.
+    /// The same over the ticks that gave torque, then or in the next tick (what is found in a
+    /// delayed wall is felt a tick later); `None` where there were none.
     pub contact_instructions: Option<Stats>,
-    /// The same over the ticks that gave none.
+    /// The same over the other ticks.
     pub free_instructions: Option<Stats>,
     /// Instructions of everything that a tick runs in interrupts, the measuring included and the
     /// lockstep's pipes excluded.
@@ -28,8 +29,10 @@ pub struct Report {
     pub lockstep_instructions: Stats,
     /// Instructions that judging the scene took on the board.
     pub certify_instructions: u64,
-    /// Bytes of stack used from reset until the scene was judged.
-    pub stack_bytes: u64,
+    /// Bytes of stack used from reset until the scene was judged, which needs the most of it.
+    pub stack_used: u64,
+    /// Bytes of stack that there are.
+    pub stack_size: u64,
     /// The certificate's enclosures as the board found them.
     pub board: CertificateBits,
     /// The same as the compiler found them.
@@ -102,8 +105,9 @@ impl Report {
             interrupt_instructions: Stats::joined(interrupt, None),
             lockstep_instructions: Stats::joined(lockstep, None),
             certify_instructions: lines.number("certify_time", "certify_time")?
-                / calibration.per_instruction,
-            stack_bytes: lines.number("certify_time", "stack_bytes")?,
+                / calibration.per_instruction.max(1),
+            stack_used: lines.number("certify_time", "stack_used")?,
+            stack_size: lines.number("certify_time", "stack_size")?,
             board: lines.certificate("board"),
             compiler: lines.certificate("compiler"),
             calibration,
@@ -188,7 +192,7 @@ mod tests {
 info enclosure=alpha by=compiler lo=1 hi=2
 info enclosure=alpha by=board lo=1 hi=3
 info enclosure=alpha_coupled by=board lo=18446744073709551615 hi=5
-info certify_time=3200 stack_bytes=900
+info certify_time=3200 stack_used=900 stack_size=1000
 info ticks=4 dropped=1 overruns=2
 info spread=contact count=1 min=50 max=50 sum=50
 info spread=free count=3 min=40 max=42 sum=122

@@ -99,8 +99,6 @@ pub(super) struct Workspace {
 
 /// One build: what, and with which features.
 struct Job<'a> {
-    /// `--bin` or `--example`.
-    kind: &'static str,
     name: &'a str,
     features: &'a str,
     /// Name of the built file.
@@ -160,8 +158,8 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
-        let (name, features) = ("vectors", "board-qemu,log");
-        self.build(&Job { kind: "--example", name, features, file: name.into() })
+        let (name, features) = ("judge", "board-qemu,log");
+        self.build(&Job { name, features, file: name.into() })
     }
 
     fn scene(
@@ -180,7 +178,7 @@ impl Toolchain {
             NumberFormat::Fixed => format!("{features},fixed-point"),
         };
         let file = format!("{name}-{format}{suffix}");
-        self.build(&Job { kind: "--bin", name, features: &features, file })
+        self.build(&Job { name, features: &features, file })
     }
 
     fn build(&self, job: &Job<'_>) -> Result<PathBuf, BuildError> {
@@ -194,11 +192,7 @@ impl Toolchain {
             return Err(BuildError::Compile { program: job.name.into(), output });
         }
         let folder = self.target_folder().join(TARGET).join("flash");
-        let built = match job.kind {
-            "--example" => folder.join("examples").join(job.name),
-            _ => folder.join(job.name),
-        };
-        self.workspace.keep(&built, &job.file)
+        self.workspace.keep(&folder.join(job.name), &job.file)
     }
 
     /// Each compiler has a folder of its own: in a common one each would rebuild what the other
@@ -248,10 +242,9 @@ const INHERITED: [&str; 9] = [
 
 impl Job<'_> {
     fn arguments(&self) -> [&str; 10] {
-        let [kind, name, features] = [self.kind, self.name, self.features];
         let build = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
         let [a, b, c, d, e, f] = build;
-        [a, b, c, d, e, f, kind, name, "--features", features]
+        [a, b, c, d, e, f, "--bin", self.name, "--features", self.features]
     }
 }
 

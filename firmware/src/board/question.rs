@@ -4,15 +4,19 @@
 //! a board, so that the three can be compared bit for bit. It is not how a scene gets to a servo.
 
 use crate::certificate::{Answer, Assessment, assess};
-use crate::environment::{Coefficients, Environment, MAX_DEGREE, Rational};
+use crate::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Device, Scene, Timing};
 
 /// Numbers in a polynomial.
 const TERMS: usize = MAX_DEGREE + 1;
 
-/// A scene with a rational environment as 64-bit words; an `f64` is its bits.
-pub type Question = [u64; 14 + 2 * TERMS];
+/// A scene as 64-bit words; an `f64` is its bits.
+pub type Question = [u64; WORDS];
+
+/// Words of a scene: 11 around the environment, its kind, a wall and a residual, a rational
+/// function.
+const WORDS: usize = 11 + 1 + (7 + 1) + (2 + 2 * (1 + TERMS));
 
 /// An enclosure's ends as bits; `None` where the index does not exist.
 pub type Ends = Option<(u64, u64)>;
@@ -36,7 +40,7 @@ pub struct Reply {
 pub type ReplyWords = [u64; 9];
 
 /// The words of a scene.
-pub fn ask(scene: &Scene<Rational>) -> Question {
+pub fn ask(scene: &Scene) -> Question {
     let mut words = Cursor { words: [0; _], next: 0 };
     words.number(scene.device.inertia);
     words.number(scene.device.damping);
@@ -48,11 +52,35 @@ pub fn ask(scene: &Scene<Rational>) -> Question {
         Coupling::Spring { stiffness } => Some(stiffness),
     });
     words.optional(scene.torque_limit);
-    words.push(scene.environment.delay as u64 | (scene.environment.unit_zeros as u64) << 32);
-    words.polynomial(&scene.environment.numerator);
-    words.polynomial(&scene.environment.denominator);
+    let (kind, wall, residual, rational) = match scene.environment {
+        Environment::DelayedSpring(wall) => (0, wall, 0.0, NO_RATIONAL),
+        Environment::DamperWall(wall) => (1, wall, 0.0, NO_RATIONAL),
+        Environment::FreeMode { residual, delay } => {
+            (2, Wall { delay, ..NO_WALL }, residual, NO_RATIONAL)
+        }
+        Environment::FreeModeWall { residual, wall } => (3, wall, residual, NO_RATIONAL),
+        Environment::Rational(rational) => (4, NO_WALL, 0.0, rational),
+    };
+    words.push(kind);
+    words.wall(&wall);
+    words.number(residual);
+    words.rational(&rational);
     words.words
 }
+
+/// Stands in where an environment has no wall.
+const NO_WALL: Wall =
+    Wall { stiffness: 0.0, damping: 0.0, filter: None, delay: 0, face: 0.0, one_sided: false };
+
+/// A polynomial that says nothing.
+const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
+    Some(one) => one,
+    None => panic!("one coefficient fits"),
+};
+
+/// Stands in where an environment is no rational function.
+const NO_RATIONAL: Rational =
+    Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
 
 /// The scene of the words; `None` if they are none.
 pub fn read(question: &Question) -> Option<Scene> {
@@ -68,13 +96,18 @@ pub fn read(question: &Question) -> Option<Scene> {
         Some(stiffness) => Coupling::Spring { stiffness },
     };
     let torque_limit = words.take_optional();
-    let counts = words.take();
-    let environment = Environment::Rational(Rational {
-        delay: (counts & 0xFFFF_FFFF) as usize,
-        unit_zeros: (counts >> 32) as usize,
-        numerator: words.take_polynomial()?,
-        denominator: words.take_polynomial()?,
-    });
+    let kind = words.take();
+    let wall = words.take_wall();
+    let residual = words.take_number();
+    let rational = words.take_rational()?;
+    let environment = match kind {
+        0 => Environment::DelayedSpring(wall),
+        1 => Environment::DamperWall(wall),
+        2 => Environment::FreeMode { residual, delay: wall.delay },
+        3 => Environment::FreeModeWall { residual, wall },
+        4 => Environment::Rational(rational),
+        _ => return None,
+    };
     Some(Scene { device, timing, coupling, environment, torque_limit })
 }
 
@@ -159,6 +192,42 @@ impl<const N: usize> Cursor<N> {
         is_some.then_some(value)
     }
 
+    fn wall(&mut self, wall: &Wall) {
+        self.number(wall.stiffness);
+        self.number(wall.damping);
+        self.optional(wall.filter);
+        self.push(wall.delay as u64);
+        self.number(wall.face);
+        self.push(wall.one_sided as u64);
+    }
+
+    fn take_wall(&mut self) -> Wall {
+        Wall {
+            stiffness: self.take_number(),
+            damping: self.take_number(),
+            filter: self.take_optional(),
+            delay: self.take() as usize,
+            face: self.take_number(),
+            one_sided: self.take() != 0,
+        }
+    }
+
+    fn rational(&mut self, rational: &Rational) {
+        self.push(rational.delay as u64);
+        self.push(rational.unit_zeros as u64);
+        self.polynomial(&rational.numerator);
+        self.polynomial(&rational.denominator);
+    }
+
+    fn take_rational(&mut self) -> Option<Rational> {
+        Some(Rational {
+            delay: self.take() as usize,
+            unit_zeros: self.take() as usize,
+            numerator: self.take_polynomial()?,
+            denominator: self.take_polynomial()?,
+        })
+    }
+
     fn polynomial(&mut self, polynomial: &Coefficients) {
         let values = polynomial.as_slice();
         self.push(values.len() as u64);
@@ -190,56 +259,64 @@ impl<const N: usize> Cursor<N> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_scene_survives_its_words() {
-        let scene = Scene {
+    fn scene(environment: Environment) -> Scene {
+        Scene {
             device: Device { inertia: 0.1, damping: 0.2, passivity: Some(0.3) },
             timing: Timing { period: 0.4, worst_period: None },
             coupling: Coupling::Spring { stiffness: f64::MIN_POSITIVE },
-            environment: Rational {
-                numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
-                denominator: Coefficients::new(&[0.1; TERMS]).unwrap(),
-                delay: 7,
-                unit_zeros: 2,
-            },
+            environment,
             torque_limit: Some(f64::INFINITY),
-        };
-        let Some(back) = read(&ask(&scene)) else { panic!("the words are a scene") };
-        let Environment::Rational(environment) = back.environment else { panic!("rational") };
-        assert_eq!(ask(&with(back, environment)), ask(&scene));
-    }
-
-    fn with(scene: Scene, environment: Rational) -> Scene<Rational> {
-        let Scene { device, timing, coupling, torque_limit, .. } = scene;
-        Scene { device, timing, coupling, environment, torque_limit }
+        }
     }
 
     #[test]
-    fn words_that_are_no_polynomial_are_no_scene() {
-        assert!(read(&[u64::MAX; 14 + 2 * TERMS]).is_none());
-        assert!(read(&[0; 14 + 2 * TERMS]).is_none());
+    fn scenes_survive_their_words() {
+        let wall = Wall {
+            stiffness: -1.5,
+            damping: 2.5,
+            filter: Some(0.75),
+            delay: 3,
+            face: -0.0,
+            one_sided: true,
+        };
+        let rational = Rational {
+            numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
+            denominator: Coefficients::new(&[0.1; TERMS]).unwrap(),
+            delay: 7,
+            unit_zeros: 2,
+        };
+        for environment in [
+            Environment::DelayedSpring(wall),
+            Environment::DamperWall(Wall { filter: None, ..wall }),
+            Environment::FreeMode { residual: 0.25, delay: 1 },
+            Environment::FreeModeWall { residual: 0.25, wall },
+            Environment::Rational(rational),
+        ] {
+            let asked = scene(environment);
+            assert_eq!(read(&ask(&asked)), Some(asked));
+        }
+    }
+
+    #[test]
+    fn words_that_are_no_scene_are_refused() {
+        assert!(read(&[u64::MAX; WORDS]).is_none());
+        assert!(read(&[0; WORDS]).is_none());
     }
 
     #[test]
     fn a_reply_carries_the_bits_of_the_assessment() {
+        let spring = Wall { stiffness: 1.0, delay: 1, ..NO_WALL };
         let scene = Scene {
-            device: Device { inertia: 1.0, damping: 1.0, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling: Coupling::Rigid,
-            environment: Rational {
-                numerator: Coefficients::new(&[1.0]).unwrap(),
-                denominator: Coefficients::new(&[1.0]).unwrap(),
-                delay: 1,
-                unit_zeros: 0,
-            },
             torque_limit: None,
+            coupling: Coupling::Rigid,
+            ..scene(Environment::DelayedSpring(spring))
         };
         let question = ask(&scene);
         let words = answer(&question, |run| {
             run();
             17
         });
-        let found = assess(&read(&question).unwrap());
+        let found = assess(&scene);
         let bits = |i: Option<Interval>| i.map(|i| (i.lo().to_bits(), i.hi().to_bits()));
         let expected = Reply {
             alpha: bits(found.alpha),

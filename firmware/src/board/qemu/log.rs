@@ -15,7 +15,7 @@ use crate::dac::DacCode;
 use defmt_semihosting as _;
 
 /// Frames that the queue holds (one less than its length): the log may fall this far behind.
-const LENGTH: usize = 65;
+const LENGTH: usize = 33;
 /// Ticks between two lines of the log.
 const EVERY: u32 = 1000;
 
@@ -140,6 +140,7 @@ async fn pushed() {
 /// The sums over a run.
 struct Summary {
     scale: Scale,
+    last: Option<Frame>,
     ticks: u32,
     overruns: u32,
     contact: Spread,
@@ -151,14 +152,13 @@ struct Summary {
 impl Summary {
     fn new(scale: Scale) -> Self {
         let [contact, free, interrupt, lockstep] = [Spread::EMPTY; 4];
-        Self { scale, ticks: 0, overruns: 0, contact, free, interrupt, lockstep }
+        Self { scale, last: None, ticks: 0, overruns: 0, contact, free, interrupt, lockstep }
     }
 
     fn add(&mut self, frame: Frame) {
-        let compute = self.scale.instructions(frame.compute).saturating_sub(self.scale.overhead);
-        let spread =
-            if frame.code == DacCode::MID_SCALE { &mut self.free } else { &mut self.contact };
-        spread.add(compute);
+        if let Some(last) = self.last.replace(frame) {
+            self.add_compute(last, Some(frame));
+        }
         // The first tick has no previous one.
         if self.ticks > 0 {
             let lockstep = self.scale.instructions(frame.lockstep);
@@ -173,7 +173,20 @@ impl Summary {
         }
     }
 
-    fn log(&self) {
+    /// A tick is free where neither it nor the next one gives torque. The next one's is looked at
+    /// because what a tick finds in a delayed wall is felt a tick later.
+    fn add_compute(&mut self, frame: Frame, next: Option<Frame>) {
+        let compute = self.scale.instructions(frame.compute).saturating_sub(self.scale.overhead);
+        let gives_torque = |frame: Frame| frame.code != DacCode::MID_SCALE;
+        let contact = gives_torque(frame) || next.is_some_and(gives_torque);
+        let spread = if contact { &mut self.contact } else { &mut self.free };
+        spread.add(compute);
+    }
+
+    fn log(mut self) {
+        if let Some(last) = self.last {
+            self.add_compute(last, None);
+        }
         let dropped = DROPPED.load(Ordering::Relaxed);
         defmt::info!("ticks={} dropped={} overruns={}", self.ticks, dropped, self.overruns);
         self.contact.log("contact");

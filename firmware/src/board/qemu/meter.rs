@@ -119,18 +119,19 @@ pub fn tick(raw: RawCount, tick: impl FnOnce(RawCount) -> Output) -> (Output, u3
     (output, end.wrapping_sub(start))
 }
 
-/// Bytes of the stack that have been written since reset; the start-up code has painted it.
-pub fn stack_used() -> u32 {
+/// Bytes of the stack that have been written since reset, and bytes that there are; the start-up
+/// code has painted it.
+pub fn stack() -> (u32, u32) {
     /// What cortex-m-rt paints with.
     const PAINT: u32 = 0xCCCC_CCCC;
-    let mut lowest = cortex_m_rt::heap_start().cast_const();
-    let top = &raw const STACK_TOP;
-    // SAFETY: reads words from the end of the static variables to the top of the stack, all of
-    // which is RAM; the stack below the current frame is not written meanwhile.
+    let (bottom, top) = (&raw const STACK_BOTTOM, &raw const STACK_TOP);
+    let mut lowest = bottom;
+    // SAFETY: reads words between the ends of the stack, which are RAM and which nothing writes
+    // meanwhile below the current frame.
     while lowest < top && unsafe { lowest.read_volatile() } == PAINT {
         lowest = lowest.wrapping_add(1);
     }
-    (top as u32).wrapping_sub(lowest as u32)
+    (top.addr().wrapping_sub(lowest.addr()) as u32, top.addr().wrapping_sub(bottom.addr()) as u32)
 }
 
 unsafe extern "C" {
@@ -138,4 +139,7 @@ unsafe extern "C" {
     /// something.
     #[link_name = "_stack_start"]
     static STACK_TOP: u32;
+    /// The symbol for the stack's lowest address.
+    #[link_name = "_stack_end"]
+    static STACK_BOTTOM: u32;
 }

@@ -7,6 +7,8 @@
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
 
+#[cfg(feature = "log")]
+pub mod judge;
 pub mod lockstep;
 #[cfg(feature = "log")]
 pub mod log;
@@ -14,8 +16,6 @@ pub mod log;
 pub mod meter;
 pub mod pace;
 mod start;
-#[cfg(feature = "log")]
-pub mod vectors;
 
 pub use start::{SceneProgram, Seat, run};
 

@@ -84,14 +84,7 @@ where
     #[cfg(feature = "log")]
     defmt::info!("per_instruction={} overhead={}", scale.per_instruction, scale.overhead);
 
-    let certified = match certify(&program) {
-        Ok(certified) => certified,
-        Err(error) => refuse(&error),
-    };
-    let (servo, reload) = match build(&certified, program.transducers) {
-        Ok(built) => built,
-        Err(error) => refuse(&error),
-    };
+    let (servo, reload) = prepare(&program);
     let Ok((counts, codes)) = lockstep::open() else { refuse(&"no host holds the pipes") };
 
     #[cfg(feature = "log")]
@@ -114,31 +107,39 @@ where
     })
 }
 
-/// Certifies on the board, and tells the host both certificates and what this one cost.
-fn certify<E: Copy>(program: &SceneProgram<E>) -> Result<Certified<Scene<E>>, StartError> {
-    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
-    let scene = *black_box(program.certified.scene());
+/// Certifies on the board, and builds the servo from that certificate.
+///
+/// In a frame of its own, and ending here where the scene is refused: judging takes most of the
+/// stack that a small board has, and must not find the rest of the program below itself.
+#[inline(never)]
+fn prepare<E, N>(program: &SceneProgram<E>) -> (Servo<E, N>, u32)
+where
+    E: Copy + Renderable<N>,
+    N: Number,
+{
     #[cfg(feature = "log")]
     let start = super::meter::now();
-    let certified = black_box((program.certify)(scene)).map_err(StartError::Rejected)?;
+    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
+    let certified = match (program.certify)(*black_box(program.certified.scene())) {
+        Ok(certified) => certified,
+        Err(rejection) => refuse(&StartError::Rejected(rejection)),
+    };
     #[cfg(feature = "log")]
     {
         let time = super::meter::now().wrapping_sub(start);
         super::log::certificate("compiler", program.certified.assessment());
         super::log::certificate("board", certified.assessment());
-        defmt::info!("certify_time={} stack_bytes={}", time, super::meter::stack_used());
+        let (used, size) = super::meter::stack();
+        defmt::info!("certify_time={} stack_used={} stack_size={}", time, used, size);
     }
-    Ok(certified)
-}
-
-/// Builds the servo of a certified scene, and the timer's reload value for its period.
-fn build<E: Renderable<N>, N: Number>(
-    certified: &Certified<Scene<E>>,
-    transducers: &Transducers,
-) -> Result<(Servo<E, N>, u32), StartError> {
-    let servo = Servo::new(certified, transducers).map_err(StartError::Unbuildable)?;
-    let reload = pace::reload(certified.scene().timing.period)?;
-    Ok((servo, reload))
+    let servo = match Servo::new(&certified, program.transducers) {
+        Ok(servo) => servo,
+        Err(error) => refuse(&StartError::Unbuildable(error)),
+    };
+    match pace::reload(certified.scene().timing.period) {
+        Ok(reload) => (servo, reload),
+        Err(error) => refuse(&error),
+    }
 }
 
 /// Ends a program that cannot start.

@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware::board::qemu::vectors::run()
+    firmware::board::qemu::judge::run()
 }
 
 #[cfg(not(target_os = "none"))]
