@@ -12,6 +12,7 @@ use firmware::servo::{BuildError, Transducers};
 
 use crate::controller::{Controller, controller};
 use crate::hand::Script;
+use crate::rig::SimulatedDevice;
 use crate::toolchain::NumberFormat;
 
 /// A scene with a program of its own.
@@ -42,6 +43,16 @@ impl Program {
         transducers: &Transducers,
     ) -> Result<Box<dyn Controller>, BuildError> {
         (self.build)(format, transducers)
+    }
+
+    /// Its device at rest, in the hand that shows it.
+    pub fn device(&self) -> SimulatedDevice {
+        SimulatedDevice::new(
+            self.scene.device,
+            (self.script)(),
+            self.scene.timing.period,
+            &self.transducers,
+        )
     }
 
     /// The program of that name.

@@ -2,6 +2,7 @@
 
 use firmware::dac::DacCode;
 use firmware::scene::Device;
+use firmware::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Hand, HeldDevice, Motion, SimulatedEncoder};
@@ -49,20 +50,15 @@ pub struct SimulatedDevice {
 }
 
 impl SimulatedDevice {
-    /// A device at rest at zero, stepped by `period` s, with an encoder of `counts_per_turn` and a
-    /// motor that gives `full_scale` N m at the converter's largest code.
-    pub fn new(
-        device: Device,
-        script: Script,
-        period: f64,
-        counts_per_turn: f64,
-        full_scale: f64,
-    ) -> Self {
+    /// A device at rest at zero, stepped by `period` s, with the encoder and the motor that the
+    /// servo is told of.
+    pub fn new(device: Device, script: Script, period: f64, transducers: &Transducers) -> Self {
+        let full_scale = transducers.full_scale_torque;
         Self {
             held: HeldDevice::new(device, script.hand, period),
             free: HeldDevice::new(device, Hand::default(), period),
             script,
-            encoder: SimulatedEncoder::new(counts_per_turn),
+            encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             period,
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             ticks: 0,

@@ -1,21 +1,13 @@
 //! The programs' servos around the simulated device: what a hand feels.
 
 use analysis::program::{ALL, Program};
-use analysis::rig::SimulatedDevice;
 use analysis::scenario::{Input, Outcome, play};
 use analysis::toolchain::NumberFormat;
 use firmware::torque::LimitReason;
 
 fn outcome(program: &Program, format: NumberFormat) -> Outcome {
-    let device = SimulatedDevice::new(
-        program.scene.device,
-        (program.script)(),
-        program.scene.timing.period,
-        program.transducers.counts_per_turn,
-        program.transducers.full_scale_torque,
-    );
     let mut controller = program.controller(format, &program.transducers).unwrap();
-    play(Input::Hand(Box::new(device)), controller.as_mut(), None, 5000, || {}).unwrap()
+    play(Input::Hand(Box::new(program.device())), controller.as_mut(), None, 5000, || {}).unwrap()
 }
 
 #[test]

@@ -13,7 +13,6 @@ use crate::bench::{self, Figure};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::rig::SimulatedDevice;
 use crate::scenario::{Input, play};
 use crate::toolchain::{self, NumberFormat, Toolchain};
 
@@ -124,15 +123,13 @@ fn on_target(
         let spinner = progress::spinner(&format!("{name} in {format}"));
         let elf = toolchain.build_scene(name, format)?;
         let mut controller = program.controller(format, &program.transducers)?;
-        let device = SimulatedDevice::new(
-            program.scene.device,
-            (program.script)(),
-            program.scene.timing.period,
-            program.transducers.counts_per_turn,
-            program.transducers.full_scale_torque,
-        );
-        let outcome =
-            play(Input::Hand(Box::new(device)), controller.as_mut(), Some(&elf), TICKS, || {})?;
+        let outcome = play(
+            Input::Hand(Box::new(program.device())),
+            controller.as_mut(),
+            Some(&elf),
+            TICKS,
+            || {},
+        )?;
         spinner.finish_and_clear();
         let Some(board) = outcome.board else { continue };
         let is_measured_in_c = name == "damper_wall" && format == NumberFormat::F32;

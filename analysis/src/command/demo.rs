@@ -16,7 +16,6 @@ use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
 use crate::program::{self, Program};
 use crate::quantity::significant;
-use crate::rig::SimulatedDevice;
 use crate::scenario::{self, Input, Outcome, play};
 use crate::toolchain::{self, Toolchain};
 use crate::verdict::{self, Report, Verdict};
@@ -115,18 +114,16 @@ fn emulate(
     let elf = toolchain.build_scene(program.name, arguments.format.into())?;
     spinner.finish_and_clear();
     let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
-    let device = SimulatedDevice::new(
-        program.scene.device,
-        (program.script)(),
-        program.scene.timing.period,
-        program.transducers.counts_per_turn,
-        program.transducers.full_scale_torque,
-    );
     let ticks = arguments.ticks;
     let bar = progress::bar(ticks as u64, program.name);
     let stepper = progress::stepper(&bar);
-    let outcome =
-        play(Input::Hand(Box::new(device)), controller.as_mut(), Some(&elf), ticks, stepper)?;
+    let outcome = play(
+        Input::Hand(Box::new(program.device())),
+        controller.as_mut(),
+        Some(&elf),
+        ticks,
+        stepper,
+    )?;
     bar.finish_and_clear();
     Ok(outcome)
 }

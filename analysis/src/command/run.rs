@@ -150,8 +150,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             question.scene.device,
             question.script.clone(),
             question.scene.timing.period,
-            question.transducers.counts_per_turn,
-            question.transducers.full_scale_torque,
+            &question.transducers,
         ))),
     };
     let bar = progress::bar(ticks as u64, &question.name);
