@@ -99,9 +99,13 @@ pub fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Milliseconds that certificates add to the compilation of a program: the difference between two
-/// programs that are alike but for one certified scene constant, and for `COPIES` of them, so that
-/// the compiler's own start does not count. `rustc` gets the library as `firmware` lies.
+/// Milliseconds that a certificate adds to the compilation of a program: the difference between a
+/// program with `COPIES` certified scenes and the same program without, divided by their number.
+///
+/// `library` is the built firmware library, `dependencies` the folder of what it depends on.
+///
+/// # Errors
+/// Where the compiler cannot be run, or refuses the program.
 pub fn compile_time(rustc: &Path, library: &Path, dependencies: &Path) -> std::io::Result<f64> {
     let folder = tempfile::tempdir()?;
     let time = |copies: usize| -> std::io::Result<f64> {
@@ -156,4 +160,24 @@ pub const fn scene(stiffness: f64) -> Scene<Wall> {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_of_the_benchmark_is_judged_to_the_end() {
+        let scenes = scenes();
+        assert_eq!(scenes.len(), 45);
+        for scene in &scenes {
+            assert!(assess(scene).alpha.is_some(), "{scene:?}");
+        }
+    }
+
+    #[test]
+    fn the_median_is_in_the_middle() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(Vec::new()), 0.0);
+    }
 }

@@ -139,19 +139,13 @@ fn on_target(
         ];
         for (state, stats, c) in groups {
             let Some(stats) = stats else { continue };
-            // A tick counts as contact by its torque, which is as late as the scene is; so a few
-            // ticks at either end of a contact are in the other group, and the mean is compared.
-            let tick = |which: &str, value, against, source| {
-                let name = format!("{name}, {format}: tick, count to code, {state}, {which}");
-                Figure::new(name, value, "instructions", against, source)
-            };
-            let (c, source) = if is_measured_in_c {
+            let (against, source) = if is_measured_in_c {
                 (Some(c), "plain C at -O3, no coupling")
             } else {
                 (None, "")
             };
-            figures.push(tick("mean", stats.mean, c, source));
-            figures.push(tick("most", stats.max as f64, None, ""));
+            let name = format!("{name}, {format}: tick, count to code, {state}, most");
+            figures.push(Figure::new(name, stats.max as f64, "instructions", against, source));
         }
         figures.push(Figure::new(
             format!("{name}, {format}: tick, whole interrupt, mean"),
