@@ -42,7 +42,8 @@ pub struct Assessment {
     pub bound: Option<Interval>,
     /// The device's passivity, scaled to the worst period.
     pub delta: Interval,
-    /// Box of `cos(theta)` that holds the angle at which the linear index is reached.
+    /// Around the `cos(theta)` at which the linear index is reached; `[-1, 1]` where that is
+    /// everywhere.
     pub cos_theta: Option<Interval>,
     /// Answer of equations 17 to 19.
     pub paper: Answer,

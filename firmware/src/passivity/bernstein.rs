@@ -23,7 +23,8 @@ const TOLERANCE: f64 = 1e-13;
 pub struct Minimum {
     /// Encloses the minimum; the lower end is infinite where `r` could not be proved positive.
     pub value: Interval,
-    /// The box of `c` that holds the point with the smallest value seen.
+    /// Around the `c` at which the smallest value was seen, to within a box; all of `[-1, 1]`
+    /// where both ends have it, as where `p / r` is constant.
     pub at: Interval,
 }
 
@@ -61,21 +62,34 @@ pub const fn minimum(p: &Series, r: &Series) -> Minimum {
     let mut search = Search {
         degree,
         upper: f64::INFINITY,
-        at: Interval::new(-1.0, 1.0),
+        at: Interval::ZERO,
         lower: f64::INFINITY,
         pool: [Interval::ZERO; POOL],
         waiting: [Waiting::NONE; MAX_LEVEL as usize + 2],
         waiting_len: 0,
     };
     let root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    let left = upper_bound(root.p[0], root.r[0]);
+    let right = upper_bound(root.p[degree], root.r[degree]);
     search.run(root);
     let lower = search.lower.min(search.upper);
-    Minimum { value: Interval::new(lower, search.upper), at: search.at }
+    let flat = left.max(right) <= search.upper + 1e-12 * search.upper.abs();
+    let at = if flat { Interval::new(-1.0, 1.0) } else { search.at };
+    Minimum { value: Interval::new(lower, search.upper), at }
+}
+
+/// Upper bound of `p / r`; infinite where `r` is not proved positive.
+const fn upper_bound(p: Interval, r: Interval) -> f64 {
+    if r.is_positive() {
+        div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() })
+    } else {
+        f64::INFINITY
+    }
 }
 
 struct Search {
     degree: usize,
-    /// Smallest proved upper bound so far, and the box it was seen in.
+    /// Smallest proved upper bound so far, and the `c` that it was seen at.
     upper: f64,
     at: Interval,
     /// Smallest lower bound among the boxes that were given up.
@@ -108,9 +122,8 @@ impl Search {
     /// Bounds the minimum on a box: updates the upper bound, returns the lower one.
     const fn look(&mut self, pieces: &Pieces, left: f64, width: f64) -> Bound {
         let n = self.degree;
-        let at = Interval::new(left, left + width);
-        self.offer(pieces.p[0], pieces.r[0], at);
-        self.offer(pieces.p[n], pieces.r[n], at);
+        self.offer(upper_bound(pieces.p[0], pieces.r[0]), left, width);
+        self.offer(upper_bound(pieces.p[n], pieces.r[n]), left + width, width);
         let mut bound = Bound { lower: f64::INFINITY, rounding: 0.0 };
         let mut i = 0;
         while i <= n {
@@ -120,21 +133,21 @@ impl Search {
             }
             let lower = div_down(p.lo(), if p.lo() >= 0.0 { r.hi() } else { r.lo() });
             if lower < bound.lower {
-                let upper = div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() });
-                bound = Bound { lower, rounding: upper - lower };
+                bound = Bound { lower, rounding: upper_bound(p, r) - lower };
             }
             i += 1;
         }
         bound
     }
 
-    const fn offer(&mut self, p: Interval, r: Interval, at: Interval) {
-        if r.is_positive() {
-            let value = div_up(p.hi(), if p.hi() >= 0.0 { r.lo() } else { r.hi() });
-            if value < self.upper {
-                self.upper = value;
-                self.at = at;
-            }
+    const fn offer(&mut self, value: f64, at: f64, width: f64) {
+        if value < self.upper {
+            self.upper = value;
+            self.at = if at.abs() == 1.0 {
+                Interval::exact(at)
+            } else {
+                Interval::new((at - width).max(-1.0), (at + width).min(1.0))
+            };
         }
     }
 

@@ -12,7 +12,8 @@ use super::transfer::Transfer;
 pub struct RealPart {
     /// Encloses the infimum of `Re G` over the circle.
     pub minimum: Interval,
-    /// Box of `cos(theta)` in which the smallest value was seen.
+    /// Around the `cos(theta)` at which the smallest value was seen; `[-1, 1]` where it is the same
+    /// at both ends, as for a constant real part.
     pub cos_theta: Interval,
 }
 
