@@ -7,7 +7,7 @@
 /// use analysis::quantity::significant;
 /// assert_eq!(significant(0.021_000_000_000_06, 6), "0.021");
 /// assert_eq!(significant(-1234.567, 3), "-1230");
-/// assert_eq!(significant(1.25e-9, 2), "1.2e-9");
+/// assert_eq!(significant(1.234e-9, 2), "1.2e-9");
 /// assert_eq!(significant(0.0, 3), "0");
 /// ```
 pub fn significant(value: f64, digits: usize) -> String {
