@@ -17,7 +17,9 @@ fn main() {
         return;
     }
     println!("cargo:rerun-if-changed={}", map.display());
-    println!("cargo:rustc-link-search={}", root.display());
+    // Arguments of this package's own programs, so that a program that depends on the library
+    // finds its own map and not this one.
+    println!("cargo:rustc-link-arg-bins=-L{}", root.display());
     println!("cargo:rustc-link-arg-bins=--nmagic");
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
     if env::var_os("CARGO_FEATURE_LOG").is_some() {

@@ -168,7 +168,7 @@ impl Summary {
         }
         self.overruns += frame.due - 1;
         self.ticks += 1;
-        if self.ticks % EVERY == 0 {
+        if self.ticks.is_multiple_of(EVERY) {
             defmt::info!("progress={}", self.ticks);
         }
     }

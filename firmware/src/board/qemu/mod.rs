@@ -17,7 +17,7 @@ pub mod meter;
 pub mod pace;
 mod start;
 
-pub use start::{SceneProgram, Seat, run};
+pub use start::{Judgement, SceneProgram, Seat, run};
 
 use embassy_executor::InterruptExecutor;
 
@@ -90,7 +90,7 @@ macro_rules! board_program {
         fn main() -> ! {
             let program = $crate::board::qemu::SceneProgram {
                 certified: &$certified,
-                certify: |scene| scene.certify(),
+                certify: $crate::scene::Scene::<$environment>::certify,
                 transducers: &$transducers,
             };
             $crate::board::qemu::run(program, serve)

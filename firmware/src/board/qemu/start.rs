@@ -15,12 +15,15 @@ use crate::number::Number;
 use crate::scene::Scene;
 use crate::servo::{Servo, Transducers};
 
+/// What `certify` gives.
+pub type Judgement<E> = Result<Certified<Scene<E>>, Rejection>;
+
 /// What a program brings.
 pub struct SceneProgram<E: 'static> {
     /// The certificate from the compiler.
     pub certified: &'static Certified<Scene<E>>,
     /// The same judgement, for the board to repeat.
-    pub certify: fn(Scene<E>) -> Result<Certified<Scene<E>>, Rejection>,
+    pub certify: fn(Scene<E>) -> Judgement<E>,
     /// Sensor and motor.
     pub transducers: &'static Transducers,
 }
