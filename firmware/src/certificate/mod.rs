@@ -75,6 +75,12 @@ pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
     }
 }
 
+/// Stops the compiler with the sentence, at the line of the scene that is refused.
+#[track_caller]
+const fn refuse(rejection: &Rejection) -> ! {
+    panic!("{}", rejection.sentence().as_str())
+}
+
 macro_rules! certify_for {
     ($([$($generics:tt)*] $environment:ty;)*) => {$(
         impl<$($generics)*> Scene<$environment> {
@@ -101,10 +107,11 @@ macro_rules! certify_for {
             ///
             /// # Panics
             /// If the scene is not certified; in a constant that is the compile error.
+            #[track_caller]
             pub const fn certified(self) -> Certified<Self> {
                 match self.certify() {
                     Ok(certified) => certified,
-                    Err(rejection) => panic!("{}", rejection.sentence().as_str()),
+                    Err(rejection) => refuse(&rejection),
                 }
             }
         }
