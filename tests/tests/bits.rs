@@ -6,6 +6,8 @@
 
 // One constant more or less: the cases are judged one by one.
 #![allow(long_running_const_eval)]
+// Their decimals have more digits than a double, as a person may well write them.
+#![allow(clippy::excessive_precision)]
 
 use firmware::certificate::{Assessment, assess};
 use firmware::environment::{Coefficients, Environment, Rational};
