@@ -71,6 +71,7 @@ impl Numbers {
 }
 
 /// `E(z)`, causal and with a proper denominator.
+#[inline(never)]
 pub(super) const fn transfer(
     environment: &Environment,
     n: &Numbers,

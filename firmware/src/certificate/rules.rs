@@ -87,6 +87,7 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
 }
 
 /// Judges a scene by both rules, without looking for remedies.
+#[inline(never)]
 pub const fn assess(scene: &Scene) -> Assessment {
     let rule = if is_nonlinear(scene) { Rule::Nonlinear } else { Rule::Exact };
     let mut out = Assessment {

@@ -57,6 +57,7 @@ impl Waiting {
 
 /// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
 /// proved on the way.
+#[inline(never)]
 pub const fn minimum(p: &Series, r: &Series) -> Minimum {
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
     let mut search = Search {
@@ -160,6 +161,7 @@ impl Search {
 
     /// Halves the box. Goes on with the half that has the smaller lower bound and puts the other
     /// aside; a half that cannot hold a smaller value is settled at once.
+    #[inline(never)]
     const fn split(&mut self, pieces: &mut Pieces, parent: Waiting) -> Waiting {
         let n = self.degree;
         let width = box_width(parent.level + 1);
@@ -182,6 +184,7 @@ impl Search {
         }
     }
 
+    #[inline(never)]
     const fn put_aside(&mut self, pieces: &Pieces, waiting: Waiting) {
         let stride = 2 * (self.degree + 1);
         let base = self.waiting_len * stride;
@@ -242,6 +245,7 @@ const fn halve(left: &mut [Interval; SIZE], right: &mut [Interval; SIZE], n: usi
 /// Multiplied by the binomials, `T_k` has the whole coefficients `(-1)^(k-i) C(2k, 2i)` at degree
 /// `k`, and raising the degree by one adds neighbours; so the only roundings are those of the
 /// series' own coefficients, and of the division by the binomials at the end.
+#[inline(never)]
 const fn from_chebyshev(series: &Series, degree: usize) -> [Interval; SIZE] {
     let mut scaled = [Interval::ZERO; SIZE];
     let mut k = 0;

@@ -95,6 +95,7 @@ impl Series {
     }
 
     /// `2 Re(K(z) z^shift n(z) conj(d(z)))`; `None` if a lag is beyond the capacity.
+    #[inline(never)]
     pub const fn real_part(
         kernel: Kernel,
         shift: i32,

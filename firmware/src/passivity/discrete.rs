@@ -22,6 +22,7 @@ pub struct RealPart {
 ///
 /// `G` is passive if the minimum is not negative. For `G = (T z / (z - 1)) E` the minimum is
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
+#[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
     match reduce(g, widen) {
         Ok(reduced) => real_part(&reduced),
@@ -51,6 +52,7 @@ pub const fn index(
     }
 }
 
+#[inline(never)]
 const fn real_part(g: &Reduced) -> Result<RealPart, Obstacle> {
     if let Err(obstacle) = residues_at_real_points(g) {
         return Err(obstacle);

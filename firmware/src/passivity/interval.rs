@@ -103,6 +103,7 @@ impl Interval {
     }
 
     /// `self + other`.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn add(self, other: Self) -> Self {
         Self { lo: add_down(self.lo, other.lo), hi: add_up(self.hi, other.hi) }
     }
@@ -113,6 +114,7 @@ impl Interval {
     }
 
     /// `self * other`.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn mul(self, other: Self) -> Self {
         let (a, b, c, d) = (self.lo, self.hi, other.lo, other.hi);
         // Which end points give the smallest and the largest product.
@@ -146,6 +148,7 @@ impl Interval {
     }
 
     /// `self / other`; [`Interval::ENTIRE`] if `other` contains 0.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn div(self, other: Self) -> Self {
         if other.is_positive() {
             let lo = div_down(self.lo, if self.lo >= 0.0 { other.hi } else { other.lo });

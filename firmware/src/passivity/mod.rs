@@ -4,6 +4,10 @@
 //! settles its poles; [`chebyshev`] turns its real part on the circle into a series, [`bernstein`]
 //! encloses the minimum; [`discrete`] and [`continuous`] are the tests of theory, section 1;
 //! [`closed_form`] has the indices that are known by formula, to check the general test against.
+//!
+//! The larger functions are never inlined: each works on hundreds of bytes, and inlined into one
+//! another they would all be on a small board's stack at once. Nor are the interval operations on
+//! the target, where each is a call of several software floating-point routines anyway.
 
 pub mod bernstein;
 pub mod chebyshev;

@@ -76,6 +76,7 @@ pub enum Doubt {
 /// Structure (which factors are there) is read from the doubles as they are; the enclosure that
 /// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
 /// result depend on them being exact.
+#[inline(never)]
 pub const fn reduce(g: Transfer, widen: bool) -> Result<Reduced, Obstacle> {
     if g.numerator.is_zero() {
         return Ok(constant_zero());
@@ -111,6 +112,7 @@ pub const fn reduce(g: Transfer, widen: bool) -> Result<Reduced, Obstacle> {
 
 /// `G` with its exact common factors at 0, 1 and -1 cancelled and the others moved to the
 /// exponents; coefficients as the decimals they stand for.
+#[inline(never)]
 pub const fn cancelled(g: Transfer) -> Transfer {
     if g.numerator.is_zero() { g } else { Work::new(g, true).wide }
 }
@@ -245,6 +247,7 @@ impl Work {
 /// mirrored pairs. It is found by the Schur-Cohn recursion without divisions, which stays exact
 /// while the coefficients are short enough; where it does not, no pair is found, and the pole is
 /// left for [`strictly_schur`] to doubt.
+#[inline(never)]
 const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, Doubt> {
     let mut p = *p;
     while p.len() >= 3 && p.is_exact() && p.is_finite() {
@@ -286,6 +289,7 @@ const fn is_palindrome(p: &Polynomial) -> bool {
 }
 
 /// Schur-Cohn: proves that all roots are inside the unit circle, or that one is outside.
+#[inline(never)]
 pub const fn strictly_schur(p: &Polynomial) -> Result<(), Obstacle> {
     let mut p = *p;
     while p.degree() > 0 {

@@ -91,6 +91,7 @@ impl Transfer {
 
     /// `G / (1 + compliance G)`: the controller behind a coupling of that compliance. With
     /// `V - T/(2 delta)` as compliance it is `E'` of theory, section 4.1.
+    #[inline(never)]
     pub const fn behind(self, compliance: Interval) -> Result<Self, Unbuildable> {
         let Some(mut numerator) = self.numerator_with_roots(self.shift, self.ones, self.minus_ones)
         else {
@@ -116,6 +117,7 @@ impl Transfer {
     }
 
     /// `self + other`; `None` if the result has too high a degree.
+    #[inline(never)]
     pub const fn plus(self, other: Self) -> Option<Self> {
         let ones = if self.ones < other.ones { self.ones } else { other.ones };
         let ones = positive(ones);
