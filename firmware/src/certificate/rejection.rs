@@ -128,7 +128,7 @@ impl Rejection {
             Self::Improper => t.push("the environment has more zeros than poles, so it is not causal; add delay or poles"),
             Self::IllPosed { loop_gain } => {
                 t.push("coupling and environment have no unique solution within a tick (1 + E(inf)/K_vc = ");
-                t.push_number(loop_gain.midpoint());
+                t.push_number(if loop_gain.contains(0.0) { 0.0 } else { loop_gain.midpoint() });
                 t.push("); delay the environment or change the coupling stiffness");
             }
             Self::NoPassivity { delta } => {

@@ -182,7 +182,8 @@ const fn unbuildable(error: Unbuildable) -> Rejection {
 
 /// `K_vc T / 2` and `delta`, whichever is smaller: what the index has to stay below for the
 /// coupling spring to be output strictly passive enough (condition 18). At the standard coupling
-/// both are `delta`.
+/// both are `delta`; a stiffness that equals it to the digits that were written, which may be a few
+/// units of the last place above it, counts as standard.
 const fn paper_limit(n: &Numbers, damping: Interval) -> Interval {
     n.delta.min(damping)
 }

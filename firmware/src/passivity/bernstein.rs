@@ -11,8 +11,11 @@ use super::interval::{Interval, div_down, div_up};
 use super::polynomial::MAX_DEGREE;
 
 const SIZE: usize = MAX_DEGREE + 2;
-/// Boxes put aside share this pool, so that the working memory fits a small target's stack.
-const POOL: usize = 2 * SIZE * 9;
+/// Boxes put aside share this pool: five of the largest degree, more of smaller ones. Few ever
+/// wait, because a half that cannot hold the minimum is settled at once; and the working memory
+/// has to fit a small target's stack.
+const POOL: usize = 2 * SIZE * 5;
+const MAX_WAITING: usize = 16;
 const MAX_BOXES: u32 = 600;
 const MAX_LEVEL: u32 = 30;
 /// Wanted width of the enclosure, relative to its magnitude.
@@ -66,7 +69,7 @@ pub const fn minimum(p: &Series, r: &Series) -> Minimum {
         at: Interval::ZERO,
         lower: f64::INFINITY,
         pool: [Interval::ZERO; POOL],
-        waiting: [Waiting::NONE; MAX_LEVEL as usize + 2],
+        waiting: [Waiting::NONE; MAX_WAITING],
         waiting_len: 0,
     };
     let root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
@@ -96,7 +99,7 @@ struct Search {
     /// Smallest lower bound among the boxes that were given up.
     lower: f64,
     pool: [Interval; POOL],
-    waiting: [Waiting; MAX_LEVEL as usize + 2],
+    waiting: [Waiting; MAX_WAITING],
     waiting_len: usize,
 }
 
@@ -188,7 +191,7 @@ impl Search {
     const fn put_aside(&mut self, pieces: &Pieces, waiting: Waiting) {
         let stride = 2 * (self.degree + 1);
         let base = self.waiting_len * stride;
-        let full = base + stride > POOL || self.waiting_len >= self.waiting.len();
+        let full = base + stride > POOL || self.waiting_len >= MAX_WAITING;
         if full || self.is_settled(waiting.bound) {
             self.lower = self.lower.min(waiting.bound.lower);
             return;

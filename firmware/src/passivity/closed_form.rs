@@ -102,3 +102,103 @@ pub const fn free_mode_delayed_wall(
     let at_minus_one = kappa.mul(be).div(kappa.add(be));
     half.sub(b).add(be).max(half.add(b).add(at_minus_one))
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::passivity::discrete::index;
+    use crate::passivity::polynomial::Polynomial;
+    use crate::passivity::transfer::Transfer;
+
+    const T: Interval = Interval::exact(0.0009765625);
+
+    /// The general test on `(sum of numerator z^i) / (T sum of denominator z^i)`.
+    fn general(numerator: &[Interval], denominator: &[Interval], shift: i32) -> Interval {
+        let numerator = Polynomial::ascending(numerator);
+        let denominator = Polynomial::ascending(denominator).scaled(T);
+        let e = Transfer { shift, ..Transfer::new(numerator, denominator) };
+        index(e, T, false).expect("a wall meets the pole conditions").minimum
+    }
+
+    fn wall(k: Interval, b: Interval, n: usize) -> Interval {
+        general(&[b.neg(), k.mul(T).add(b)], &[Interval::ZERO, Interval::ONE], -(n as i32))
+    }
+
+    /// `-be K (z - 1) / ((K T + be) z - be)`.
+    fn canceller(be: Interval, k_vc: Interval) -> Transfer {
+        let denominator = [be.neg(), k_vc.mul(T).add(be)];
+        let numerator = Polynomial::ascending(&[be.mul(k_vc).neg()]);
+        Transfer { ones: 1, ..Transfer::new(numerator, Polynomial::ascending(&denominator)) }
+    }
+
+    fn agree(formula: Interval, general: Interval) {
+        assert!(
+            formula.lo() <= general.hi() && general.lo() <= formula.hi(),
+            "{formula:?} {general:?}"
+        );
+        let size = formula.magnitude().max(1e-3);
+        assert!(general.hi() - general.lo() <= 1e-9 * size, "{general:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn springs(k in 1.0..2000.0, n in 0usize..=8) {
+            let k = Interval::exact(k);
+            let denominator = [Interval::ONE];
+            let general = general(&[k.mul(T)], &denominator, -(n as i32));
+            agree(delayed_spring(k, T, n), general);
+        }
+
+        #[test]
+        fn walls(k in 1.0..2000.0, b in 0.01..2.0, n in 0usize..=3) {
+            let (k, b) = (Interval::exact(k), Interval::exact(b));
+            if let Some(formula) = damper_wall(k, b, T, n) {
+                agree(formula, wall(k, b, n));
+            }
+        }
+
+        #[test]
+        fn filtered(k in 1.0..2000.0, b in 0.01..2.0, a in 0.0..0.95) {
+            let (k, b, a) = (Interval::exact(k), Interval::exact(b), Interval::exact(a));
+            let (kt, gain) = (k.mul(T), b.mul(Interval::ONE.sub(a)));
+            let numerator = [kt.mul(a).add(gain).neg(), kt.add(gain)];
+            agree(filtered_wall(k, b, a, T), general(&numerator, &[a.neg(), Interval::ONE], -1));
+        }
+
+        #[test]
+        fn free_modes(be in 0.01..0.5, k_vc in 50.0..4000.0) {
+            let (be, k_vc) = (Interval::exact(be), Interval::exact(k_vc));
+            agree(free_mode(be), index(canceller(be, k_vc), T, false).unwrap().minimum);
+        }
+
+        #[test]
+        fn free_modes_behind_walls(
+            be in 0.01..0.5,
+            k_vc in 500.0..4000.0,
+            k in 1.0..400.0,
+            b in 0.01..0.5,
+        ) {
+            let [be, k_vc, k, b] = [be, k_vc, k, b].map(Interval::exact);
+            let numerator = Polynomial::ascending(&[b.neg(), k.mul(T).add(b)]);
+            let denominator = Polynomial::ascending(&[Interval::ZERO, T]);
+            let undelayed = Transfer::new(numerator, denominator);
+            let delayed = Transfer { shift: -1, ..undelayed };
+            let sum = |wall| canceller(be, k_vc).plus(wall).unwrap();
+            let formula = free_mode_delayed_wall(be, k_vc, k, b, T);
+            agree(formula, index(sum(delayed), T, false).unwrap().minimum);
+            let formula = free_mode_undelayed_wall(be, k, b, T);
+            agree(formula, index(sum(undelayed), T, false).unwrap().minimum);
+        }
+
+        #[test]
+        fn tustin(b in 0.01..2.0) {
+            // B (2 / T)(z - 1)/(z + 1) with T a power of two, so that everything is exact.
+            let gain = 2.0 * b / 0.0009765625;
+            let p = |c: &[f64]| Polynomial::descending(c, false);
+            let e = Transfer { ones: 1, ..Transfer::new(p(&[gain]), p(&[1.0, 1.0])) };
+            agree(tustin_damper(Interval::exact(b)), index(e, T, false).unwrap().minimum);
+        }
+    }
+}
