@@ -1,0 +1,69 @@
+//! What the README shows is what the program prints, and what the repository holds.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+fn read(path: impl AsRef<Path>) -> String {
+    let path = path.as_ref();
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The fenced block behind `<!-- name -->` in the README.
+fn block(readme: &str, name: &str) -> String {
+    let (_, rest) = readme.split_once(&format!("<!-- {name} -->\n```")).expect("a marked block");
+    let (_, body) = rest.split_once('\n').expect("a line");
+    body.split_once("```").expect("an end").0.to_owned()
+}
+
+/// Instruction counts depend on the compiler that the machine has; everything else does not.
+fn without_instructions(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.contains("instructions per tick")).collect()
+}
+
+/// Also compares the picture that the README shows.
+#[test]
+fn the_demo_prints_what_the_readme_shows() {
+    let out = tempfile::tempdir().unwrap();
+    let pictures = out.path().to_str().unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .args(["demo", "--out", pictures])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let printed = String::from_utf8(run.stdout).unwrap().replace(pictures, "target/demo");
+    let shown = block(&read(root().join("README.md")), "demo");
+    assert_eq!(without_instructions(&printed), without_instructions(&shown));
+
+    let name = "nyquist_delayed_wall.svg";
+    let kept = read(root().join("analysis/pictures").join(name));
+    assert!(kept == read(out.path().join(name)), "{name} is not what the demo draws");
+}
+
+#[test]
+fn the_scene_of_the_readme_is_the_program_and_its_refusal_the_compilers() {
+    let readme = read(root().join("README.md"));
+    let program = read(root().join("firmware/src/bin/damper_wall.rs"));
+    assert!(program.contains(&block(&readme, "scene")), "the README's scene is not the program's");
+
+    let scene = block(&readme, "file").replace("damping = 0.01 ", "damping = 0.0115 ");
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), scene).unwrap();
+    let judge = |path: &Path| {
+        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
+            .args(["certify", "--json"])
+            .arg(path)
+            .output()
+            .unwrap();
+        serde_json::from_slice::<serde_json::Value>(&run.stdout).unwrap()["message"].to_string()
+    };
+    let sentence = judge(file.path());
+    let refusal = block(&readme, "refusal");
+    assert!(refusal.contains(sentence.trim_matches('"')), "{sentence}");
+    std::fs::write(file.path(), block(&readme, "file")).unwrap();
+    assert!(judge(file.path()).contains("certified"));
+}
