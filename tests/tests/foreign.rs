@@ -1,5 +1,5 @@
 //! Somebody else's crate uses the library for its certificate alone: no embassy comes with it, a
-//! safe constant builds, an unsafe one does not.
+//! safe constant builds, an unsafe one does not. And one that links only if no tick can panic.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -65,4 +65,15 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
             assert!(!tree.contains(unwanted), "{unwanted} in\n{tree}");
         }
     }
+}
+
+/// `no-panic` makes every path that unwinds call a function that does not exist.
+#[test]
+fn no_tick_can_panic() {
+    let folder = copy("panic_free");
+    let output = cargo(&folder, &["run", "--release"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let output = cargo(&folder, &["build", "--release", "--features", "control"]);
+    let said = text(&output.stderr);
+    assert!(!output.status.success() && said.contains("panic in function `control`"), "{said}");
 }
