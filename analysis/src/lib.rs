@@ -10,6 +10,12 @@ pub mod file;
 pub mod batch;
 pub mod verdict;
 
+// The device: a chain of masses, its passivity as the certificate and as the paper see it, and
+// the identification of a real one.
+pub mod chain;
+pub mod identify;
+pub mod mu;
+
 // What runs: a program's scene in a servo, with a simulated device or a recording around it.
 pub mod controller;
 pub mod device;

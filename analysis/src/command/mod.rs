@@ -3,6 +3,8 @@
 pub mod bench;
 pub mod certify;
 pub mod demo;
+pub mod device;
+pub mod identify;
 pub mod run;
 
 use std::io;
@@ -16,6 +18,7 @@ use thiserror::Error;
 use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
+use crate::identify::IdentifyError;
 use crate::replay::ReplayError;
 use crate::scenario::ScenarioError;
 use crate::toolchain::{BuildError, SetupError};
@@ -38,6 +41,10 @@ pub struct Arguments {
 pub enum Command {
     /// Is a scene safe in every hand, and by how much?
     Certify(certify::Arguments),
+    /// How much passivity does a device have, rigid or a chain of masses?
+    Device(device::Arguments),
+    /// What are inertia, damping and passivity of a device that was measured?
+    Identify(identify::Arguments),
     /// Run a scene tick by tick, on this machine or on the emulated board.
     Run(run::Arguments),
     /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
@@ -61,6 +68,9 @@ pub enum CommandError {
     /// A bad scene file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A record that identifies nothing.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     /// No program and no file of that name.
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene {
@@ -132,6 +142,8 @@ pub enum CommandError {
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
         Command::Certify(arguments) => certify::run(&arguments),
+        Command::Device(arguments) => device::run(&arguments),
+        Command::Identify(arguments) => identify::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

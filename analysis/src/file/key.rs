@@ -113,6 +113,22 @@ keys! {
     DEVICE_DAMPING = "device.damping", "N m s/rad", Bound::NotNegative;
     /// Output strict passivity where it is not the damping.
     PASSIVITY = "device.passivity", "N m s/rad", Bound::NotNegative;
+    /// Masses of a chain, in place of inertia and damping: first the motor's, last the hand's.
+    MASS = "device.mass", "", Bound::Other("a list of 1 to 10 tables");
+    /// Inertia of a mass.
+    MASS_INERTIA = "device.mass.inertia", "kg m^2", Bound::Positive;
+    /// Damping of a mass against the ground.
+    MASS_DAMPING = "device.mass.damping", "N m s/rad", Bound::NotNegative;
+    /// Links between one mass and the next.
+    LINK = "device.link", "", Bound::Other("a list of tables, one fewer than masses");
+    /// Stiffness of a link.
+    LINK_STIFFNESS = "device.link.stiffness", "N m/rad", Bound::NotNegative;
+    /// Damping of a link.
+    LINK_DAMPING = "device.link.damping", "N m s/rad", Bound::NotNegative;
+    /// Which mass the encoder is on.
+    ENCODER = "device.encoder", "", Bound::Other("\"motor\" or \"hand\"");
+    /// Time constant of the amplifier.
+    ACTUATOR_LAG = "device.actuator_lag", "s", Bound::NotNegative;
 
     /// When the servo runs.
     SERVO = "servo", "", TABLE;

@@ -27,9 +27,26 @@
 //! that is forgotten is one that is not accounted for. `[simulation]`, `[human]` and `[limits]`
 //! are optional; `limits.torque` makes the torque limit part of what is certified.
 //!
-//! A device is rigid here. One that is a chain of masses, or whose amplifier lags, is described
-//! by the inertia and damping that the hand feels and by its `passivity`.
+//! A device that is not rigid is a chain of masses in place of `inertia` and `damping`, the motor's
+//! mass first and the hand's last, with one link fewer than masses. A mass without `damping` has
+//! none, a link likewise. Its passivity is computed ([`crate::chain`]).
+//!
+//! ```toml
+//! [device]
+//! # encoder = "hand"            # optional: on the last mass; "motor" without it
+//! # actuator_lag = 0.0002       # optional: s, first-order lag of the amplifier
+//! [[device.mass]]
+//! inertia = 2.0e-5
+//! damping = 0.02
+//! [[device.mass]]
+//! inertia = 3.0e-5
+//! damping = 0.005
+//! [[device.link]]
+//! stiffness = 40.0              # N m/rad
+//! damping = 0.015               # N m s/rad
+//! ```
 
+pub mod device;
 pub mod key;
 pub mod scene;
 pub mod simulation;
@@ -43,10 +60,12 @@ mod tree;
 use std::io::Read;
 use std::path::Path;
 
+pub use device::{DeviceFile, Purpose};
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
 
 use problem::Fault;
+use tree::Node;
 
 /// Longest scene file in bytes: a hundred times the longest that a person writes, and read in a
 /// moment.
@@ -73,20 +92,52 @@ impl Format {
     }
 }
 
-/// Reads a scene file; `-` is standard input.
+/// Reads a scene file to certify; `-` is standard input.
 pub fn load(file: &str) -> Result<SceneFile, FileError> {
+    load_for(Purpose::Certify, file)
+}
+
+/// Reads a scene file; `-` is standard input.
+pub fn load_for(purpose: Purpose, file: &str) -> Result<SceneFile, FileError> {
+    load_with(file, |root, text| scene::read(text, root, purpose))
+}
+
+/// Reads the device of a file, which has nothing else or is a scene; `-` is standard input.
+pub fn load_device(file: &str) -> Result<DeviceFile, FileError> {
+    load_with(file, |root, text| device::read(text, root))
+}
+
+/// Parses the text of a device file that is called `file`.
+pub fn parse_device(file: &str, format: Format, text: &str) -> Result<DeviceFile, FileError> {
+    parse_with(file, 1, format, text, |root, text| device::read(text, root))
+}
+
+fn load_with<T>(
+    file: &str,
+    read: impl FnOnce(Node, &str) -> Result<T, Fault>,
+) -> Result<T, FileError> {
     let (file, bytes) = match file {
         "-" => ("<stdin>", bounded(std::io::stdin().lock())),
         _ => (file, std::fs::File::open(file).map_err(unreadable).and_then(bounded)),
     };
     let bytes = bytes.map_err(|problem| FileError::whole(file, 1, 1, problem))?;
     let text = text_of(file, 1, &bytes)?;
-    parse(file, Format::of(file, text), text)
+    parse_with(file, 1, Format::of(file, text), text, read)
+}
+
+/// Parses the text of a scene file that is called `file`, to certify it.
+pub fn parse(file: &str, format: Format, text: &str) -> Result<SceneFile, FileError> {
+    parse_at(file, 1, format, text)
 }
 
 /// Parses the text of a scene file that is called `file`.
-pub fn parse(file: &str, format: Format, text: &str) -> Result<SceneFile, FileError> {
-    parse_at(file, 1, format, text)
+pub fn parse_for(
+    purpose: Purpose,
+    file: &str,
+    format: Format,
+    text: &str,
+) -> Result<SceneFile, FileError> {
+    parse_with(file, 1, format, text, |root, text| scene::read(text, root, purpose))
 }
 
 /// Parses a text that begins at a line of a longer file.
@@ -96,7 +147,20 @@ pub fn parse_at(
     format: Format,
     text: &str,
 ) -> Result<SceneFile, FileError> {
-    read(format, text).map_err(|fault| FileError::new(file, text, first_line, fault))
+    let to_certify = |root: Node, text: &str| scene::read(text, root, Purpose::Certify);
+    parse_with(file, first_line, format, text, to_certify)
+}
+
+fn parse_with<T>(
+    file: &str,
+    first_line: usize,
+    format: Format,
+    text: &str,
+    read: impl FnOnce(Node, &str) -> Result<T, Fault>,
+) -> Result<T, FileError> {
+    let root = root(format, text);
+    let found = root.and_then(|root| read(root, text));
+    found.map_err(|fault| FileError::new(file, text, first_line, fault))
 }
 
 /// The bytes of a file as text, or the place of the first byte that is not.
@@ -111,7 +175,7 @@ pub fn text_of<'b>(file: &str, first_line: usize, bytes: &'b [u8]) -> Result<&'b
     })
 }
 
-fn read(format: Format, text: &str) -> Result<SceneFile, Fault> {
+fn root(format: Format, text: &str) -> Result<Node, Fault> {
     let root = match format {
         Format::Toml => toml::parse(text)?,
         Format::Json => json::parse(text)?,
@@ -119,7 +183,7 @@ fn read(format: Format, text: &str) -> Result<SceneFile, Fault> {
     if scene::is_empty(&root) {
         return Err(Fault { span: 0..0, problem: Problem::Empty });
     }
-    scene::read(text, root)
+    Ok(root)
 }
 
 fn bounded(source: impl Read) -> Result<Vec<u8>, Problem> {

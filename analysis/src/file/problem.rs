@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::key::{Bound, Key};
 use super::tree::Span;
+use crate::chain::NoPassivity;
 
 /// Longest piece of a file that is repeated in a message, in characters.
 const EXCERPT: usize = 60;
@@ -92,14 +93,15 @@ pub enum Problem {
         /// What it must be.
         bound: String,
     },
-    /// A device that is more than a rigid body.
-    #[error(
-        "`{key}` makes the device more than a rigid body, which a certificate is not taken of; \
-             give the `inertia` and `damping` that the hand feels and the `passivity`"
-    )]
-    NotRigid {
+    /// A device that no certificate can be taken of.
+    #[error("`{key}` = {value} leaves the device no passivity to certify with: {reason}")]
+    NoPassivity {
         /// Full name of the key.
         key: &'static str,
+        /// The value as written.
+        value: String,
+        /// Why there is none.
+        reason: NoPassivity,
     },
     /// Keys that contradict one another.
     #[error("`{key}` = {value} {reason}")]

@@ -1,13 +1,15 @@
 //! A scene file's tables turned into a [`Scene`].
 
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Scene, Timing};
 
+use super::device::{self, Purpose};
 use super::key::{self, Key};
 use super::problem::Fault;
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
 use super::tree::{Node, Value};
+use crate::chain::Chain;
 use crate::device::Hand;
 
 /// Everything that a scene file says.
@@ -15,8 +17,11 @@ use crate::device::Hand;
 pub struct SceneFile {
     /// What the person calls the scene.
     pub name: String,
-    /// The scene itself; nothing about it is certified yet.
+    /// The scene itself; nothing about it is certified yet. Its device is the rigid body that
+    /// stands for the chain: all inertia, all damping to the ground, and the chain's passivity.
     pub scene: Scene,
+    /// The device as the file describes it, for simulation.
+    pub chain: Chain,
     /// What a simulation starts from.
     pub simulation: Option<Simulation>,
     /// A passive hand that holds the device, for simulation.
@@ -26,10 +31,10 @@ pub struct SceneFile {
 }
 
 /// Reads the tables of a parsed file.
-pub fn read(text: &str, root: Node) -> Result<SceneFile, Fault> {
+pub fn read(text: &str, root: Node, purpose: Purpose) -> Result<SceneFile, Fault> {
     let mut top = Section::new(text, "a scene", &ROOT, root)?;
     let name = top.needed_text(&key::NAME)?.value;
-    let device = device(top.needed_table(&key::DEVICE)?)?;
+    let (chain, device) = device::device(top.needed_table(&key::DEVICE)?, purpose)?;
     let timing = timing(top.needed_table(&key::SERVO)?)?;
     let coupling = top.table(&key::COUPLING)?.map_or(Ok(Coupling::Rigid), coupling)?;
     let environment = environment(top.needed_table(&key::ENVIRONMENT)?)?;
@@ -38,7 +43,7 @@ pub fn read(text: &str, root: Node) -> Result<SceneFile, Fault> {
     let (torque_limit, encoder_step) = top.table(&key::LIMITS)?.map_or(Ok((None, None)), limits)?;
     top.finish()?;
     let scene = Scene { device, timing, coupling, environment, torque_limit };
-    Ok(SceneFile { name, scene, simulation, hand, encoder_step })
+    Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step })
 }
 
 /// The file as a whole: it has no name, and must be a table.
@@ -47,19 +52,6 @@ const ROOT: Key = Key {
     unit: "",
     bound: key::Bound::Other("a table of `name`, [device], [servo] and [environment]"),
 };
-
-/// Keys of devices with inner modes or a lagging amplifier.
-const MORE_THAN_RIGID: &[&str] =
-    &["device.mass", "device.link", "device.encoder", "device.actuator_lag"];
-
-fn device(mut section: Section<'_>) -> Result<Device, Fault> {
-    section.refuse_more_than_rigid(MORE_THAN_RIGID)?;
-    let inertia = section.number(&key::INERTIA)?;
-    let damping = section.number(&key::DEVICE_DAMPING)?;
-    let passivity = section.optional(&key::PASSIVITY)?;
-    section.finish()?;
-    Ok(Device { inertia, damping, passivity })
-}
 
 fn timing(mut section: Section<'_>) -> Result<Timing, Fault> {
     let period = section.number(&key::PERIOD)?;

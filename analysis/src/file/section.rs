@@ -55,6 +55,35 @@ impl<'t> Section<'t> {
         self.table(key)?.ok_or_else(|| self.missing(key))
     }
 
+    /// The tables of that key in their order with the place of the whole list, if it is there.
+    pub fn tables(&mut self, key: &Key) -> Result<Option<Found<Vec<Self>>>, Fault> {
+        let Some(Node { span, value }) = self.take(key) else { return Ok(None) };
+        let Value::List(items) = value else {
+            return Err(wrong_kind(self.text, key, &span, &value));
+        };
+        let numbered = |(index, node): (usize, Node)| {
+            let title = format!("[[{}]] number {}", key.path, index + 1);
+            Self::new(self.text, &title, key, node)
+        };
+        let value = items.into_iter().enumerate().map(numbered).collect::<Result<_, _>>()?;
+        Ok(Some(Found { value, span }))
+    }
+
+    /// Whether a key of that name is there, asked for or not.
+    pub fn has(&self, key: &Key) -> bool {
+        self.entries.iter().any(|entry| entry.name == key.name())
+    }
+
+    /// What is written there, fit to print.
+    pub fn written(&self, span: &Span) -> String {
+        excerpt(&self.text[span.clone()])
+    }
+
+    /// Bytes of the table in the text.
+    pub fn span(&self) -> Span {
+        self.span.clone()
+    }
+
     /// The number of that key with its place, if it is there.
     pub fn found(&mut self, key: &Key) -> Result<Option<Found<f64>>, Fault> {
         let Some(node) = self.take(key) else { return Ok(None) };
@@ -133,16 +162,6 @@ impl<'t> Section<'t> {
     pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Fault {
         let value = excerpt(&self.text[span.clone()]);
         Fault { span, problem: Problem::Conflict { key: key.path, value, reason } }
-    }
-
-    /// Ends the reading where one of these keys is there: they describe what is not a rigid body.
-    pub fn refuse_more_than_rigid(&mut self, keys: &[&'static str]) -> Result<(), Fault> {
-        for entry in &self.entries {
-            if let Some(&key) = keys.iter().find(|key| key.ends_with(&format!(".{}", entry.name))) {
-                return Err(Fault { span: entry.span.clone(), problem: Problem::NotRigid { key } });
-            }
-        }
-        Ok(())
     }
 
     /// The fault of a key that is not there, or of the slip that was written in its place.

@@ -1,0 +1,145 @@
+//! `haptic device`: how much passivity does a device have?
+
+use std::io::{self, Write};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Answer, CommandError};
+use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
+use crate::file::{self, DeviceFile};
+use crate::quantity::significant;
+
+/// Arguments of `haptic device`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// File with a [device], which may be a scene; TOML or JSON; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What is known of a device.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// What the person calls it.
+    pub name: Option<String>,
+    /// Output strict passivity in N m s/rad, to the last digit; `None`: there is none.
+    pub delta: Option<f64>,
+    /// Lower end of the enclosure.
+    pub delta_lo: Option<f64>,
+    /// Upper end of the enclosure.
+    pub delta_hi: Option<f64>,
+    /// Angular frequency in rad/s at which it is reached; 0 in the limit at rest, or where it does
+    /// not depend on the frequency; `None` in the limit of infinite frequency.
+    pub omega: Option<f64>,
+    /// `everywhere`, `rest`, `omega` or `infinity`; `None` where there is no `delta`.
+    pub reached: Option<&'static str>,
+    /// Whether encoder and motor are on the same mass.
+    pub collocated: bool,
+    /// Number of masses.
+    pub masses: usize,
+    /// Inertia in kg m^2 of all masses together.
+    pub inertia: f64,
+    /// Damping in N m s/rad of all masses together against the ground.
+    pub damping: f64,
+    /// Time constant of the amplifier in s.
+    pub actuator_lag: f64,
+    /// The answer as a sentence.
+    pub message: String,
+}
+
+/// Answers for a device; no if it has no passivity.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let report = report(&file::load_device(&arguments.file)?);
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{}", text(&report))?;
+    }
+    out.flush()?;
+    Ok(if report.delta.is_some() { Answer::Yes } else { Answer::No })
+}
+
+/// What is known of the device of a file.
+pub fn report(file: &DeviceFile) -> Report {
+    let chain = &file.chain;
+    let found = chain.excess_passivity();
+    let delta = found.ok().map(|found| found.delta);
+    let reached = found.ok().map(|found| found.reached);
+    Report {
+        name: file.name.clone(),
+        delta: found.ok().map(|found| found.value),
+        delta_lo: delta.map(|delta| delta.lo()),
+        delta_hi: delta.map(|delta| delta.hi()),
+        omega: reached.and_then(Reached::omega),
+        reached: reached.map(word),
+        collocated: chain.is_collocated(),
+        masses: chain.masses().len(),
+        inertia: chain.inertia(),
+        damping: chain.damping(),
+        actuator_lag: chain.actuator_lag(),
+        message: message(chain, &found),
+    }
+}
+
+fn word(reached: Reached) -> &'static str {
+    match reached {
+        Reached::Everywhere => "everywhere",
+        Reached::AtRest => "rest",
+        Reached::At(_) => "omega",
+        Reached::AtInfinity => "infinity",
+    }
+}
+
+fn message(chain: &Chain, found: &Result<ExcessPassivity, NoPassivity>) -> String {
+    let found = match found {
+        Ok(found) => found,
+        Err(reason) => return format!("no passivity: {reason}"),
+    };
+    let delta = significant(found.value, 12);
+    let place = match found.reached {
+        Reached::Everywhere => "at every frequency".to_owned(),
+        Reached::AtRest => "towards frequency 0".to_owned(),
+        Reached::At(omega) => {
+            let hertz = significant(omega / std::f64::consts::TAU, 4);
+            format!("at {} rad/s ({hertz} Hz)", significant(omega, 6))
+        }
+        Reached::AtInfinity => "towards infinite frequency".to_owned(),
+    };
+    let own = significant(chain.masses().first().map_or(0.0, |motor| motor.damping), 6);
+    match chain.masses().len() {
+        1 => format!("delta = {delta} N m s/rad, the damping of the one mass"),
+        _ => format!(
+            "delta = {delta} N m s/rad, reached {place}; {own} of it is the damping of the \
+             motor's mass"
+        ),
+    }
+}
+
+/// The report for a person.
+pub fn text(report: &Report) -> String {
+    let mut rows = Vec::new();
+    if let Some(name) = &report.name {
+        rows.push(("device of", name.clone()));
+    }
+    rows.push(("", report.message.clone()));
+    if let (Some(lo), Some(hi)) = (report.delta_lo, report.delta_hi) {
+        rows.push(("delta", format!("{lo} to {hi} N m s/rad")));
+    }
+    rows.push(("masses", report.masses.to_string()));
+    rows.push(("inertia", format!("{} kg m^2 in all", significant(report.inertia, 6))));
+    rows.push((
+        "damping",
+        format!("{} N m s/rad to ground in all", significant(report.damping, 6)),
+    ));
+    rows.push(("collocated", if report.collocated { "yes" } else { "no" }.to_owned()));
+    if report.actuator_lag > 0.0 {
+        rows.push(("amplifier's lag", format!("{} s", report.actuator_lag)));
+    }
+    rows.iter().map(|(label, value)| format!("{label:<18} {value}\n")).collect()
+}

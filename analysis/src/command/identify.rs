@@ -1,0 +1,236 @@
+//! `haptic identify`: a device's inertia, damping and passivity from a measurement.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Answer, CommandError};
+use crate::identify::{self, Correction, Disk, Estimate, Identification, record};
+use crate::quantity::significant;
+
+/// Arguments of `haptic identify`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Record of stepped sines: CSV with the columns time (s), torque (N m), counts, and perhaps
+    /// frequency (Hz)
+    #[arg(value_name = "FILE.csv")]
+    pub file: PathBuf,
+    /// Counts of the encoder in one turn
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub counts_per_rev: f64,
+    /// Time from a row's time until its torque is applied, in s
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    pub torque_delay: f64,
+    /// Time by which the counts of a row are older than its time, in s
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    pub count_delay: f64,
+    /// Part of each sine that is left out until the device has settled, 0 to 0.9
+    #[arg(long, value_name = "PART", default_value_t = 0.25, value_parser = part)]
+    pub settle: f64,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Write the [device] table there
+    #[arg(short, long, value_name = "FILE.toml")]
+    pub output: Option<PathBuf>,
+}
+
+/// A response as programs read it.
+#[derive(Debug, Serialize)]
+struct Point {
+    /// Hz.
+    frequency: f64,
+    /// Real part of `J` in rad/(N m s).
+    re: f64,
+    /// Imaginary part.
+    im: f64,
+    /// Real part of `1/J` in N m s/rad.
+    impedance_re: f64,
+    /// Imaginary part.
+    impedance_im: f64,
+    /// Standard deviation of both parts of `1/J`.
+    deviation: f64,
+}
+
+/// An identification as programs read it.
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    inertia: Estimate,
+    damping: Estimate,
+    skew: Estimate,
+    skew_significant: bool,
+    bias: f64,
+    disk: Disk,
+    misfit: f64,
+    rigid: bool,
+    passivity: Option<f64>,
+    confidence: f64,
+    responses: Vec<Point>,
+    notes: &'a [String],
+}
+
+/// Answers with the device; no if it has no passivity that could be certified with.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let record = record::load(&arguments.file).map_err(identify::IdentifyError::from)?;
+    let correction = Correction {
+        torque_delay: arguments.torque_delay,
+        count_delay: arguments.count_delay,
+        settle: arguments.settle,
+        ..Correction::of_encoder(arguments.counts_per_rev)
+    };
+    let found = identify::identify(&record, &correction)?;
+    let notes = notes(&found);
+    if let Some(path) = &arguments.output {
+        let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
+        std::fs::write(path, device_table(&found)).map_err(unwritable)?;
+    }
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        serde_json::to_writer(&mut out, &report(&found, &notes)).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{}", text(&found, &notes))?;
+    }
+    out.flush()?;
+    Ok(if found.passivity().is_some() { Answer::Yes } else { Answer::No })
+}
+
+fn report<'a>(found: &Identification, notes: &'a [String]) -> Report<'a> {
+    let point = |r: &identify::Response| Point {
+        frequency: r.omega / std::f64::consts::TAU,
+        re: r.admittance.re,
+        im: r.admittance.im,
+        impedance_re: r.impedance().re,
+        impedance_im: r.impedance().im,
+        deviation: r.deviation,
+    };
+    Report {
+        inertia: found.inertia,
+        damping: found.damping,
+        skew: found.skew,
+        skew_significant: found.skew.is_significant(),
+        bias: found.bias,
+        disk: found.disk,
+        misfit: found.misfit,
+        rigid: found.is_rigid(),
+        passivity: found.passivity(),
+        confidence: identify::fit::CONFIDENCE,
+        responses: found.responses.iter().map(point).collect(),
+        notes,
+    }
+}
+
+/// What somebody must know before relying on the numbers.
+fn notes(found: &Identification) -> Vec<String> {
+    let mut notes = Vec::new();
+    if found.skew.is_significant() {
+        notes.push(format!(
+            "the counts are {} us late against the torque: uncorrected, that makes the damping {} \
+             N m s/rad at {} Hz; it has been taken out of inertia and damping. If it is a lag of \
+             the amplifier, and not of the record, account for it as delay",
+            significant(1e6 * found.skew.value, 3),
+            significant(found.disk.delta, 3),
+            significant(found.disk.omega / std::f64::consts::TAU, 3),
+        ));
+    }
+    if !found.is_rigid() {
+        notes.push(format!(
+            "inertia and damping do not explain the responses (residuals {} times the noise): the \
+             device is not one rigid mass, so its passivity is taken from the disk, between the \
+             frequencies that were measured at its own risk",
+            significant(found.misfit.sqrt(), 2),
+        ));
+    }
+    if found.passivity().is_none() {
+        notes.push(format!(
+            "no passivity is left: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of torque and \
+             counts, the declared delays, and that motor and encoder are on the same mass",
+            significant(found.disk.delta, 3),
+            significant(found.disk.omega / std::f64::consts::TAU, 3),
+        ));
+    }
+    notes
+}
+
+/// The table for a scene file.
+pub fn device_table(found: &Identification) -> String {
+    let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
+    let passivity = match found.passivity() {
+        Some(passivity) => format!(
+            "passivity = {} # N m s/rad, lower end of the {}\n",
+            significant(passivity, 4),
+            if found.is_rigid() { "damping" } else { "disk" },
+        ),
+        None => "# passivity: none; do not certify with this device\n".to_owned(),
+    };
+    format!(
+        "[device]\ninertia = {} # kg m^2, {} at 95 %\ndamping = {} # N m s/rad, {} at 95 %\n\
+         {passivity}",
+        significant(found.inertia.value, 5),
+        range(&found.inertia),
+        significant(found.damping.value.max(0.0), 5),
+        range(&found.damping),
+    )
+}
+
+fn text(found: &Identification, notes: &[String]) -> String {
+    let estimate = |e: &Estimate, unit: &str| {
+        let reach = significant(0.5 * (e.hi - e.lo), 2);
+        format!("{} +- {reach} {unit}", significant(e.value, 5))
+    };
+    let hertz = |omega: f64| significant(omega / std::f64::consts::TAU, 4);
+    let disk = match found.disk.delta {
+        delta if delta > 0.0 => format!(
+            "delta {} N m s/rad at {} Hz, radius {} rad/(N m s)",
+            significant(delta, 5),
+            hertz(found.disk.omega),
+            significant(0.5 / delta, 4)
+        ),
+        _ => "none: some response is outside of every disk".to_owned(),
+    };
+    let mut rows = vec![
+        ("damping", estimate(&found.damping, "N m s/rad")),
+        ("inertia", estimate(&found.inertia, "kg m^2")),
+        ("skew", estimate(&found.skew, "s")),
+        ("disk", disk),
+        ("residuals", format!("{} times the noise", significant(found.misfit.sqrt(), 2))),
+    ];
+    rows.extend(notes.iter().map(|note| ("note", note.clone())));
+    let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
+    format!("{rows}\n{}\n{}", points(found), device_table(found))
+}
+
+fn points(found: &Identification) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING);
+    table.set_header(["Hz", "Re 1/J, N m s/rad", "+-", "Im 1/J", "counts"]);
+    for r in &found.responses {
+        table.add_row([
+            significant(r.omega / std::f64::consts::TAU, 4),
+            significant(r.impedance().re, 4),
+            significant(r.deviation, 2),
+            significant(r.impedance().im, 4),
+            significant(r.counts, 3),
+        ]);
+    }
+    format!("{table}\n")
+}
+
+fn number(text: &str, bound: &str, admits: impl Fn(f64) -> bool) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|&value: &f64| value.is_finite() && admits(value));
+    value.ok_or_else(|| format!("it must be {bound}"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    number(text, "a number greater than 0", |value| value > 0.0)
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    number(text, "a number of seconds, 0 or more", |value| value >= 0.0)
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    number(text, "a number from 0 to 0.9", |value| (0.0..=0.9).contains(&value))
+}

@@ -1,0 +1,63 @@
+//! What a device's damping measures: from a record of stepped sines to a `[device]` table
+//! (theory, section 3.3).
+//!
+//! ```text
+//! record -> steps -> responses J(w) -> disk Re(1/J) >= delta, and fit 1/J = (b + j w m) e^(j w t0)
+//! ```
+//!
+//! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
+//! takes one bin of each, [`fit`] draws the conclusions. [`rig`] simulates a device that is measured
+//! so, with all that spoils a measurement.
+
+pub mod fit;
+pub mod record;
+pub mod response;
+pub mod rig;
+pub mod step;
+
+use thiserror::Error;
+
+pub use fit::{Disk, Estimate, Identification};
+pub use record::{Record, RecordError};
+pub use response::{Correction, Response};
+
+/// Why a record identifies nothing.
+#[derive(Debug, Error)]
+pub enum IdentifyError {
+    /// The file.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// No stretch of steady sine.
+    #[error(
+        "there is no stretch of at least {} periods of a steady sine in the torque",
+        step::LEAST_PERIODS
+    )]
+    NoSteps,
+    /// The fit has more unknowns than equations, or the frequencies are the same.
+    #[error(
+        "{usable} of {found} sines can be used; a fit of inertia, damping and skew needs at least \
+         3 at different frequencies{reason}"
+    )]
+    TooFew {
+        /// Sines found.
+        found: usize,
+        /// Sines whose motion stands out of the noise.
+        usable: usize,
+        /// Why the others cannot be used.
+        reason: String,
+    },
+}
+
+/// Identifies a rigid device, or at least its passivity, from a record.
+pub fn identify(record: &Record, correction: &Correction) -> Result<Identification, IdentifyError> {
+    let steps = step::steps(record);
+    if steps.is_empty() {
+        return Err(IdentifyError::NoSteps);
+    }
+    let responses: Vec<_> =
+        steps.iter().filter_map(|step| response::single_bin(record, step, correction)).collect();
+    fit::identify(record.period, steps.len(), responses)
+}
+
+#[cfg(test)]
+mod tests;

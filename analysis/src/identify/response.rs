@@ -1,0 +1,134 @@
+//! The response of the device at one frequency, by least squares over one stretch of sine.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::record::Record;
+use super::step::Step;
+
+/// What is known of the measurement beside the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    /// Angle in rad of one count.
+    pub count_angle: f64,
+    /// Time in s from a row's time until its torque is applied.
+    pub torque_delay: f64,
+    /// Time in s by which the counts of a row are older than its time.
+    pub count_delay: f64,
+    /// Part of each stretch that is left out at its beginning, until the transient has died out.
+    pub settle: f64,
+}
+
+impl Correction {
+    /// An encoder of `counts_per_turn`, no delays, and a quarter of each stretch to settle.
+    pub fn of_encoder(counts_per_turn: f64) -> Self {
+        let count_angle = std::f64::consts::TAU / counts_per_turn;
+        Self { count_angle, torque_delay: 0.0, count_delay: 0.0, settle: 0.25 }
+    }
+}
+
+/// Torque to velocity at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Angular frequency in rad/s.
+    pub omega: f64,
+    /// `J(j omega)` in rad/(N m s).
+    pub admittance: Complex<f64>,
+    /// Standard deviation of the real and of the imaginary part of `1/J`, in N m s/rad.
+    pub deviation: f64,
+    /// Amplitude of the motion in counts.
+    pub counts: f64,
+}
+
+impl Response {
+    /// `1/J` in N m s/rad: damping its real part, `omega` times inertia its imaginary part.
+    pub fn impedance(&self) -> Complex<f64> {
+        1.0 / self.admittance
+    }
+}
+
+/// The response over one stretch. `None` where there is no torque or no motion to speak of.
+///
+/// The torque is held from tick to tick, which makes the sine that the device feels smaller by
+/// `sinc(w T/2)` and late by `T/2`; both are taken out, as are the declared delays. The images of
+/// the held sine, which sampling folds back, stay in: see [`images`].
+pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<Response> {
+    let skipped = (correction.settle * step.rows.len() as f64) as usize;
+    let rows = step.rows.start + skipped..step.rows.end;
+    let angle = step.omega * record.period;
+    let (torque, _) = phasor(&record.torque[rows.clone()], angle)?;
+    let (counts, deviation) = phasor(&record.counts[rows], angle)?;
+    let half = 0.5 * angle;
+    let late = half + step.omega * (correction.torque_delay + correction.count_delay);
+    let applied = torque * (half.sin() / half) * Complex::from_polar(1.0, -late);
+    let velocity = Complex::new(0.0, step.omega * correction.count_angle) * counts;
+    let admittance = velocity / applied;
+    let impedance = 1.0 / admittance;
+    let deviation = impedance.norm() * deviation / counts.norm();
+    let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
+    usable.then(|| Response { omega: step.omega, admittance, deviation, counts: counts.norm() })
+}
+
+/// What the images of the held torque make of the response of a rigid device, as a factor of `J`.
+///
+/// A held sine has images around the multiples of the sampling rate; the device answers them and
+/// sampling folds the answer back. All of them are in the sampled response `G_d` of the held
+/// device, which is known exactly; the factor is `G_d / (G sinc(x) e^(-j x))`, `x = w T/2`, and 1
+/// to within about `x^4`.
+pub fn images(omega: f64, period: f64, inertia: f64, damping: f64) -> Complex<f64> {
+    // Without damping the two terms below cancel; so little of it makes no difference.
+    const LEAST: f64 = 1e-6;
+    let b = damping.abs().max(LEAST * inertia / period);
+    let (lag, half) = (inertia / b, 0.5 * omega * period);
+    let z = Complex::from_polar(1.0, 2.0 * half);
+    let lost = -(-period / lag).exp_m1();
+    let sampled = period / (z - 1.0) - lag * lost / (z - (1.0 - lost));
+    let s = Complex::new(0.0, omega);
+    // b G(s) = 1 / (s (lag s + 1))
+    sampled * s * (lag * s + 1.0) * (half / half.sin()) * Complex::from_polar(1.0, half)
+}
+
+/// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts
+/// along: the phasor `p`, and the standard deviation of its real and imaginary parts.
+fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
+    const UNKNOWNS: usize = 5;
+    let n = samples.len();
+    if n <= UNKNOWNS {
+        return None;
+    }
+    let regressors = DMatrix::from_fn(n, UNKNOWNS, |row, column| {
+        // Between -1 and 1, so that the columns are of one size.
+        let time = 2.0 * row as f64 / (n - 1) as f64 - 1.0;
+        let phase = angle * row as f64;
+        [1.0, time, time * time, phase.cos(), -phase.sin()][column]
+    });
+    let values = DVector::from_column_slice(samples);
+    let normal = (regressors.transpose() * &regressors).cholesky()?;
+    let solution = normal.solve(&(regressors.transpose() * &values));
+    let residual = values - regressors * &solution;
+    Some((Complex::new(solution[3], solution[4]), deviation(residual.as_slice(), angle)))
+}
+
+/// Deviation of a phasor, from what is left at the neighbouring frequencies: the noise of a free
+/// device is a random walk, so that its mean over all frequencies says nothing about one of them.
+fn deviation(residual: &[f64], angle: f64) -> f64 {
+    /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
+    const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
+    let n = residual.len() as f64;
+    let step = std::f64::consts::TAU / n;
+    let neighbours = NEIGHBOURS.iter().map(|offset| angle + offset * step);
+    let powers: Vec<f64> = neighbours
+        .filter(|&near| near > step && near < std::f64::consts::PI)
+        .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
+        .collect();
+    let power = powers.iter().sum::<f64>() / powers.len().max(1) as f64;
+    // Whole counts: 1/12 of a count squared over all frequencies, at the least.
+    (0.5 * power).sqrt().max((1.0 / (6.0 * n)).sqrt())
+}
+
+/// `sum of x_k e^(-j angle k)`.
+fn bin(samples: &[f64], angle: f64) -> Complex<f64> {
+    let turn = Complex::from_polar(1.0, -angle);
+    let add = |sum: Complex<f64>, &sample: &f64| sum * turn + sample;
+    // Horner from the last sample, so that one sine and one cosine serve for all.
+    samples.iter().rev().fold(Complex::from(0.0), add)
+}

@@ -1,0 +1,152 @@
+//! Simulated devices measured by a simulated rig, and records that are none.
+
+use firmware::scene::Device;
+
+use super::record::parse;
+use super::rig::{Excitation, Rig};
+use super::*;
+
+const PADDLE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+const KNOB: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+
+fn rig(device: Device) -> Rig {
+    Rig { device, period: 1e-3, counts_per_turn: 61_440.0, torque_noise: 0.0, skew: 0.0, seed: 1 }
+}
+
+/// Sines that move the device by `amplitude` rad, whatever the frequency.
+fn sines(device: Device, frequencies: &[f64], amplitude: f64) -> Vec<Excitation> {
+    let sine = |&frequency: &f64| {
+        let omega = std::f64::consts::TAU * frequency;
+        let impedance = device.damping.hypot(device.inertia * omega);
+        let duration = (20.0 / frequency).max(4.0);
+        Excitation { frequency, amplitude: impedance * omega * amplitude, duration }
+    };
+    frequencies.iter().map(sine).collect()
+}
+
+const LOW_TO_HIGH: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
+
+fn identified(rig: &Rig, frequencies: &[f64], amplitude: f64) -> Identification {
+    let record = rig.measure(&sines(rig.device, frequencies, amplitude));
+    identify(&record, &Correction::of_encoder(rig.counts_per_turn)).unwrap()
+}
+
+fn assert_near(found: &Estimate, wanted: f64, part: f64) {
+    assert!((found.value - wanted).abs() < part * wanted, "{found:?} {wanted}");
+}
+
+#[test]
+fn damping_and_inertia_through_counts_and_noise() {
+    for (device, noise) in [(PADDLE, 0.02), (KNOB, 2e-4)] {
+        for seed in 0..10 {
+            let rig = Rig { torque_noise: noise, seed, ..rig(device) };
+            let found = identified(&rig, LOW_TO_HIGH, 0.02);
+            assert_near(&found.damping, device.damping, 0.02);
+            assert_near(&found.inertia, device.inertia, 0.01);
+            assert!(found.is_rigid(), "{}", found.misfit);
+            let passivity = found.passivity().unwrap();
+            assert!(
+                (0.95 * device.damping..1.005 * device.damping).contains(&passivity),
+                "{found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn ten_microseconds_of_skew_are_found_and_taken_out() {
+    let rig = Rig { skew: 1e-5, torque_noise: 0.02, ..rig(PADDLE) };
+    let found = identified(&rig, &[1.0, 5.0, 20.0, 50.0, 80.0, 100.0], 0.02);
+    assert!(found.skew.is_significant(), "{found:?}");
+    assert_near(&found.skew, 1e-5, 0.1);
+    assert_near(&found.damping, PADDLE.damping, 0.02);
+    // Theory, section 3.3: 0.5 becomes 0.30 at 100 Hz.
+    assert!((found.disk.delta - 0.30).abs() < 0.01, "{:?}", found.disk);
+    assert!((found.bias + 0.20).abs() < 0.01, "{}", found.bias);
+    // A delay that is declared is no skew.
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
+    let correction =
+        Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.counts_per_turn) };
+    let declared = identify(&record, &correction).unwrap();
+    assert!(declared.skew.value.abs() < 1e-6, "{:?}", declared.skew);
+    assert_near(&declared.damping, PADDLE.damping, 0.02);
+}
+
+#[test]
+fn intervals_cover_the_truth_as_often_as_they_say() {
+    let mut covered = 0;
+    for seed in 0..100 {
+        let rig = Rig { torque_noise: 0.05, seed, ..rig(PADDLE) };
+        let found = identified(&rig, &[1.0, 2.0, 4.0, 8.0, 16.0], 0.02);
+        covered += usize::from(found.damping.lo <= 0.5 && 0.5 <= found.damping.hi);
+    }
+    assert!(covered >= 85, "{covered} of 100");
+}
+
+#[test]
+fn without_noise_only_the_counts_are_left() {
+    // As fine an encoder as its counter holds: what is left is the method's own error.
+    for device in [PADDLE, KNOB] {
+        let rig = Rig { counts_per_turn: 2f64.powi(30), ..rig(device) };
+        let found = identified(&rig, LOW_TO_HIGH, 0.02);
+        assert_near(&found.damping, device.damping, 1e-5);
+        assert_near(&found.inertia, device.inertia, 1e-5);
+        assert!(found.skew.value.abs() < 1e-8, "{:?}", found.skew);
+    }
+}
+
+#[test]
+fn steps_are_found_without_labels() {
+    let rig = Rig { torque_noise: 0.02, ..rig(PADDLE) };
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
+    let blind = Record { frequency: None, ..record.clone() };
+    let (labelled, found) = (step::steps(&record), step::steps(&blind));
+    assert_eq!(found.len(), labelled.len());
+    for (a, b) in labelled.iter().zip(&found) {
+        assert!((a.omega / b.omega - 1.0).abs() < 2e-3, "{a:?} {b:?}");
+    }
+    let found = identify(&blind, &Correction::of_encoder(rig.counts_per_turn)).unwrap();
+    assert_near(&found.damping, PADDLE.damping, 0.02);
+}
+
+#[test]
+fn too_little_motion_is_said_to_be_so() {
+    let rig = rig(PADDLE);
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5));
+    let error = identify(&record, &Correction::of_encoder(rig.counts_per_turn)).unwrap_err();
+    assert!(error.to_string().contains("use a larger torque"), "{error}");
+    let still =
+        Record { torque: vec![0.0; 100], counts: vec![0.0; 100], period: 1e-3, frequency: None };
+    assert!(matches!(
+        identify(&still, &Correction::of_encoder(4096.0)),
+        Err(IdentifyError::NoSteps)
+    ));
+}
+
+#[test]
+fn malformed_rows_are_named() {
+    let rows = |bad: &str| {
+        let good = |k: usize| format!("{:.4},{},{k}\n", k as f64 * 1e-3, 0.5);
+        let rows: String = (0..20).map(|k| if k == 7 { bad.to_owned() } else { good(k) }).collect();
+        parse("x.csv", format!("time,torque,counts\n{rows}").as_bytes())
+    };
+    let good = rows("0.007,0.5,7\n").unwrap();
+    assert!((good.period - 1e-3).abs() < 1e-12 && good.counts.len() == 20);
+    for (bad, named) in [
+        ("0.007,much,7\n", "x.csv:9: column 2, `torque`: `much`"),
+        ("0.007,inf,7\n", "x.csv:9: column 2, `torque`: `inf`"),
+        ("0.007,0.5,7.5\n", "x.csv:9: column 3, `counts`: `7.5`"),
+        ("0.008,0.5,7\n", "x.csv:9: column 1, `time`: `0.008`"),
+        ("NaN,0.5,7\n", "x.csv:9: column 1, `time`: `NaN`"),
+        ("0.007,0.5\n", "x.csv:9: 2 fields"),
+        (",,\n", "x.csv:9: column 1, `time`: ``"),
+    ] {
+        let error = rows(bad).unwrap_err().to_string();
+        assert!(error.starts_with(named), "{error}");
+    }
+    let error = |text: &str| parse("x.csv", text.as_bytes()).unwrap_err().to_string();
+    assert!(error("time,torque\n").contains("no column `counts`"));
+    assert!(error("time,torque,counts\n0,0,0\n").contains("1 rows"));
+    assert!(error("time,torque,counts\n1,0,0\n1,0,0\n").contains("x.csv:3: column 1"));
+    assert!(error("").contains("no column"));
+}
