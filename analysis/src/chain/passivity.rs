@@ -11,6 +11,7 @@ use super::exact::Decimal;
 use super::infimum::{Place, infimum};
 use super::two_port::TwoPort;
 use super::{Chain, EncoderPlace};
+use crate::quantity::significant;
 
 /// Bits to which the infimum is enclosed: three more than a double has.
 const PRECISION: u32 = 56;
@@ -71,8 +72,9 @@ pub enum NoPassivity {
     #[error(
         "the amplifier's lag of {lag} s turns inertia into negative damping, Re(1/J) = b - m lag \
          omega^2: a heavy hand makes it negative at any frequency, and the empty-handed device is \
-         not passive beyond {omega} rad/s; use a faster amplifier, and account for its lag as \
-         delay"
+         not passive beyond {} rad/s; use a faster amplifier, and account for its lag as \
+         delay",
+        significant(*.omega, 4)
     )]
     ActuatorLag {
         /// Time constant in s.
@@ -84,7 +86,9 @@ pub enum NoPassivity {
 }
 
 fn witness(omega: Option<f64>) -> String {
-    omega.map_or_else(String::new, |omega| format!(" (Re J is negative at {omega} rad/s)"))
+    omega.map_or_else(String::new, |omega| {
+        format!(" (Re J is negative at {} rad/s)", significant(omega, 4))
+    })
 }
 
 impl Chain {

@@ -32,7 +32,7 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Write the [device] table there
+    /// Write the table of the device there, ready for a scene file
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
 }
@@ -138,8 +138,8 @@ fn notes(found: &Identification) -> Vec<String> {
     if !found.is_rigid() {
         notes.push(format!(
             "inertia and damping do not explain the responses (residuals {} times the noise): the \
-             device is not one rigid mass, so its passivity is taken from the disk, between the \
-             frequencies that were measured at its own risk",
+             device is not one rigid mass, so its passivity is taken from the disk, which knows \
+             nothing of other frequencies",
             significant(found.misfit.sqrt(), 2),
         ));
     }

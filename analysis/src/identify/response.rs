@@ -121,8 +121,10 @@ fn deviation(residual: &[f64], angle: f64) -> f64 {
         .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
         .collect();
     let power = powers.iter().sum::<f64>() / powers.len().max(1) as f64;
-    // Whole counts: 1/12 of a count squared over all frequencies, at the least.
-    (0.5 * power).sqrt().max((1.0 / (6.0 * n)).sqrt())
+    // Whole counts, at the least: 1/12 of a count squared, and no better for being repeated from
+    // period to period, since its error is repeated with it.
+    let distinct = n.min(std::f64::consts::TAU / angle);
+    (0.5 * power).sqrt().max((1.0 / (6.0 * distinct)).sqrt())
 }
 
 /// `sum of x_k e^(-j angle k)`.
