@@ -29,9 +29,13 @@ pub mod scenario;
 pub mod emulator;
 pub mod toolchain;
 
-// What scenes would do that are refused.
+// What scenes would do, certified or not, and how far one may go.
+pub mod design;
 pub mod response;
+pub mod simulation;
+pub mod stability;
 pub mod unchecked;
+pub mod worst_hand;
 
 // What is shown and measured.
 pub mod bench;

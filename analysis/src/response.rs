@@ -84,6 +84,16 @@ impl Filter {
         }
     }
 
+    /// What multiplies the input of now, of one tick ago, and so on.
+    pub fn numerator(&self) -> &[f64] {
+        &self.numerator
+    }
+
+    /// What multiplies the output, likewise; the first is 1.
+    pub fn denominator(&self) -> &[f64] {
+        &self.denominator
+    }
+
     /// One tick.
     pub fn tick(&mut self, input: f64) -> f64 {
         let output = self.numerator[0] * input + self.state[0];

@@ -3,9 +3,13 @@
 pub mod bench;
 pub mod certify;
 pub mod demo;
+pub mod design;
 pub mod device;
 pub mod identify;
 pub mod run;
+pub mod simulate;
+pub mod stability;
+pub mod worst_hand;
 
 use std::io;
 use std::path::PathBuf;
@@ -21,6 +25,7 @@ use crate::file::FileError;
 use crate::identify::IdentifyError;
 use crate::replay::ReplayError;
 use crate::scenario::ScenarioError;
+use crate::simulation::SimulationError;
 use crate::toolchain::{BuildError, SetupError};
 
 /// Certifies haptic scenes, runs them, and shows what they do.
@@ -51,6 +56,14 @@ pub enum Command {
     Demo(demo::Arguments),
     /// Measure what a certificate and a tick cost.
     Bench(bench::Arguments),
+    /// What would a scene do, certified or not?
+    Simulate(simulate::Arguments),
+    /// Does the motion of this device in this hand die away?
+    Stability(stability::Arguments),
+    /// How far may one go, and what does it take? Answers are scenes that certify.
+    Design(design::Arguments),
+    /// In which passive hand does a scene oscillate?
+    WorstHand(worst_hand::Arguments),
 }
 
 /// The answer of a command that could be asked.
@@ -133,6 +146,17 @@ pub enum CommandError {
         /// Why.
         source: io::Error,
     },
+    /// A scene that cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A design asks for what the environment does not have.
+    #[error("the environment of {scene} has no {quantity}")]
+    NoSuchQuantity {
+        /// Name of the scene.
+        scene: String,
+        /// What was asked for.
+        quantity: &'static str,
+    },
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
@@ -147,6 +171,10 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Stability(arguments) => stability::run(&arguments),
+        Command::Design(arguments) => design::run(&arguments),
+        Command::WorstHand(arguments) => worst_hand::run(&arguments),
     };
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

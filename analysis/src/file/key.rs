@@ -190,6 +190,19 @@ keys! {
     /// Phase of the sine at sample 0.
     SINE_PHASE = "simulation.torque_sine.phase", "rad", Bound::Finite;
 
+    /// Dry friction of the device.
+    FRICTION = "simulation.friction", "N m", Bound::NotNegative;
+    /// Time from a sample to its torque.
+    LATENCY = "simulation.latency", "s", Bound::NotNegative;
+    /// Ticks in which the servo does not run.
+    MISSED = "simulation.missed", "", TABLE;
+    /// Of so many ticks the last is missed.
+    MISSED_EVERY = "simulation.missed.every", "ticks", Bound::Whole(2, 1_000_000);
+    /// Probability that a tick is missed.
+    MISSED_FRACTION = "simulation.missed.fraction", "", Bound::Fraction;
+    /// Seed of the chance.
+    MISSED_SEED = "simulation.missed.seed", "", Bound::Whole(0, u32::MAX);
+
     /// A passive hand that holds the device.
     HUMAN = "human", "", TABLE;
     /// Inertia of the hand.

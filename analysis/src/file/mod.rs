@@ -27,6 +27,18 @@
 //! that is forgotten is one that is not accounted for. `[simulation]`, `[human]` and `[limits]`
 //! are optional; `limits.torque` makes the torque limit part of what is certified.
 //!
+//! ```toml
+//! [simulation]
+//! samples = 1000
+//! position = 0.001              # optional: rad at sample 0
+//! velocity = 0.0                # optional: rad/s at sample 0
+//! torque_sine = { amplitude = 0.01, omega = 60.0, phase = 0.0 } # optional: N m, rad/s, rad
+//! # torque = [0.1, 0.2]         # instead: N m, one a sample; or torque_file, numbers in a file
+//! friction = 0.002              # optional: N m, dry friction on the motor's mass
+//! latency = 0.0002              # optional: s from sample to torque, less than the period
+//! missed = { fraction = 0.01, seed = 1 } # optional: ticks without a servo; or { every = 2 }
+//! ```
+//!
 //! A device that is not rigid is a chain of masses in place of `inertia` and `damping`, the motor's
 //! mass first and the hand's last, with one link fewer than masses. A mass without `damping` has
 //! none, a link likewise. Its passivity is computed ([`crate::chain`]).
@@ -50,6 +62,7 @@ pub mod device;
 pub mod key;
 pub mod scene;
 pub mod simulation;
+pub mod write;
 
 mod json;
 mod problem;

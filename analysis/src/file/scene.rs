@@ -38,7 +38,9 @@ pub fn read(text: &str, root: Node, purpose: Purpose) -> Result<SceneFile, Fault
     let timing = timing(top.needed_table(&key::SERVO)?)?;
     let coupling = top.table(&key::COUPLING)?.map_or(Ok(Coupling::Rigid), coupling)?;
     let environment = environment(top.needed_table(&key::ENVIRONMENT)?)?;
-    let simulation = top.table(&key::SIMULATION)?.map(simulation::simulation).transpose()?;
+    let simulation = top.table(&key::SIMULATION)?;
+    let simulation = simulation.map(|table| simulation::simulation(table, timing.period));
+    let simulation = simulation.transpose()?;
     let hand = top.table(&key::HUMAN)?.map(simulation::hand).transpose()?;
     let (torque_limit, encoder_step) = top.table(&key::LIMITS)?.map_or(Ok((None, None)), limits)?;
     top.finish()?;

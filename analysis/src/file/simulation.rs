@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use crate::device::Hand;
+use crate::simulation::missed::Missed;
 
 use super::key::{self, Key};
 use super::problem::Fault;
@@ -20,6 +21,12 @@ pub struct Simulation {
     pub velocity: f64,
     /// Torque of the hand on the device.
     pub torque: HandTorque,
+    /// Dry friction of the device in N m.
+    pub friction: f64,
+    /// Time in s from a sample to its torque, less than the period.
+    pub latency: f64,
+    /// Ticks in which the servo does not run.
+    pub missed: Missed,
 }
 
 /// Torque in N m that the hand puts on the device, positive in the direction of the angle.
@@ -42,14 +49,49 @@ pub enum HandTorque {
     },
 }
 
-/// Reads `[simulation]`.
-pub fn simulation(mut section: Section<'_>) -> Result<Simulation, Fault> {
+/// Reads `[simulation]` of a servo with this period in s.
+pub fn simulation(mut section: Section<'_>, period: f64) -> Result<Simulation, Fault> {
     let samples = section.number(&key::SAMPLES)? as usize;
     let position = section.optional(&key::POSITION)?.unwrap_or(0.0);
     let velocity = section.optional(&key::VELOCITY)?.unwrap_or(0.0);
     let torque = torque(&mut section)?;
+    let friction = section.optional(&key::FRICTION)?.unwrap_or(0.0);
+    let latency = latency(&mut section, period)?;
+    let missed = section.table(&key::MISSED)?.map_or(Ok(Missed::None), missed)?;
     section.finish()?;
-    Ok(Simulation { samples, position, velocity, torque })
+    Ok(Simulation { samples, position, velocity, torque, friction, latency, missed })
+}
+
+fn latency(section: &mut Section<'_>, period: f64) -> Result<f64, Fault> {
+    match section.found(&key::LATENCY)? {
+        None => Ok(0.0),
+        Some(Found { value, .. }) if value < period => Ok(value),
+        Some(Found { span, .. }) => {
+            let reason = format!(
+                "is not shorter than `{}` = {period} s; whole ticks are `{}`",
+                key::PERIOD.path,
+                key::DELAY_SAMPLES.path
+            );
+            Err(section.conflict(&key::LATENCY, span, reason))
+        }
+    }
+}
+
+fn missed(mut table: Section<'_>) -> Result<Missed, Fault> {
+    let every = table.found(&key::MISSED_EVERY)?;
+    let fraction = table.optional(&key::MISSED_FRACTION)?;
+    let seed = table.optional(&key::MISSED_SEED)?;
+    let missed = match (every, fraction) {
+        (None, None) => return Err(table.missing(&key::MISSED_FRACTION)),
+        (None, Some(fraction)) => Missed::Random { fraction, seed: seed.unwrap_or(0.0) as u64 },
+        (Some(Found { value, .. }), None) if seed.is_none() => Missed::Every(value as u32),
+        (Some(Found { span, .. }), _) => {
+            let reason = "stands beside what chance decides; it is one or the other".to_owned();
+            return Err(table.conflict(&key::MISSED_EVERY, span, reason));
+        }
+    };
+    table.finish()?;
+    Ok(missed)
 }
 
 /// Reads `[human]`.

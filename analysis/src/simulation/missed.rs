@@ -1,0 +1,67 @@
+//! Ticks in which the servo does not run, so that the last torque stays (theory, section 8).
+
+/// Which ticks are missed. Sample 0 is never.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Missed {
+    /// None.
+    #[default]
+    None,
+    /// The last of so many, over and over.
+    Every(u32),
+    /// Each with this probability, the same ones for the same seed.
+    Random {
+        /// Probability, at least 0 and less than 1.
+        fraction: f64,
+        /// Seed.
+        seed: u64,
+    },
+}
+
+impl Missed {
+    /// Whether a tick is missed, tick by tick.
+    pub fn ticks(self) -> impl Iterator<Item = bool> + Clone + std::fmt::Debug {
+        Ticks { missed: self, random: fastrand::Rng::with_seed(self.seed()), k: 0 }
+    }
+
+    fn seed(self) -> u64 {
+        if let Self::Random { seed, .. } = self { seed } else { 0 }
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Ticks {
+    missed: Missed,
+    random: fastrand::Rng,
+    k: u64,
+}
+
+impl Iterator for Ticks {
+    type Item = bool;
+
+    fn next(&mut self) -> Option<bool> {
+        let k = self.k;
+        self.k += 1;
+        let missed = match self.missed {
+            Missed::None => false,
+            Missed::Every(count) => k % u64::from(count.max(1)) == u64::from(count.max(1)) - 1,
+            Missed::Random { fraction, .. } => self.random.f64() < fraction,
+        };
+        Some(missed && k > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn misses_what_it_says() {
+        let first = |missed: Missed| missed.ticks().take(10_000).collect::<Vec<_>>();
+        assert_eq!(first(Missed::Every(2))[..5], [false, true, false, true, false]);
+        let random = first(Missed::Random { fraction: 0.1, seed: 7 });
+        assert_eq!(random, first(Missed::Random { fraction: 0.1, seed: 7 }));
+        let count = random.iter().filter(|&&missed| missed).count();
+        assert!((900..1100).contains(&count), "{count}");
+        assert!(!first(Missed::None).contains(&true));
+    }
+}

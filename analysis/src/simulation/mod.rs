@@ -1,0 +1,315 @@
+//! What a scene would do: the sampled loop of servo, device and hand, tick by tick.
+//!
+//! In tick `k` the servo reads the angle at `t = k T`, computes the coupling torque `F(k)`, and the
+//! motor applies `-F(k)` until the next tick. Position, velocity and `F` are recorded at that
+//! instant, before the torque acts. Environment and hidden states start at rest at zero. A scene
+//! need not be certified to be simulated; that it need not is the use of a simulation.
+//!
+//! ```
+//! use analysis::file::{Format, parse};
+//! use analysis::simulation::{Experiment, Stride, simulate};
+//!
+//! let file = parse("bounce.toml", Format::Toml, r#"
+//!     name = "bounce"
+//!     device = { inertia = 2.2e-5, damping = 0.022 }
+//!     servo = { period = 0.001 }
+//!     coupling = { stiffness = 44.0 }
+//!     environment = { type = "damper-wall", stiffness = 22.0, damping = 0.01, delay = 1 }
+//!     simulation = { samples = 1000, position = 0.001 }
+//! "#)?;
+//! let motion = simulate(&Experiment::of(&file, ".".as_ref())?, Stride::default())?;
+//! assert_eq!(motion.position[0], 0.001);
+//! assert!(motion.position[999].abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod closed;
+pub mod drive;
+pub mod friction;
+pub mod kernel;
+pub mod method;
+pub mod missed;
+pub mod plant;
+pub mod rendering;
+pub mod tick;
+
+mod general;
+
+use std::path::Path;
+
+use firmware::environment::{Environment, Wall};
+use firmware::passivity::transfer::Unbuildable;
+use firmware::scene::Scene;
+use firmware::servo::BuildError;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::device::Motion;
+use crate::file::SceneFile;
+
+use closed::ClosedLoop;
+use drive::Drive;
+use general::General;
+use kernel::Linear;
+use method::Method;
+use missed::Missed;
+use plant::Plant;
+use tick::{Stepping, Tick};
+
+/// Why there is no answer.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The file does not say what to simulate.
+    #[error("{scene}: a simulation needs a [simulation] table with `samples`")]
+    NoSimulation {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// The scene has no law that could run.
+    #[error("the scene cannot run: {0}")]
+    Servo(#[from] BuildError),
+    /// The scene has no linear loop.
+    #[error("the scene has no closed loop: {}", unbuildable(*.0))]
+    Loop(Unbuildable),
+    /// The torque file cannot be read.
+    #[error("cannot read the torque file {file}: {error}")]
+    TorqueFile {
+        /// The file.
+        file: String,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// Something in the torque file is not a finite number.
+    #[error("{file}:{line}: {value} must be a finite number in N m")]
+    TorqueValue {
+        /// The file.
+        file: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// What stands there.
+        value: String,
+    },
+    /// No eigenvalues were found.
+    #[error("the eigenvalues of the closed loop were not found; its numbers are too far apart")]
+    Eigenvalues,
+}
+
+impl From<Unbuildable> for SimulationError {
+    fn from(error: Unbuildable) -> Self {
+        Self::Loop(error)
+    }
+}
+
+fn unbuildable(error: Unbuildable) -> &'static str {
+    match error {
+        Unbuildable::Improper => "its environment needs samples from the future",
+        Unbuildable::IllPosed => "coupling and environment have no unique solution",
+        Unbuildable::OutOfRange => "a number of it is out of range",
+    }
+}
+
+/// Everything that decides what will happen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Experiment {
+    /// The scene; its device is where the canceller's damping comes from.
+    pub scene: Scene,
+    /// The machine, with the hand that holds it and its amplifier's lag.
+    pub plant: Plant,
+    /// How the device moves at sample 0.
+    pub start: Motion,
+    /// Number of samples.
+    pub samples: usize,
+    /// Torque of the hand.
+    pub drive: Drive,
+    /// Angle of an encoder count in rad, if the angle is floored to whole counts.
+    pub encoder_step: Option<f64>,
+    /// Dry friction of the motor's mass in N m.
+    pub friction: f64,
+    /// Time in s from a sample to its torque, less than the period.
+    pub latency: f64,
+    /// Ticks in which the servo does not run.
+    pub missed: Missed,
+}
+
+impl Experiment {
+    /// What a scene file asks for; `folder` is where its torque file is looked for.
+    ///
+    /// # Errors
+    /// Where the file has no `[simulation]`, or its torque file cannot be read.
+    pub fn of(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
+        let Some(simulation) = &file.simulation else {
+            return Err(SimulationError::NoSimulation { scene: file.name.clone() });
+        };
+        Ok(Self {
+            samples: simulation.samples,
+            start: Motion { position: simulation.position, velocity: simulation.velocity },
+            drive: Drive::load(&simulation.torque, folder)?,
+            friction: simulation.friction,
+            latency: simulation.latency,
+            missed: simulation.missed,
+            encoder_step: file.encoder_step,
+            ..Self::at_rest(file)
+        })
+    }
+
+    /// The scene and the machine of a file, at rest, with nothing to disturb them but latency.
+    pub fn at_rest(file: &SceneFile) -> Self {
+        Self {
+            plant: Plant::of(&file.chain).held(file.hand.unwrap_or_default()),
+            latency: file.simulation.as_ref().map_or(0.0, |simulation| simulation.latency),
+            ..Self::still(&file.scene)
+        }
+    }
+
+    /// A scene on its rigid device in no hand, at rest, with nothing to disturb it.
+    pub fn still(scene: &Scene) -> Self {
+        Self {
+            scene: *scene,
+            plant: Plant::rigid(scene.device),
+            start: Motion::default(),
+            samples: 0,
+            drive: Drive::Free,
+            encoder_step: None,
+            friction: 0.0,
+            latency: 0.0,
+            missed: Missed::None,
+        }
+    }
+
+    /// Whether the loop is linear and the same in every tick.
+    fn is_linear(&self) -> bool {
+        let centred = wall(&self.scene).is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
+        let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
+        centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
+    }
+
+    /// How the plant is taken through a tick.
+    pub fn stepping(&self, stride: Stride) -> Stepping {
+        Stepping {
+            method: stride.method,
+            substeps: stride.substeps.max(1),
+            period: self.scene.timing.period,
+            latency: self.latency,
+        }
+    }
+}
+
+/// The wall of a scene, if it has one.
+pub(crate) fn wall(scene: &Scene) -> Option<&Wall> {
+    match &scene.environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => Some(wall),
+        Environment::FreeMode { .. } | Environment::Rational(_) => None,
+    }
+}
+
+/// Method and steps a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stride {
+    /// The method.
+    pub method: Method,
+    /// Steps a tick, at least one; the exact method takes the tick in one whatever this is.
+    pub substeps: u32,
+}
+
+impl Default for Stride {
+    fn default() -> Self {
+        Self { method: Method::Exact, substeps: 1 }
+    }
+}
+
+/// Samples at the instants of the ticks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Trajectory {
+    /// Position of the encoder's mass in rad.
+    pub position: Vec<f64>,
+    /// Its velocity in rad/s.
+    pub velocity: Vec<f64>,
+    /// Coupling torque `F` in N m; the motor applies `-F`.
+    pub torque: Vec<f64>,
+}
+
+impl Trajectory {
+    /// Room for so many samples.
+    pub fn of_length(samples: usize) -> Self {
+        let zeros = || vec![0.0; samples];
+        Self { position: zeros(), velocity: zeros(), torque: zeros() }
+    }
+
+    fn columns(&mut self) -> Columns<'_> {
+        let Self { position, velocity, torque } = self;
+        Columns { position, velocity, torque }
+    }
+}
+
+/// Where samples are written, one slice each of the same length.
+#[derive(Debug)]
+pub struct Columns<'t> {
+    /// As [`Trajectory::position`].
+    pub position: &'t mut [f64],
+    /// As [`Trajectory::velocity`].
+    pub velocity: &'t mut [f64],
+    /// As [`Trajectory::torque`].
+    pub torque: &'t mut [f64],
+}
+
+/// An experiment in motion.
+#[derive(Debug)]
+pub struct Simulator {
+    drive: Drive,
+    engine: Engine,
+}
+
+#[derive(Debug)]
+enum Engine {
+    Linear(Box<dyn Linear>),
+    General(Box<General>),
+}
+
+impl Simulator {
+    /// Sets an experiment up.
+    ///
+    /// # Errors
+    /// Where the scene has no law that could run.
+    pub fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
+        let drive = experiment.drive.clone();
+        // Refuses what has no law, whichever way it would be run.
+        let general = General::new(experiment, stride)?;
+        if experiment.is_linear()
+            && let Some(linear) = linear(experiment, stride)
+        {
+            return Ok(Self { drive, engine: Engine::Linear(linear) });
+        }
+        Ok(Self { drive, engine: Engine::General(Box::new(general)) })
+    }
+
+    /// The next samples, as many as `trajectory` has room for.
+    pub fn fill(&mut self, trajectory: &mut Trajectory) {
+        match &mut self.engine {
+            Engine::Linear(linear) => linear.fill(&self.drive, trajectory.columns()),
+            Engine::General(general) => general.fill(&self.drive, trajectory.columns()),
+        }
+    }
+}
+
+fn linear(experiment: &Experiment, stride: Stride) -> Option<Box<dyn Linear>> {
+    let stepping = experiment.stepping(stride);
+    let tick = Tick::new(&experiment.plant, &stepping, experiment.drive.omega());
+    let closed = ClosedLoop::new(&tick, &experiment.scene).ok()?;
+    let start = experiment.plant.moving(experiment.start.position, experiment.start.velocity);
+    kernel::kernel(&closed, &tick, stepping.period, &start)
+}
+
+/// Runs an experiment from its start to its end.
+///
+/// # Errors
+/// Where the scene has no law that could run.
+pub fn simulate(experiment: &Experiment, stride: Stride) -> Result<Trajectory, SimulationError> {
+    let mut trajectory = Trajectory::of_length(experiment.samples);
+    Simulator::new(experiment, stride)?.fill(&mut trajectory);
+    Ok(trajectory)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::*;
+use crate::device::Hand;
+
+fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
+    Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }
+}
+
+fn scene(device: Device, stiffness: Option<f64>, environment: Environment) -> Scene {
+    Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: stiffness.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness }),
+        environment,
+        torque_limit: None,
+    }
+}
+
+fn paper(environment: Environment) -> Scene {
+    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+    scene(device, Some(44.0), environment)
+}
+
+fn moving(scene: &Scene, samples: usize, position: f64) -> Experiment {
+    let start = Motion { position, velocity: 0.3 };
+    Experiment { samples, start, ..Experiment::still(scene) }
+}
+
+fn furthest(is: &[f64], should: &[f64]) -> f64 {
+    let size = should.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+    is.iter().zip(should).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+}
+
+/// The firmware's law tick by tick against the certificate's transfer function as one matrix.
+#[test]
+fn both_ways_of_running_a_linear_loop_agree() {
+    let filtered = Wall { filter: Some(0.8), ..wall(10.0, 0.008, 2) };
+    let numerator = Coefficients::new(&[3.0, -2.5]).unwrap();
+    let denominator = Coefficients::new(&[1.0, -0.9, 0.2]).unwrap();
+    let environments = [
+        Environment::DelayedSpring(wall(22.0, 0.0, 1)),
+        Environment::DamperWall(wall(22.0, 0.01, 1)),
+        Environment::DamperWall(wall(22.0, 0.01, 0)),
+        Environment::DamperWall(filtered),
+        Environment::FreeMode { residual: 0.001, delay: 0 },
+        Environment::FreeModeWall { residual: 0.01, wall: wall(5.0, 0.001, 1) },
+        Environment::Rational(Rational { numerator, denominator, delay: 1, unit_zeros: 1 }),
+    ];
+    for environment in environments {
+        for drive in [
+            Drive::Free,
+            Drive::Held(vec![0.01, -0.02, 0.03]),
+            Drive::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 },
+        ] {
+            let mut experiment = Experiment { drive, ..moving(&paper(environment), 500, 0.01) };
+            let hand = Hand { inertia: 1e-5, damping: 0.001, stiffness: 0.3 };
+            experiment.plant = experiment.plant.held(hand);
+            experiment.latency = 2e-4;
+            assert!(experiment.is_linear());
+            let fast = simulate(&experiment, Stride::default()).unwrap();
+            let mut slow = Trajectory::of_length(500);
+            let mut general = General::new(&experiment, Stride::default()).unwrap();
+            general.fill(&experiment.drive, slow.columns());
+            assert!(linear(&experiment, Stride::default()).is_some());
+            assert!(furthest(&fast.position, &slow.position) < 1e-12, "{environment:?}");
+            assert!(furthest(&fast.velocity, &slow.velocity) < 1e-12, "{environment:?}");
+            assert!(furthest(&fast.torque, &slow.torque) < 1e-12, "{environment:?}");
+        }
+    }
+}
+
+#[test]
+fn chunks_are_one_motion() {
+    let drive = Drive::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 };
+    for limit in [None, Some(0.05)] {
+        let mut scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));
+        scene.torque_limit = limit;
+        let experiment = Experiment { drive: drive.clone(), ..moving(&scene, 30, 0.01) };
+        let whole = simulate(&experiment, Stride::default()).unwrap();
+        let mut simulator = Simulator::new(&experiment, Stride::default()).unwrap();
+        let mut parts = Vec::new();
+        for length in [1, 9, 20] {
+            let mut part = Trajectory::of_length(length);
+            simulator.fill(&mut part);
+            parts.extend(part.position);
+        }
+        assert_eq!(parts, whole.position);
+    }
+}
+
+/// Mean square over the last quarter, over that of the first.
+fn decay(experiment: &Experiment) -> f64 {
+    let motion = simulate(experiment, Stride::default()).unwrap();
+    let quarter = experiment.samples / 4;
+    let power = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>();
+    power(&motion.velocity[3 * quarter..]) / power(&motion.velocity[..quarter])
+}
+
+/// Theory, section 8, with m = 0.05, b = 0.5 and an undelayed rigid spring, whose limit without
+/// missed ticks is 2 b / T = 1000.
+#[test]
+fn missed_ticks_need_the_longest_time_between_updates() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let spring = |stiffness| {
+        let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
+        moving(&scene, 4000, 1e-3)
+    };
+    // What is left of the damping, b - K T / 2, takes seconds.
+    assert!(decay(&spring(950.0)) < 0.5);
+    let missed = Missed::Random { fraction: 0.1, seed: 1 };
+    assert!(decay(&Experiment { missed, ..spring(950.0) }) > 2.0);
+    assert!(decay(&Experiment { missed: Missed::Every(2), ..spring(475.0) }) < 0.5);
+    assert!(decay(&Experiment { missed: Missed::Every(2), ..spring(525.0) }) > 2.0);
+}
+
+/// Theory, section 8: the limit of the bare device with a latency is b / (T/2 + tau).
+#[test]
+fn latency_moves_the_limit() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let scene = scene(device, None, Environment::DelayedSpring(wall(1.0, 0.0, 0)));
+    for latency in [1e-4, 3.3e-4, 9e-4] {
+        let experiment = Experiment { latency, ..Experiment::still(&scene) };
+        let found = crate::stability::critical_stiffness(&experiment, Stride::default());
+        let should = 0.5 / (0.5e-3 + latency);
+        assert!((found.unwrap().unwrap() / should - 1.0).abs() < 3e-3);
+    }
+}
+
+/// Theory, section 8: an encoder step of D under a spring hums without friction and rests with
+/// friction of K D / 2.
+#[test]
+fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let scene = scene(device, None, Environment::DelayedSpring(wall(500.0, 0.0, 0)));
+    let step = 1e-4;
+    let end = |friction: f64| {
+        let encoder_step = Some(step);
+        let experiment = Experiment { friction, encoder_step, ..moving(&scene, 20_000, 0.02) };
+        let motion = simulate(&experiment, Stride::default()).unwrap();
+        motion.velocity[19_000..].iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+    };
+    assert!(end(0.0) > step);
+    assert_eq!(end(0.5 * 500.0 * step), 0.0);
+}
+
+#[test]
+fn torque_is_limited_before_the_coupling_is_solved() {
+    let mut scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
+    scene.torque_limit = Some(0.1);
+    let motion = simulate(&moving(&scene, 50, 0.05), Stride::default()).unwrap();
+    // K x / (1 + K / K_vc) would be 0.73.
+    assert_eq!(motion.torque[0], 0.1);
+    assert!(motion.torque.iter().all(|torque| torque.abs() <= 0.1));
+}
+
+#[test]
+fn a_scene_without_a_law_is_refused() {
+    let numerator = Coefficients::new(&[1.0, 0.0]).unwrap();
+    let denominator = Coefficients::new(&[1.0]).unwrap();
+    let rational = Rational { numerator, denominator, delay: 0, unit_zeros: 0 };
+    let scene = paper(Environment::Rational(rational));
+    let error = simulate(&moving(&scene, 10, 0.0), Stride::default()).unwrap_err();
+    assert!(error.to_string().contains("samples from the future"), "{error}");
+}

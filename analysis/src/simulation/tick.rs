@@ -1,0 +1,101 @@
+//! The plant over one tick: what the servo's period and its latency make of a [`Plant`].
+
+use nalgebra::{DMatrix, DVector};
+
+use super::method::{Method, repeated, rotation, step};
+use super::plant::{Input, Plant};
+
+/// How a plant is taken through a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepping {
+    /// The method.
+    pub method: Method,
+    /// Steps a tick, at least one.
+    pub substeps: u32,
+    /// Period of the servo in s.
+    pub period: f64,
+    /// Time in s from the sample to the torque that follows from it, less than the period.
+    pub latency: f64,
+}
+
+impl Stepping {
+    /// The two parts of a tick, before and after the new torque: length in s and steps.
+    pub(super) fn parts(&self) -> [(f64, u32); 2] {
+        let share = self.latency / self.period;
+        let steps = |share: f64| (f64::from(self.substeps) * share).ceil().max(1.0) as u32;
+        [(self.latency, steps(share)), (self.period - self.latency, steps(1.0 - share))]
+    }
+}
+
+/// `x(k+1) = transition x(k) + previous u(k-1) + motor u(k) + hand w(k) + sine (s, c)(k)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// From the state at the tick's start.
+    pub transition: DMatrix<f64>,
+    /// From the motor torque of the tick before, which lasts for the latency; zero without one.
+    pub previous: DVector<f64>,
+    /// From the motor torque that this tick's sample leads to.
+    pub motor: DVector<f64>,
+    /// From the hand's torque held over the tick.
+    pub hand: DVector<f64>,
+    /// From the hand's sine torque at the tick's start and from its cosine.
+    pub sine: [DVector<f64>; 2],
+}
+
+impl Tick {
+    /// Takes the plant through a tick; `omega` in rad/s is that of the hand's sine torque.
+    pub fn new(plant: &Plant, stepping: &Stepping, omega: f64) -> Self {
+        let n = plant.order();
+        let [before, after] = stepping.parts().map(|(length, count)| {
+            let h = length / f64::from(count);
+            repeated(&step(plant, stepping.method, omega, h), count)
+        });
+        let part = |whole: &DMatrix<f64>| whole.view((0, 0), (n, n)).into_owned();
+        let column = |whole: &DMatrix<f64>, index: usize| {
+            whole.view((0, n + index), (n, 1)).column(0).into_owned()
+        };
+        let (motor, hand, sine) =
+            (Input::Motor as usize, Input::Hand as usize, super::plant::INPUTS);
+        let late = part(&after);
+        let turned = rotation(omega * stepping.latency);
+        let oscillator = |i: usize| {
+            let later =
+                column(&after, sine) * turned[(0, i)] + column(&after, sine + 1) * turned[(1, i)];
+            &late * column(&before, sine + i) + later
+        };
+        Self {
+            transition: &late * part(&before),
+            previous: &late * column(&before, motor),
+            motor: column(&after, motor),
+            hand: &late * column(&before, hand) + column(&after, hand),
+            sine: [oscillator(0), oscillator(1)],
+        }
+    }
+
+    /// Whether the tick depends on the torque of the one before.
+    pub fn is_late(&self) -> bool {
+        self.previous.iter().any(|&effect| effect != 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware::scene::Device;
+
+    #[test]
+    fn latency_splits_the_tick_and_nothing_else() {
+        let plant = Plant::rigid(Device { inertia: 2e-4, damping: 0.02, passivity: None });
+        let stepping =
+            |latency| Stepping { method: Method::Exact, substeps: 1, period: 1e-3, latency };
+        let [prompt, late] =
+            [0.0, 4e-4].map(|latency| Tick::new(&plant, &stepping(latency), 900.0));
+        assert!(!prompt.is_late() && late.is_late());
+        let near = |a: &DVector<f64>, b: &DVector<f64>| assert!((a - b).amax() < 1e-12 * b.amax());
+        assert!((&prompt.transition - &late.transition).amax() < 1e-15);
+        near(&(&late.previous + &late.motor), &prompt.motor);
+        near(&late.hand, &prompt.hand);
+        near(&late.sine[0], &prompt.sine[0]);
+        near(&late.sine[1], &prompt.sine[1]);
+    }
+}

@@ -1,0 +1,135 @@
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::*;
+use crate::device::{Hand, Motion};
+use crate::simulation::drive::Drive;
+use crate::simulation::method::Method;
+use crate::simulation::missed::Missed;
+use crate::simulation::plant::Plant;
+
+/// The mass and damper of theory, section 5.
+const DEVICE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+
+pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
+    let wall = Wall { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false };
+    Experiment {
+        scene: Scene {
+            device: DEVICE,
+            timing: Timing { period: 1e-3, worst_period: None },
+            coupling,
+            environment: Environment::DelayedSpring(wall),
+            torque_limit: None,
+        },
+        plant: Plant::rigid(DEVICE),
+        start: Motion::default(),
+        samples: 0,
+        drive: Drive::Free,
+        encoder_step: None,
+        friction: 0.0,
+        latency: 0.0,
+        missed: Missed::None,
+    }
+}
+
+fn critical(experiment: &Experiment, method: Method, substeps: u32) -> f64 {
+    critical_stiffness(experiment, Stride { method, substeps }).unwrap().unwrap()
+}
+
+fn near(is: f64, should: f64, within: f64) {
+    assert!((is - should).abs() <= within, "{is} instead of {should}");
+}
+
+/// The passivity limit `b / (T (n - 1/2))` of theory, section 5, is nearly that of the device in no
+/// hand, and never above it. The numbers are from the characteristic equation in closed form,
+/// `K = -z^n / (1 / K_vc + G(z))` where that is real on the unit circle.
+#[test]
+fn delayed_springs_behind_the_standard_coupling() {
+    let coupling = Coupling::Spring { stiffness: 1000.0 };
+    for (delay, limit) in [(1, 1_000.008_333), (2, 334.131_266), (3, 200.740_941)] {
+        let found = critical(&spring(1.0, delay, coupling), Method::Exact, 1);
+        near(found, limit, 1e-6);
+        let passive = 0.5 / (1e-3 * (delay as f64 - 0.5));
+        assert!(found >= passive && found < 1.005 * passive);
+    }
+}
+
+/// Theory, section 9: the verdict depends on the integrator.
+#[test]
+fn apparent_limits_of_the_methods() {
+    let bare = spring(1.0, 0, Coupling::Rigid);
+    near(critical(&bare, Method::Exact, 1), 1001.67, 5e-3);
+    near(critical(&bare, Method::Euler, 1), 500.0, 1e-6);
+    near(critical(&bare, Method::SemiImplicit, 1), 199_000.0, 1e-4);
+    near(critical(&bare, Method::Euler, 10), 910.0, 2.0);
+    near(critical(&bare, Method::SemiImplicit, 10), 1113.0, 2.0);
+    near(critical(&bare, Method::Rk4, 1), 1001.67, 5e-3);
+}
+
+/// The characteristic polynomial of a mass and damper under an undelayed rigid spring is
+/// `z^2 - (1 + e - K g) z + (e + K h)` with the exponential `e`, so Jury's conditions are exact:
+/// here it is `|z|^2 = e + K h` that reaches 1.
+#[test]
+fn the_crossing_is_where_jurys_condition_has_it() {
+    let (m, b, t) = (DEVICE.inertia, DEVICE.damping, 1e-3);
+    let a = b * t / m;
+    let gone = -(-a).exp_m1();
+    let torque = (t - gone * m / b) / b;
+    // h = (velocity's share of the position) * gone / b - e * (position's share)
+    let h = gone * m / b * (gone / b) - (1.0 - gone) * torque;
+    let exact = gone / h;
+    let found = critical(&spring(1.0, 0, Coupling::Rigid), Method::Exact, 1);
+    near(found / exact, 1.0, 1e-10);
+}
+
+#[test]
+fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides() {
+    let standard = Coupling::Spring { stiffness: 1000.0 };
+    let hand = Hand { inertia: 0.02, damping: 0.1, stiffness: 300.0 };
+    for delay in 0..5 {
+        let mut experiment = spring(1.0, delay, standard);
+        experiment.plant = experiment.plant.clone().held(hand);
+        experiment.latency = if delay == 2 { 3e-4 } else { 0.0 };
+        let Some(limit) = critical_stiffness(&experiment, Stride::default()).unwrap() else {
+            assert_eq!(delay, 0);
+            continue;
+        };
+        let at = |stiffness: f64| {
+            let scene = with_stiffness(&experiment.scene, stiffness).unwrap();
+            judge(&Experiment { scene, ..experiment.clone() }, Stride::default()).unwrap()
+        };
+        near(at(limit).spectral_radius, 1.0, 1e-11);
+        assert_eq!(at(limit).verdict, Verdict::Marginal);
+        assert_eq!(at(limit * (1.0 - 1e-5)).verdict, Verdict::Stable);
+        assert_eq!(at(limit * (1.0 + 1e-5)).verdict, Verdict::Unstable);
+    }
+}
+
+#[test]
+fn a_device_that_stays_where_it_is_left_is_marginal_and_one_that_drifts_is_not() {
+    let free = |damping: f64| {
+        let device = Device { damping, ..DEVICE };
+        let mut experiment = spring(0.0, 1, Coupling::Rigid);
+        experiment.plant = Plant::rigid(device);
+        judge(&experiment, Stride::default()).unwrap()
+    };
+    assert_eq!(free(0.5).verdict, Verdict::Marginal);
+    near(free(0.5).spectral_radius, 1.0, 1e-14);
+    assert_eq!(free(0.0).verdict, Verdict::Unstable);
+}
+
+/// A device without damping has no passivity to certify with, and moves all the same.
+#[test]
+fn a_scene_without_passivity_has_a_loop() {
+    let mut experiment = spring(100.0, 1, Coupling::Spring { stiffness: 1000.0 });
+    experiment.scene.device.damping = 0.0;
+    for passivity in [None, Some(0.0), Some(f64::NAN)] {
+        experiment.scene.device.passivity = passivity;
+        experiment.plant = Plant::rigid(experiment.scene.device);
+        let stability = judge(&experiment, Stride::default()).unwrap();
+        assert_eq!(stability.verdict, Verdict::Unstable);
+        let held = Hand { inertia: 0.0, damping: 0.5, stiffness: 0.0 };
+        experiment.plant = experiment.plant.clone().held(held);
+        assert_eq!(judge(&experiment, Stride::default()).unwrap().verdict, Verdict::Stable);
+    }
+}

@@ -1,0 +1,199 @@
+//! The commands that say what a scene would do, as programs call them.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const WALL: &str = r#"
+name = "wall"
+[device]
+inertia = 2.2e-5
+damping = 0.022
+[servo]
+period = 0.001
+[coupling]
+stiffness = 44.0
+[environment]
+type = "damper-wall"
+stiffness = 22.0
+damping = 0.01
+delay = 1
+"#;
+
+fn haptic(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_haptic")).args(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> (i32, Value) {
+    let output = haptic(arguments);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let value = serde_json::from_str(&text).unwrap_or_else(|error| {
+        panic!("{error}: {text:?} {}", String::from_utf8_lossy(&output.stderr))
+    });
+    (output.status.code().unwrap(), value)
+}
+
+fn complaint(arguments: &[&str]) -> String {
+    let output = haptic(arguments);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(output.stdout.is_empty());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A scene file with something behind the wall above.
+fn scene(folder: &TempDir, more: &str) -> PathBuf {
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, format!("{WALL}{more}")).unwrap();
+    path
+}
+
+fn name(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn column(value: &Value, name: &str) -> Vec<f64> {
+    value[name].as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn a_motion_as_json_and_the_same_as_csv() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene(&folder, "[simulation]\nsamples = 9000\nposition = 0.001\nvelocity = 0.2\n");
+    let (status, motion) = json(&["simulate", name(&scene), "--json"]);
+    assert_eq!(status, 0);
+    let position = column(&motion, "position");
+    assert_eq!((position.len(), position[0]), (9000, 0.001));
+    assert_eq!(column(&motion, "velocity")[0], 0.2);
+    // The wall is one sample late.
+    assert_eq!(column(&motion, "torque")[0], 0.0);
+    assert!((column(&motion, "torque")[1] - 32.0 * 0.001).abs() < 1e-15);
+    let output = haptic(&["simulate", name(&scene), "--csv"]).stdout;
+    let mut reader = csv::Reader::from_reader(output.as_slice());
+    let header = ["time", "position", "velocity", "torque"];
+    assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), header);
+    let rows: Vec<[f64; 4]> = reader.deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.iter().map(|row| row[1]).collect::<Vec<_>>(), position);
+}
+
+#[test]
+fn methods_differ_and_agree_as_their_steps_get_small() {
+    let folder = TempDir::new().unwrap();
+    let scene = scene(&folder, "[simulation]\nsamples = 20\nposition = 0.001\n");
+    let last = |arguments: &[&str]| {
+        let fixed = ["simulate", name(&scene), "--json"];
+        let (_, motion) = json(&[&fixed, arguments].concat());
+        column(&motion, "position")[5]
+    };
+    let exact = last(&["--method", "exact"]);
+    for method in ["euler", "semi-implicit", "rk4", "tustin"] {
+        let (coarse, fine) =
+            (last(&["--method", method]), last(&["--method", method, "--substeps", "1000"]));
+        assert!((fine - exact).abs() < 0.02 * (coarse - exact).abs(), "{method}");
+    }
+}
+
+#[test]
+fn hand_torques_come_from_a_file_beside_the_scene() {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("push.csv"), "0.1\n0.2\n-0.1\n").unwrap();
+    let beside = scene(&folder, "[simulation]\nsamples = 9\ntorque_file = \"push.csv\"\n");
+    let (_, from_file) = json(&["simulate", name(&beside), "--json"]);
+    let inside = scene(&folder, "[simulation]\nsamples = 9\ntorque = [0.1, 0.2, -0.1]\n");
+    assert_eq!(from_file, json(&["simulate", name(&inside), "--json"]).1);
+    std::fs::write(folder.path().join("push.csv"), "0.1\nnan\n").unwrap();
+    let beside = scene(&folder, "[simulation]\nsamples = 9\ntorque_file = \"push.csv\"\n");
+    let message = complaint(&["simulate", name(&beside)]);
+    assert!(message.contains("push.csv:2"), "{message}");
+}
+
+#[test]
+fn bad_questions_are_named() {
+    let folder = TempDir::new().unwrap();
+    for (more, expected) in [
+        ("", "[simulation]"),
+        ("[simulation]\nsamples = 5\nlatency = 0.001\n", "simulation.latency"),
+        ("[simulation]\nsamples = 5\nfriction = -1\n", "simulation.friction"),
+        ("[simulation]\nsamples = 5\nmissed = { fraction = 1.0 }\n", "simulation.missed.fraction"),
+        ("[simulation]\nsamples = 5\nmissed = { every = 2, seed = 1 }\n", "one or the other"),
+    ] {
+        let scene = scene(&folder, more);
+        let message = complaint(&["simulate", name(&scene)]);
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn stability_and_its_status() {
+    let folder = TempDir::new().unwrap();
+    let (status, stable) = json(&["stability", name(&scene(&folder, "")), "--json"]);
+    assert_eq!((status, stable["verdict"].as_str()), (0, Some("stable")));
+    let critical = stable["critical_stiffness"].as_f64().unwrap();
+    let stiffer = WALL.replace("stiffness = 22.0", &format!("stiffness = {}", critical * 1.01));
+    let path = folder.path().join("stiffer.toml");
+    std::fs::write(&path, stiffer).unwrap();
+    let (status, unstable) = json(&["stability", name(&path), "--json"]);
+    assert_eq!((status, unstable["verdict"].as_str()), (1, Some("unstable")));
+    assert!(unstable["spectral_radius"].as_f64().unwrap() > 1.0);
+    let same = unstable["critical_stiffness"].as_f64().unwrap();
+    assert!((same / critical - 1.0).abs() < 1e-10);
+}
+
+#[test]
+fn the_worst_hand_is_found_past_the_line_only() {
+    let folder = TempDir::new().unwrap();
+    let (status, search) = json(&["worst-hand", name(&scene(&folder, "")), "--json"]);
+    assert_eq!((status, search["oscillates"].as_bool()), (0, Some(false)));
+    let path = folder.path().join("stiffer.toml");
+    std::fs::write(&path, WALL.replace("stiffness = 22.0", "stiffness = 26.0")).unwrap();
+    let (status, search) = json(&["worst-hand", name(&path), "--json"]);
+    assert_eq!((status, search["oscillates"].as_bool()), (1, Some(true)));
+}
+
+#[test]
+fn a_design_is_a_scene_that_certifies() {
+    let folder = TempDir::new().unwrap();
+    let wall = scene(&folder, "");
+    for question in [
+        &["design", "largest", "stiffness"][..],
+        &["design", "largest", "damping", "--safety", "0.97"],
+        &["design", "device"],
+        &["design", "period"],
+    ] {
+        let output = haptic(&[question, &[name(&wall)]].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let designed = folder.path().join("designed.toml");
+        std::fs::write(&designed, output.stdout).unwrap();
+        let (status, answer) = json(&["certify", name(&designed), "--json"]);
+        assert_eq!((status, answer["verdict"].as_str()), (0, Some("certified")), "{question:?}");
+    }
+    let message = complaint(&["design", "largest", "cancellation", name(&wall)]);
+    assert!(message.contains("no cancellation"), "{message}");
+}
+
+/// A chain of masses, simulated although a certificate is not taken of it where the encoder is at
+/// the hand.
+#[test]
+fn chains_move_and_may_be_seen_from_either_end() {
+    let folder = TempDir::new().unwrap();
+    let chain = WALL.replace(
+        "inertia = 2.2e-5\ndamping = 0.022\n",
+        "actuator_lag = 0.0001\nencoder = \"motor\"\n[[device.mass]]\ninertia = 1e-5\n\
+         damping = 0.022\n[[device.mass]]\ninertia = 1.2e-5\n[[device.link]]\nstiffness = 60.0\n\
+         damping = 0.001\n",
+    );
+    let text = format!("{chain}[simulation]\nsamples = 200\nvelocity = 1.0\n");
+    let path = folder.path().join("chain.toml");
+    let mut ends = Vec::new();
+    for encoder in ["\"motor\"", "\"hand\""] {
+        std::fs::write(&path, text.replace("\"motor\"", encoder)).unwrap();
+        let (status, motion) = json(&["simulate", name(&path), "--json"]);
+        assert_eq!(status, 0);
+        ends.push(column(&motion, "position"));
+        json(&["stability", name(&path), "--json"]);
+    }
+    assert_eq!(ends[0].len(), 200);
+    // The motor's mass, which alone is damped, falls behind the hand's.
+    assert!(ends[0][1] > 0.0 && ends[1][1] > ends[0][1]);
+}
