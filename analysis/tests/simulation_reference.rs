@@ -11,9 +11,10 @@ use analysis::device::{Hand, Motion};
 use analysis::simulation::drive::Drive;
 use analysis::simulation::plant::Plant;
 use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
+use analysis::stability::{closed_loop, eigenvalues};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use reference::{Matrix, Real, exponential, image};
+use reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};
 
 const SAMPLES: usize = 1000;
 const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
@@ -174,7 +175,7 @@ fn free_mode() {
 /// One-sided wall with a face and a torque limit: the coupling is solved with the limited torque.
 #[test]
 fn limited_wall_with_a_face() {
-    let (stiffness, coupling, face, limit) = (18.0, 30.0, 0.0004, 0.2);
+    let (stiffness, coupling, face, limit) = (18.0, 30.0, 0.0004, 0.1);
     let start = Motion { position: -0.02, velocity: 5.0 };
     let environment =
         Environment::DelayedSpring(Wall { face, one_sided: true, ..wall(stiffness, 0.0, 1) });
@@ -254,4 +255,43 @@ fn chain_with_lag_and_sine() {
         state = image(&tick, &state);
     }
     compare("chain, lag and sine", &experiment, &reference);
+}
+
+/// The largest eigenvalue in `f64` against the root of the characteristic polynomial next to it.
+#[test]
+fn spectral_radius() {
+    let light = Hand { inertia: 1e-6, damping: 0.0, stiffness: 3.0 };
+    let heavy = Hand { inertia: 0.03, damping: 0.001, stiffness: 900.0 };
+    for hand in [Hand::default(), light, heavy] {
+        for (stiffness, damping, coupling) in [(22.0, 0.01, 44.0), (30.0, 0.004, 100.0)] {
+            let matrix = closed_wall(&rigid(hand), [stiffness, damping, coupling]);
+            let environment = Environment::DamperWall(wall(stiffness, damping, 1));
+            let mut experiment = experiment(environment, Some(coupling), Motion::default());
+            experiment.plant = Plant::rigid(DEVICE).held(hand);
+            let closed = closed_loop(&experiment, Stride::default()).unwrap();
+            let found = eigenvalues(&closed.matrix).unwrap();
+            let largest = found.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap();
+            let root = modulus_of_root(&characteristic(&matrix), (largest.re, largest.im));
+            println!("{root} off by {:.1e}", largest.norm() - root);
+            assert!((largest.norm() - root).abs() < 1e-12, "{largest} {root}");
+        }
+    }
+}
+
+/// Position, velocity, the torque that is due and the last `x_E` of equation 24 in closed loop.
+fn closed_wall(rates: &Rates, [stiffness, damping, coupling]: [f64; 3]) -> Matrix {
+    let tick = tick(rates, PERIOD);
+    let zero = || r(0.0);
+    let compliance = r(1.0) / r(coupling);
+    let slope = r(damping) / r(PERIOD);
+    let both = r(stiffness) + slope.clone();
+    let moved = |row: usize| {
+        vec![tick[row][0].clone(), tick[row][1].clone(), -tick[row][2].clone(), zero()]
+    };
+    vec![
+        moved(0),
+        moved(1),
+        vec![both.clone(), zero(), -(both * compliance.clone()), -slope],
+        vec![r(1.0), zero(), -compliance, zero()],
+    ]
 }

@@ -57,9 +57,9 @@ fn text(name: &str, period: f64, search: &Search) -> String {
          stiffness = {}    # N m/rad\n",
         number(worst.frequency),
         number(grows),
-        worst.hand.inertia,
-        worst.hand.damping,
-        worst.hand.stiffness
+        number(worst.hand.inertia),
+        number(worst.hand.damping),
+        number(worst.hand.stiffness)
     );
     if let Some(link) = worst.hand.link {
         text += &format!(

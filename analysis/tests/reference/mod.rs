@@ -126,3 +126,44 @@ pub fn exponential(a: &Matrix) -> Matrix {
     }
     sum
 }
+
+/// Coefficients of `det(z - A)`, ascending, by the traces of powers (Faddeev and LeVerrier).
+pub fn characteristic(a: &Matrix) -> Vec<Real> {
+    let n = a.len();
+    let mut ascending = vec![Real::of(0.0); n + 1];
+    ascending[n] = Real::of(1.0);
+    let mut power: Matrix = vec![vec![Real::of(0.0); n]; n];
+    for k in 1..=n {
+        for (i, row) in power.iter_mut().enumerate() {
+            row[i] = &row[i] + &ascending[n + 1 - k];
+        }
+        power = product(a, &power);
+        let trace = (0..n).fold(Real::of(0.0), |sum, i| sum + power[i][i].clone());
+        ascending[n - k] = -trace / Real::of(k as f64);
+    }
+    ascending
+}
+
+/// The root of a polynomial near `(re, im)`, by Newton's method to all digits, as its modulus.
+pub fn modulus_of_root(ascending: &[Real], (re, im): (f64, f64)) -> f64 {
+    type Complex = (Real, Real);
+    let times = |a: &Complex, b: &Complex| -> Complex {
+        (&a.0 * &b.0 - &a.1 * &b.1, &a.0 * &b.1 + &a.1 * &b.0)
+    };
+    let mut z = (Real::of(re), Real::of(im));
+    for _ in 0..12 {
+        let zero = || (Real::of(0.0), Real::of(0.0));
+        let (mut value, mut slope) = (zero(), zero());
+        for coefficient in ascending.iter().rev() {
+            let moved = times(&slope, &z);
+            slope = (moved.0 + value.0.clone(), moved.1 + value.1.clone());
+            let moved = times(&value, &z);
+            value = (moved.0 + coefficient.clone(), moved.1);
+        }
+        let size = &slope.0 * &slope.0 + &slope.1 * &slope.1;
+        let conjugate = (slope.0.clone(), -slope.1.clone());
+        let step = times(&value, &conjugate);
+        z = (z.0 - step.0 / size.clone(), z.1 - step.1 / size);
+    }
+    (&z.0 * &z.0 + &z.1 * &z.1).to_f64().sqrt()
+}

@@ -6,6 +6,8 @@
 //! starts from masses and springs that resonate near there, then climbs in all their numbers. A
 //! hand on this device cannot take away from its inertia, and so not every rejected scene has one.
 
+mod grip;
+
 use std::f64::consts::PI;
 
 use firmware::certificate::Loop;
@@ -13,13 +15,13 @@ use firmware::scene::Scene;
 use nalgebra::Complex;
 use serde::Serialize;
 
-use crate::chain::{Chain, EncoderPlace, Link, Mass};
-use crate::device::Hand;
+use crate::chain::Chain;
 use crate::minimum::least;
 use crate::response::Response;
-use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, SimulationError, Stride};
 use crate::stability::{closed_loop, eigenvalues};
+
+pub use grip::{Compliance, Grip, plant};
 
 /// What makes a loop count as growing: so much a tick above 1.
 pub const GROWS: f64 = 1e-9;
@@ -29,29 +31,6 @@ const CREEPS: f64 = 1e-2;
 
 /// Heaviest hand, over the device: far beyond, two eigenvalues near 1 can no longer be told apart.
 const HEAVIEST: f64 = 1e4;
-
-/// A passive hand: on the device, or behind a spring and damper of its own. No number is negative,
-/// so it is passive whatever they are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Grip {
-    /// Inertia in kg m^2 of the hand.
-    pub inertia: f64,
-    /// Damping in N m s/rad of the hand, to the ground.
-    pub damping: f64,
-    /// Stiffness in N m/rad of the hand, to the ground.
-    pub stiffness: f64,
-    /// What is between device and hand; `None`: the hand is on the device.
-    pub link: Option<Compliance>,
-}
-
-/// Skin and tendons between the device and a hand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Compliance {
-    /// Stiffness in N m/rad.
-    pub stiffness: f64,
-    /// Damping in N m s/rad.
-    pub damping: f64,
-}
 
 /// A hand, and what the loop does in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -143,38 +122,6 @@ fn starts(sorted: &[Held]) -> Vec<Held> {
     kind(false).chain(kind(true)).copied().collect()
 }
 
-/// Hands that resonate around an angle a tick, and some that do not.
-fn family(inertia: f64, period: f64, angle: f64) -> Vec<Grip> {
-    let angles: Vec<f64> = [0.25, 0.5, 0.8, 1.0, 1.25, 2.0]
-        .iter()
-        .map(|ratio| (angle * ratio).clamp(1e-3, PI))
-        .chain([0.1, 0.5, 1.5, 2.5, PI])
-        .collect();
-    // From a hundredth of the device to a thousand times it: a heavy hand sees the
-    // controller at one angle alone, a light one moves with the device between the samples.
-    let masses: Vec<f64> =
-        (-4..=6).map(|step| inertia * 10_f64.powf(f64::from(step) / 2.0)).collect();
-    let mut hands = vec![Grip::default()];
-    for &mass in &masses {
-        hands.push(Grip { inertia: mass, ..Grip::default() });
-        for &theta in &angles {
-            let rate = (theta / period).powi(2);
-            hands.push(Grip {
-                inertia: mass,
-                stiffness: (inertia + mass) * rate,
-                ..Grip::default()
-            });
-            let link = Compliance { stiffness: mass * rate, damping: 0.0 };
-            hands.push(Grip { inertia: mass, link: Some(link), ..Grip::default() });
-        }
-    }
-    for &theta in &angles {
-        let rate = (theta / period).powi(2);
-        hands.push(Grip { stiffness: inertia * rate, ..Grip::default() });
-    }
-    hands
-}
-
 /// Hands tried on a device under a scene.
 struct Trial<'d> {
     device: &'d Chain,
@@ -198,7 +145,7 @@ impl<'d> Trial<'d> {
     }
 
     fn family(&self, angle: f64) -> Vec<Grip> {
-        family(self.inertia(), self.experiment.scene.timing.period, angle)
+        grip::family(self.inertia(), self.experiment.scene.timing.period, angle)
     }
 
     /// The angle in rad a tick at which the real part of the rule is smallest.
@@ -293,111 +240,5 @@ impl<'d> Trial<'d> {
     }
 }
 
-/// A device with so many times its inertia in a hand.
-pub fn plant(device: &Chain, lighter: f64, grip: &Grip) -> Plant {
-    let light = |mass: &Mass| Mass { inertia: lighter * mass.inertia, ..*mass };
-    let mut masses: Vec<Mass> = device.masses().iter().map(light).collect();
-    let mut links = device.links().to_vec();
-    let hand = match grip.link {
-        None => Hand { inertia: grip.inertia, damping: grip.damping, stiffness: grip.stiffness },
-        Some(link) => {
-            masses.push(Mass { inertia: grip.inertia, damping: grip.damping });
-            links.push(Link { stiffness: link.stiffness, damping: link.damping });
-            Hand { inertia: 0.0, damping: 0.0, stiffness: grip.stiffness }
-        }
-    };
-    let encoder = match device.encoder() {
-        EncoderPlace::Motor => 0,
-        EncoderPlace::Hand => device.masses().len() - 1,
-    };
-    let plant = Plant::seen_at(encoder, &masses, &links).held(hand);
-    let lag = device.actuator_lag();
-    if lag > 0.0 { plant.lagging(lag) } else { plant }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use firmware::certificate::certify;
-    use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Timing};
-
-    fn device() -> Chain {
-        Chain::rigid(2.2e-5, 0.022).unwrap()
-    }
-
-    fn scene(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> Scene {
-        let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling,
-            environment: Environment::DamperWall(wall),
-            torque_limit: None,
-        }
-    }
-
-    #[test]
-    fn what_is_rejected_oscillates_in_some_hand_and_what_is_certified_in_none() {
-        for (stiffness, damping, delay, coupling) in [
-            (22.0, 0.01, 0, Coupling::Rigid),
-            (5.0, 0.0, 1, Coupling::Rigid),
-            (22.0, 0.01, 1, Coupling::Spring { stiffness: 44.0 }),
-            (40.0, 0.0, 2, Coupling::Spring { stiffness: 44.0 }),
-            (4.0, 0.015, 2, Coupling::Spring { stiffness: 20.0 }),
-        ] {
-            let limit = limit(stiffness, damping, delay, coupling);
-            let near = |share: f64| {
-                let factor = limit * share;
-                scene(stiffness * factor, damping * factor, delay, coupling)
-            };
-            assert!(certify(&near(0.95)).is_ok() && certify(&near(1.05)).is_err());
-            let certified = search(&near(0.95), &device()).unwrap();
-            assert!(!certified.oscillates && certified.lighter.is_none(), "{certified:?}");
-            let rejected = search(&near(1.05), &device()).unwrap();
-            assert!(rejected.oscillates || rejected.lighter.is_some(), "{rejected:?}");
-        }
-    }
-
-    /// What the search says must come true tick by tick.
-    #[test]
-    fn the_hand_that_was_found_makes_a_simulation_grow() {
-        let scene = scene(30.0, 0.01, 1, Coupling::Spring { stiffness: 44.0 });
-        let found = search(&scene, &device()).unwrap().worst;
-        let plant = plant(&device(), 1.0, &found.hand);
-        let start = crate::device::Motion { position: 0.0, velocity: 1e-3 };
-        let experiment = Experiment { plant, start, samples: 3000, ..Experiment::still(&scene) };
-        let motion = crate::simulation::simulate(&experiment, Stride::default()).unwrap();
-        let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let grown = most(&motion.position[2000..]) / most(&motion.position[1000..2000]);
-        assert!((grown.powf(1e-3) / found.spectral_radius - 1.0).abs() < 1e-3, "{grown}");
-    }
-
-    /// Factor of stiffness and damping at which the certificate ends.
-    fn limit(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> f64 {
-        let passes = |factor: f64| {
-            certify(&scene(stiffness * factor, damping * factor, delay, coupling)).is_ok()
-        };
-        let (mut low, mut high) = (0.0, 1e3);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if passes(middle) { low = middle } else { high = middle }
-        }
-        low
-    }
-
-    /// Theory, section 3.2: with the motor on one mass and the encoder on another no passivity is
-    /// left, and a spring that is certified on the rigid device oscillates.
-    #[test]
-    fn a_device_that_is_not_collocated_oscillates_under_a_certified_spring() {
-        let scene = scene(20.0, 0.0, 1, Coupling::Spring { stiffness: 44.0 });
-        assert!(certify(&scene).is_ok());
-        let masses =
-            vec![Mass { inertia: 1e-5, damping: 0.022 }, Mass { inertia: 1.2e-5, damping: 0.0 }];
-        let link = Link { stiffness: 20.0, damping: 1e-4 };
-        let chain = Chain::new(masses, vec![link]).unwrap();
-        assert!(!search(&scene, &chain).unwrap().oscillates);
-        let apart = chain.with_encoder(EncoderPlace::Hand);
-        assert!(search(&scene, &apart).unwrap().oscillates);
-    }
-}
+mod tests;

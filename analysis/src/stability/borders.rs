@@ -1,0 +1,123 @@
+//! The stiffnesses at which a loop crosses from stable to unstable or back.
+
+use std::f64::consts::PI;
+
+use firmware::scene::Coupling;
+use nalgebra::Complex;
+
+use super::{eigenvalues, with_stiffness};
+use crate::response::Response;
+use crate::simulation::closed::transfers;
+use crate::simulation::plant::POSITION;
+use crate::simulation::tick::Tick;
+use crate::simulation::{Experiment, SimulationError, Stride};
+
+/// The stiffnesses at which some eigenvalue is on the unit circle.
+pub(super) struct Borders {
+    tick: Tick,
+    compliance: f64,
+    /// The environment without stiffness, and with `unit`.
+    environments: [Response; 2],
+    unit: f64,
+}
+
+impl Borders {
+    pub(super) fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
+        let scene = &experiment.scene;
+        let device = scene.device;
+        let period = scene.timing.period;
+        // So stiff that what does not depend on the stiffness has no digits left in the sum.
+        let unit = 1e6 * (device.damping / period + device.inertia / (period * period));
+        let environment = |stiffness: f64| -> Result<Response, SimulationError> {
+            let changed = with_stiffness(scene, stiffness).unwrap_or(*scene);
+            Ok(Response::new(transfers(&changed)?.environment))
+        };
+        Ok(Self {
+            tick: Tick::new(&experiment.plant, &experiment.stepping(stride), 0.0),
+            compliance: match scene.coupling {
+                Coupling::Rigid => 0.0,
+                Coupling::Spring { stiffness } => 1.0 / stiffness,
+            },
+            environments: [environment(0.0)?, environment(unit)?],
+            unit,
+        })
+    }
+
+    /// From the motor's torque to the sampled position, at `z`.
+    fn plant(&self, z: Complex<f64>) -> Option<Complex<f64>> {
+        let complex = |entry: f64| Complex::new(entry, 0.0);
+        let mut shifted = self.tick.transition.map(|entry| complex(-entry));
+        for i in 0..shifted.nrows() {
+            shifted[(i, i)] += z;
+        }
+        let effect = self.tick.motor.map(complex) + self.tick.previous.map(complex) / z;
+        Some(shifted.lu().solve(&effect)?[POSITION])
+    }
+
+    /// The stiffness, complex in general, with which the loop has an eigenvalue at this angle.
+    fn at(&self, theta: f64) -> Complex<f64> {
+        let z = Complex::from_polar(1.0, theta);
+        let one = Complex::new(1.0, 0.0);
+        let [without, with] = &self.environments;
+        let (without, with) = (without.at(z), with.at(z));
+        let each = (with - without) / self.unit;
+        // On a pole of the plant the loop is what the environment alone makes of it.
+        let through = self.plant(z).map(|plant| one / (plant + self.compliance));
+        -(through.unwrap_or_default() + without) / each
+    }
+
+    /// All of them that are positive, rising.
+    pub(super) fn all(&self) -> Vec<f64> {
+        let angles = self.angles();
+        let values: Vec<f64> = angles.iter().map(|&theta| self.at(theta).im).collect();
+        let mut found = vec![self.at(PI)];
+        for (angle, value) in angles.windows(2).zip(values.windows(2)) {
+            if value[0].signum() != value[1].signum() {
+                found.push(self.at(self.root(angle[0], angle[1])));
+            }
+        }
+        // Where the sign changed by way of a pole there is no root.
+        let real = |k: &Complex<f64>| k.re > 0.0 && k.re.is_finite() && k.im.abs() <= 1e-6 * k.re;
+        let mut stiffnesses: Vec<f64> = found.iter().filter(|k| real(k)).map(|k| k.re).collect();
+        stiffnesses.sort_by(f64::total_cmp);
+        stiffnesses.dedup_by(|a, b| (*a - *b).abs() <= 1e-12 * *b);
+        stiffnesses
+    }
+
+    /// Angles close enough together that no two roots lie between neighbours: evenly, towards
+    /// zero by ratio, and around every resonance of the plant by its width.
+    fn angles(&self) -> Vec<f64> {
+        const EVEN: u32 = 4096;
+        const RATIO: u32 = 512;
+        const AROUND: i32 = 24;
+        let even = (1..EVEN).map(|i| PI * f64::from(i) / f64::from(EVEN));
+        let small = (1..RATIO).map(|i| 1e-3 * 1e-6_f64.powf(f64::from(i) / f64::from(RATIO)));
+        let resonances = eigenvalues(&self.tick.transition).unwrap_or_default();
+        let around = resonances.iter().flat_map(|pole| {
+            let (centre, width) = (pole.arg().abs(), (1.0 - pole.norm()).abs().max(1e-12));
+            (-AROUND..=AROUND).map(move |i| {
+                let away = width * (1.6_f64.powi(i.abs()) - 1.0);
+                centre + away * f64::from(i.signum())
+            })
+        });
+        let mut angles: Vec<f64> = even.chain(small).chain(around).collect();
+        // The angle pi is a root by symmetry, and is looked at by itself.
+        angles.retain(|theta| (1e-9..PI - 1e-9).contains(theta));
+        angles.sort_by(f64::total_cmp);
+        angles.dedup();
+        angles
+    }
+
+    /// Where the imaginary part changes its sign.
+    fn root(&self, mut low: f64, mut high: f64) -> f64 {
+        let sign = self.at(low).im.signum();
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.at(middle).im.signum() == sign { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+}

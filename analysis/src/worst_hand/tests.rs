@@ -1,0 +1,84 @@
+use super::*;
+use crate::chain::{EncoderPlace, Link, Mass};
+use firmware::certificate::certify;
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Timing};
+
+fn device() -> Chain {
+    Chain::rigid(2.2e-5, 0.022).unwrap()
+}
+
+fn scene(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> Scene {
+    let wall = Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false };
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling,
+        environment: Environment::DamperWall(wall),
+        torque_limit: None,
+    }
+}
+
+#[test]
+fn what_is_rejected_oscillates_in_some_hand_and_what_is_certified_in_none() {
+    for (stiffness, damping, delay, coupling) in [
+        (22.0, 0.01, 0, Coupling::Rigid),
+        (5.0, 0.0, 1, Coupling::Rigid),
+        (22.0, 0.01, 1, Coupling::Spring { stiffness: 44.0 }),
+        (40.0, 0.0, 2, Coupling::Spring { stiffness: 44.0 }),
+        (4.0, 0.015, 2, Coupling::Spring { stiffness: 20.0 }),
+    ] {
+        let limit = limit(stiffness, damping, delay, coupling);
+        let near = |share: f64| {
+            let factor = limit * share;
+            scene(stiffness * factor, damping * factor, delay, coupling)
+        };
+        assert!(certify(&near(0.95)).is_ok() && certify(&near(1.05)).is_err());
+        let certified = search(&near(0.95), &device()).unwrap();
+        assert!(!certified.oscillates && certified.lighter.is_none(), "{certified:?}");
+        let rejected = search(&near(1.05), &device()).unwrap();
+        assert!(rejected.oscillates || rejected.lighter.is_some(), "{rejected:?}");
+    }
+}
+
+/// What the search says must come true tick by tick.
+#[test]
+fn the_hand_that_was_found_makes_a_simulation_grow() {
+    let scene = scene(30.0, 0.01, 1, Coupling::Spring { stiffness: 44.0 });
+    let found = search(&scene, &device()).unwrap().worst;
+    let plant = plant(&device(), 1.0, &found.hand);
+    let start = crate::device::Motion { position: 0.0, velocity: 1e-3 };
+    let experiment = Experiment { plant, start, samples: 3000, ..Experiment::still(&scene) };
+    let motion = crate::simulation::simulate(&experiment, Stride::default()).unwrap();
+    let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let grown = most(&motion.position[2000..]) / most(&motion.position[1000..2000]);
+    assert!((grown.powf(1e-3) / found.spectral_radius - 1.0).abs() < 1e-3, "{grown}");
+}
+
+/// Factor of stiffness and damping at which the certificate ends.
+fn limit(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> f64 {
+    let passes = |factor: f64| {
+        certify(&scene(stiffness * factor, damping * factor, delay, coupling)).is_ok()
+    };
+    let (mut low, mut high) = (0.0, 1e3);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if passes(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Theory, section 3.2: with the motor on one mass and the encoder on another no passivity is
+/// left, and a spring that is certified on the rigid device oscillates.
+#[test]
+fn a_device_that_is_not_collocated_oscillates_under_a_certified_spring() {
+    let scene = scene(20.0, 0.0, 1, Coupling::Spring { stiffness: 44.0 });
+    assert!(certify(&scene).is_ok());
+    let masses =
+        vec![Mass { inertia: 1e-5, damping: 0.022 }, Mass { inertia: 1.2e-5, damping: 0.0 }];
+    let link = Link { stiffness: 20.0, damping: 1e-4 };
+    let chain = Chain::new(masses, vec![link]).unwrap();
+    assert!(!search(&scene, &chain).unwrap().oscillates);
+    let apart = chain.with_encoder(EncoderPlace::Hand);
+    assert!(search(&scene, &apart).unwrap().oscillates);
+}
