@@ -133,3 +133,35 @@ fn a_scene_without_passivity_has_a_loop() {
         assert_eq!(judge(&experiment, Stride::default()).unwrap().verdict, Verdict::Stable);
     }
 }
+
+/// A scan of the spectral radius in small steps of the stiffness, for loops that are stable from
+/// the start, from somewhere on, and never.
+#[test]
+fn the_crossing_is_the_first_that_a_scan_sees() {
+    for (damping, delay, coupling) in [
+        (0.2, 1, Coupling::Rigid),
+        (0.2, 2, Coupling::Spring { stiffness: 700.0 }),
+        (-0.2, 1, Coupling::Spring { stiffness: 2000.0 }),
+        (-0.7, 1, Coupling::Rigid),
+        (0.45, 3, Coupling::Spring { stiffness: 1000.0 }),
+    ] {
+        let mut experiment = spring(1.0, delay, coupling);
+        let Environment::DelayedSpring(wall) = experiment.scene.environment else { panic!() };
+        experiment.scene.environment = Environment::DamperWall(Wall { damping, ..wall });
+        let stable = |stiffness: f64| {
+            let scene = with_stiffness(&experiment.scene, stiffness).unwrap();
+            let experiment = Experiment { scene, ..experiment.clone() };
+            let closed = closed_loop(&experiment, Stride::default()).unwrap();
+            radius(&eigenvalues(&closed.matrix).unwrap()) <= 1.0
+        };
+        const STEP: f64 = 1.003;
+        let steps: Vec<f64> = (0..4000).map(|i| 0.01 * STEP.powi(i)).collect();
+        let crossing = steps.windows(2).find(|pair| stable(pair[0]) && !stable(pair[1]));
+        let found = critical_stiffness(&experiment, Stride::default()).unwrap();
+        match (crossing, found) {
+            (None, None) => {}
+            (Some(pair), Some(found)) => assert!((pair[0]..=pair[1]).contains(&found), "{found}"),
+            other => panic!("{damping} {delay} {other:?}"),
+        }
+    }
+}
