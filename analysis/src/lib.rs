@@ -34,7 +34,6 @@ pub mod design;
 pub mod response;
 pub mod simulation;
 pub mod stability;
-pub mod unchecked;
 pub mod worst_hand;
 
 // What is shown and measured.

@@ -11,15 +11,19 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 
 use super::run::FormatArgument;
 use super::{Answer, CommandError};
+use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
+use crate::device::Motion;
 use crate::program::{self, Program};
+use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{self, Input, Outcome, play};
+use crate::simulation::{Experiment, Stride, simulate};
 use crate::toolchain::{self, Toolchain};
 use crate::verdict::{self, Report, Verdict};
-use crate::{progress, unchecked};
+use crate::worst_hand::{self, Held};
 
 /// Arguments of `haptic demo`.
 #[derive(Debug, Args)]
@@ -188,32 +192,52 @@ fn face(environment: &Environment) -> Option<f64> {
     }
 }
 
+/// Ticks in which the motion grows by a factor.
+fn ticks_to(factor: f64, held: &Held) -> f64 {
+    factor.ln() / held.spectral_radius.ln()
+}
+
+/// Angle in rad from a touch until the oscillation has grown a thousandfold.
+fn touched(device: &Chain, held: &Held) -> Result<Vec<f64>, CommandError> {
+    const TOUCH: f64 = 0.01;
+    let experiment = Experiment {
+        plant: worst_hand::plant(device, 1.0, &held.hand),
+        start: Motion { position: 0.0, velocity: TOUCH },
+        samples: ticks_to(1e3, held) as usize,
+        ..Experiment::still(&PAST_THE_LINE)
+    };
+    Ok(simulate(&experiment, Stride::default())?.position)
+}
+
 fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError> {
     writeln!(out, "past the line: the same wall, two samples late instead of one")?;
     match certify(&PAST_THE_LINE) {
         Ok(_) => writeln!(out, "  certified")?,
         Err(rejection) => writeln!(out, "  {rejection}")?,
     }
-    match unchecked::worst_hand(&PAST_THE_LINE) {
-        None => writeln!(out, "  no hand was found in which it oscillates")?,
-        Some(found) => {
-            let per_tick = found.per_second.powf(PAST_THE_LINE.timing.period);
-            writeln!(
-                out,
-                "  without the check: in a passive hand of {} kg m^2 and {} N m/rad a touch grows \
-                 by {} % a tick, a thousandfold in {} ms",
-                significant(found.hand.inertia, 3),
-                found.hand.stiffness,
-                significant(100.0 * (per_tick - 1.0), 3),
-                significant(1e3 * 1e3_f64.ln() / found.per_second.ln(), 3)
-            )?;
-            growth(
-                &folder.join("past_the_line.svg"),
-                "Past the line: what the refused wall would have done",
-                PAST_THE_LINE.timing.period,
-                &found.position,
-            )?;
-        }
+    let device = Chain::rigid(PAST_THE_LINE.device.inertia, PAST_THE_LINE.device.damping)
+        .expect("the device of a scene that is written here");
+    let found = worst_hand::search(&PAST_THE_LINE, &device)?;
+    if found.oscillates {
+        let held = found.worst;
+        writeln!(
+            out,
+            "  without the check: in a passive hand of {} kg m^2, {} N m s/rad and {} N m/rad a \
+             touch grows by {} % a tick,\n  a thousandfold in {} ms",
+            significant(held.hand.inertia, 3),
+            significant(held.hand.damping, 3),
+            significant(held.hand.stiffness, 3),
+            significant(100.0 * (held.spectral_radius - 1.0), 3),
+            significant(1e3 * PAST_THE_LINE.timing.period * ticks_to(1e3, &held), 3)
+        )?;
+        growth(
+            &folder.join("past_the_line.svg"),
+            "Past the line: what the refused wall would have done",
+            PAST_THE_LINE.timing.period,
+            &touched(&device, &held)?,
+        )?;
+    } else {
+        writeln!(out, "  no hand was found in which it oscillates")?;
     }
     writeln!(out)?;
     Ok(())
