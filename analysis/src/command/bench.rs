@@ -32,6 +32,13 @@ const OTHERS: [(&str, f64, &str); 3] = [
     ("roots", 360.0, "companion roots in numpy"),
     ("lmi", 4000.0, "an LMI solver"),
 ];
+/// Most nanoseconds that a step of the exact simulation may take on one core.
+const STEP_BUDGET: f64 = 10.0;
+/// Published times in nanoseconds for such a step elsewhere.
+const STEPS_ELSEWHERE: [(&str, f64, &str); 2] = [
+    ("C", 5.38, "plain C at -O2, 186 M steps/s"),
+    ("dlsim", 4000.0, "scipy's dlsim, 0.25 M steps/s"),
+];
 /// Most milliseconds that a certificate may add to a compilation.
 const COMPILE_BUDGET: f64 = 50.0;
 /// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
@@ -69,6 +76,13 @@ fn on_host() -> Vec<Figure> {
     };
     let mut figures = vec![figure("budget", VERDICT_BUDGET, "budget, one core")];
     figures.extend(OTHERS.map(|(name, against, source)| figure(name, against, source)));
+    let (step, by_hand) = bench::steps::step_times();
+    let figure = |name: &str, against, source| {
+        Figure::new(format!("exact simulation, a step: {name}"), step, "ns", Some(against), source)
+    };
+    figures.push(figure("budget", STEP_BUDGET, "budget, 100 M steps/s"));
+    figures.push(figure("by hand", by_hand, "a loop written for the scene, same run"));
+    figures.extend(STEPS_ELSEWHERE.map(|(name, against, source)| figure(name, against, source)));
     let spinner = progress::spinner("compiling certificates");
     match compile_time() {
         Ok(time) => figures.push(Figure::new(

@@ -1,4 +1,6 @@
-//! What a certificate and a tick cost, measured, each beside what it is compared with.
+//! What a certificate, a step and a tick cost, measured, each beside what it is compared with.
+
+pub mod steps;
 
 use std::hint::black_box;
 use std::path::Path;
