@@ -66,6 +66,9 @@ pub struct Report {
     pub alpha: Enclosure,
     /// Index of `E'` (theory, section 4.1).
     pub alpha_coupled: Enclosure,
+    /// The bound that decided in place of the linear index: one-sided and limited scenes only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<Enclosure>,
     /// Passivity of the device in N m s/rad, scaled to the worst period; the certificate compares
     /// with the lower end of an enclosure of it.
     pub delta: f64,
@@ -84,8 +87,10 @@ pub struct Report {
 
 /// Judges a scene that the person calls `name`.
 pub fn judge(name: &str, scene: &Scene) -> Report {
-    let assessment = assess(scene);
-    let rejection = certify(scene).err();
+    let (assessment, rejection) = match certify(scene) {
+        Ok(assessment) => (assessment, None),
+        Err(rejection) => (assess(scene), Some(rejection)),
+    };
     let verdict = match &rejection {
         None => Verdict::Certified,
         Some(rejection) if rejection.is_undecided() => Verdict::Undecided,
@@ -101,6 +106,7 @@ pub fn judge(name: &str, scene: &Scene) -> Report {
         reason: rejection.as_ref().map_or("ok", |rejection| rejection.reason()),
         alpha: enclosure(assessment.alpha),
         alpha_coupled: enclosure(assessment.alpha_coupled),
+        bound: assessment.bound.map(|bound| enclosure(Some(bound))),
         delta,
         margin,
         theta: minimum_angle(scene, &assessment),

@@ -51,8 +51,11 @@ pub fn text(report: &Report) -> String {
         ("", report.message.clone()),
         ("alpha", enclosure(report.alpha)),
         ("alpha, coupled", enclosure(report.alpha_coupled)),
-        ("delta", format!("{} N m s/rad", report.delta)),
     ];
+    if let Some(bound) = report.bound {
+        rows.push(("alpha, bound", enclosure(bound)));
+    }
+    rows.push(("delta", format!("{} N m s/rad", report.delta)));
     if let Some(margin) = report.margin {
         rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
     }
