@@ -189,6 +189,16 @@ keys! {
     SINE_OMEGA = "simulation.torque_sine.omega", "rad/s", Bound::NotNegative;
     /// Phase of the sine at sample 0.
     SINE_PHASE = "simulation.torque_sine.phase", "rad", Bound::Finite;
+    /// Whether the sine is held over each sample.
+    SINE_HELD = "simulation.torque_sine.held", "", Bound::Other("true or false");
+    /// Pulses of torque by the hand.
+    TORQUE_PULSES = "simulation.torque_pulses", "", TABLE;
+    /// Height of the pulses.
+    PULSE_AMPLITUDE = "simulation.torque_pulses.amplitude", "N m", Bound::Finite;
+    /// From the start of one pulse to the next.
+    PULSE_EVERY = "simulation.torque_pulses.every", "samples", Bound::Whole(1, 100_000_000);
+    /// How long a pulse lasts.
+    PULSE_LENGTH = "simulation.torque_pulses.length", "samples", Bound::Whole(1, 100_000_000);
 
     /// Dry friction of the device.
     FRICTION = "simulation.friction", "N m", Bound::NotNegative;

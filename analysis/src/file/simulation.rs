@@ -46,6 +46,17 @@ pub enum HandTorque {
         omega: f64,
         /// Phase in rad at sample 0.
         phase: f64,
+        /// Whether the value at a sample is held until the next instead.
+        held: bool,
+    },
+    /// `amplitude` for the first `length` of every `every` samples.
+    Pulses {
+        /// Height in N m.
+        amplitude: f64,
+        /// Samples from the start of one pulse to the next.
+        every: usize,
+        /// Samples that a pulse lasts.
+        length: usize,
     },
 }
 
@@ -107,20 +118,32 @@ fn torque(section: &mut Section<'_>) -> Result<HandTorque, Fault> {
     let held = section.list(&key::TORQUE)?;
     let file = section.text(&key::TORQUE_FILE)?;
     let sine = section.table(&key::TORQUE_SINE)?;
-    match (held, file, sine) {
-        (None, None, None) => Ok(HandTorque::Free),
-        (Some(Found { value, .. }), None, None) => Ok(HandTorque::Held(value)),
-        (None, Some(Found { value, .. }), None) => Ok(HandTorque::File(value.into())),
-        (None, None, Some(table)) => sine_torque(table),
-        (Some(Found { span, .. }), ..) => Err(section.conflict(&key::TORQUE, span, twice())),
-        (None, Some(Found { span, .. }), Some(_)) => {
-            Err(section.conflict(&key::TORQUE_FILE, span, twice()))
-        }
+    let pulses = section.table(&key::TORQUE_PULSES)?;
+    let given = [
+        held.as_ref().map(|found| (key::TORQUE, found.span.clone())),
+        file.as_ref().map(|found| (key::TORQUE_FILE, found.span.clone())),
+        sine.as_ref().map(|table| (key::TORQUE_SINE, table.span())),
+        pulses.as_ref().map(|table| (key::TORQUE_PULSES, table.span())),
+    ];
+    if let [_, (key, span), ..] = &given.into_iter().flatten().collect::<Vec<_>>()[..] {
+        return Err(section.conflict(key, span.clone(), twice()));
+    }
+    if let Some(Found { value, .. }) = held {
+        return Ok(HandTorque::Held(value));
+    }
+    if let Some(Found { value, .. }) = file {
+        return Ok(HandTorque::File(value.into()));
+    }
+    match (sine, pulses) {
+        (Some(table), _) => sine_torque(table),
+        (None, Some(table)) => pulses_of_torque(table),
+        (None, None) => Ok(HandTorque::Free),
     }
 }
 
 fn twice() -> String {
-    let names = [key::TORQUE, key::TORQUE_FILE, key::TORQUE_SINE].map(|key: Key| key.name());
+    let names = [key::TORQUE, key::TORQUE_FILE, key::TORQUE_SINE, key::TORQUE_PULSES]
+        .map(|key: Key| key.name());
     format!("stands beside another torque; the hand has one of {}", names.join(", "))
 }
 
@@ -128,6 +151,15 @@ fn sine_torque(mut table: Section<'_>) -> Result<HandTorque, Fault> {
     let amplitude = table.number(&key::SINE_AMPLITUDE)?;
     let omega = table.number(&key::SINE_OMEGA)?;
     let phase = table.optional(&key::SINE_PHASE)?.unwrap_or(0.0);
+    let held = table.boolean(&key::SINE_HELD)?.unwrap_or(false);
     table.finish()?;
-    Ok(HandTorque::Sine { amplitude, omega, phase })
+    Ok(HandTorque::Sine { amplitude, omega, phase, held })
+}
+
+fn pulses_of_torque(mut table: Section<'_>) -> Result<HandTorque, Fault> {
+    let amplitude = table.number(&key::PULSE_AMPLITUDE)?;
+    let every = table.number(&key::PULSE_EVERY)? as usize;
+    let length = table.number(&key::PULSE_LENGTH)? as usize;
+    table.finish()?;
+    Ok(HandTorque::Pulses { amplitude, every, length })
 }

@@ -26,16 +26,30 @@ pub enum Drive {
 }
 
 impl Drive {
-    /// What a scene file asks for; a torque file is looked for beside the scene file.
+    /// What a scene file asks for over so many samples of `period` (s); a torque file is looked
+    /// for beside the scene file.
     ///
     /// # Errors
     /// Where the torque file cannot be read, or has something in it that is not a finite number.
-    pub fn load(torque: &HandTorque, folder: &Path) -> Result<Self, SimulationError> {
+    pub fn load(
+        torque: &HandTorque,
+        folder: &Path,
+        samples: usize,
+        period: f64,
+    ) -> Result<Self, SimulationError> {
         Ok(match torque {
             HandTorque::Free => Self::Free,
             HandTorque::Held(torque) => Self::Held(torque.clone()),
             HandTorque::File(name) => Self::Held(read(&folder.join(name))?),
-            &HandTorque::Sine { amplitude, omega, phase } => Self::Sine { amplitude, omega, phase },
+            &HandTorque::Sine { amplitude, omega, phase, held } => {
+                let sine = Self::Sine { amplitude, omega, phase };
+                let sampled = || (0..samples).map(|k| sine.sine(k, period)[0]).collect();
+                if held { Self::Held(sampled()) } else { sine }
+            }
+            &HandTorque::Pulses { amplitude, every, length } => {
+                let pulse = |k: usize| if k % every < length { amplitude } else { 0.0 };
+                Self::Held((0..samples).map(pulse).collect())
+            }
         })
     }
 
@@ -113,6 +127,19 @@ mod tests {
             let [s, c] = drive.sine(k, 1.0 / 1024.0);
             let (es, ec) = (k as f64 + 0.25).sin_cos();
             assert!((s - 2.0 * es).abs() < 1e-15 && (c - 2.0 * ec).abs() < 1e-15, "{k}");
+        }
+    }
+
+    #[test]
+    fn held_sines_and_pulses_are_values_a_sample() {
+        let load = |torque| Drive::load(&torque, Path::new(""), 6, 0.001).unwrap();
+        let pulses = load(HandTorque::Pulses { amplitude: 0.5, every: 3, length: 2 });
+        assert_eq!(pulses, Drive::Held(vec![0.5, 0.5, 0.0, 0.5, 0.5, 0.0]));
+        let sine = |held| HandTorque::Sine { amplitude: 2.0, omega: 100.0, phase: 0.25, held };
+        for k in 0..6 {
+            let wanted = 2.0 * (0.1 * k as f64 + 0.25).sin();
+            assert!((load(sine(true)).held(k) - wanted).abs() < 1e-14);
+            assert_eq!(load(sine(false)).held(k), 0.0);
         }
     }
 

@@ -143,7 +143,12 @@ impl Experiment {
         Ok(Self {
             samples: simulation.samples,
             start: Motion { position: simulation.position, velocity: simulation.velocity },
-            drive: Drive::load(&simulation.torque, folder)?,
+            drive: Drive::load(
+                &simulation.torque,
+                folder,
+                simulation.samples,
+                file.scene.timing.period,
+            )?,
             friction: simulation.friction,
             latency: simulation.latency,
             missed: simulation.missed,
