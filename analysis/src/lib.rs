@@ -31,6 +31,8 @@ pub mod toolchain;
 
 // What scenes would do, certified or not, and how far one may go.
 pub mod design;
+pub mod limits;
+pub mod map;
 pub mod response;
 pub mod simulation;
 pub mod stability;
@@ -39,6 +41,8 @@ pub mod worst_hand;
 // What is shown and measured.
 pub mod bench;
 pub mod chart;
+pub mod circle;
 pub mod minimum;
 pub mod progress;
 pub mod quantity;
+pub mod report;

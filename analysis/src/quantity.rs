@@ -25,3 +25,18 @@ pub fn significant(value: f64, digits: usize) -> String {
         _ => exponential,
     }
 }
+
+/// A name of at most so many letters, with dots for what is left out.
+///
+/// ```
+/// use analysis::quantity::shortened;
+/// assert_eq!(shortened("wall", 8), "wall");
+/// assert_eq!(shortened("a wall of great height", 8), "a wal...");
+/// ```
+pub fn shortened(name: &str, letters: usize) -> String {
+    const DOTS: &str = "...";
+    if name.chars().count() <= letters {
+        return name.to_owned();
+    }
+    name.chars().take(letters.saturating_sub(DOTS.len())).chain(DOTS.chars()).collect()
+}

@@ -24,6 +24,11 @@ impl Response {
         Self::new(self.transfer.from_velocity(period))
     }
 
+    /// The transfer function.
+    pub fn transfer(&self) -> &Transfer {
+        &self.transfer
+    }
+
     /// Value at `z`; infinite or not a number on a pole.
     pub fn at(&self, z: Complex<f64>) -> Complex<f64> {
         let t = &self.transfer;

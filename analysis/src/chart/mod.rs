@@ -1,17 +1,26 @@
 //! Pictures as SVG: black on white, told apart by line style and labelled where they are, so that
 //! they can be read in print.
 
+pub mod dash;
 pub mod growth;
+pub mod limits;
+pub mod map;
 pub mod nyquist;
+pub mod picture;
+pub mod strips;
 pub mod trace;
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use firmware::passivity::transfer::Unbuildable;
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use thiserror::Error;
+
+pub use picture::{Output, Picture};
 
 /// Width and height of a picture in pixels.
 pub const SIZE: (u32, u32) = (820, 560);
@@ -64,39 +73,85 @@ fn broken(
 #[derive(Debug, Error)]
 pub enum ChartError {
     /// The file could not be written.
-    #[error("{path}: the picture cannot be written: {message}")]
+    #[error("{path}: the picture cannot be written: {source}")]
     Output {
         /// The file.
         path: PathBuf,
         /// Why.
-        message: String,
+        source: std::io::Error,
     },
+    /// The file's name does not say what kind of picture it is.
+    #[error("{path}: the name of a picture must end in .svg or .png")]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The drawing failed.
+    #[error("the picture cannot be drawn: {0}")]
+    Drawing(String),
     /// The scene has no transfer function to draw.
-    #[error("the environment has no transfer function to draw: {0:?}")]
-    NoTransfer(firmware::passivity::transfer::Unbuildable),
+    #[error("{scene}: the environment has no transfer function to draw: {}", unbuildable(*.why))]
+    NoTransfer {
+        /// Name of the scene.
+        scene: String,
+        /// Why.
+        why: Unbuildable,
+    },
     /// There is nothing to draw.
     #[error("a picture needs at least two points")]
     TooFewPoints,
 }
 
+fn unbuildable(why: Unbuildable) -> &'static str {
+    match why {
+        Unbuildable::Improper => "it needs samples from the future",
+        Unbuildable::IllPosed => "coupling and environment have no unique solution",
+        Unbuildable::OutOfRange => "a number of it is out of range",
+    }
+}
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Draws a picture into a file, or says which file could not be written.
-fn draw(path: &Path, picture: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<(), ChartError> {
-    let output = |message: String| ChartError::Output { path: path.to_owned(), message };
-    let (width, height) = (SIZE.0 * UNITS, SIZE.1 * UNITS);
+/// Draws a picture of the usual size.
+fn draw(picture: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<Picture, ChartError> {
+    draw_sized(SIZE, picture)
+}
+
+/// Draws a picture of so many pixels.
+fn draw_sized(
+    size: (u32, u32),
+    picture: impl FnOnce(&Area<'_>) -> Drawn<()>,
+) -> Result<Picture, ChartError> {
+    let (width, height) = (size.0 * UNITS, size.1 * UNITS);
     let mut svg = String::new();
     let drawn = {
         let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
         area.fill(&WHITE).and_then(|()| picture(&area)).and_then(|()| area.present())
     };
-    drawn.map_err(|error| output(error.to_string()))?;
+    drawn.map_err(|error| ChartError::Drawing(error.to_string()))?;
     // The drawing keeps its units; only its size on the page is in pixels.
     let drawing = format!("width=\"{width}\" height=\"{height}\" viewBox");
-    let page = format!("width=\"{}\" height=\"{}\" viewBox", SIZE.0, SIZE.1);
-    std::fs::write(path, svg.replacen(&drawing, &page, 1))
-        .map_err(|error| output(error.to_string()))
+    let page = format!("width=\"{}\" height=\"{}\" viewBox", size.0, size.1);
+    Ok(Picture::new(svg.replacen(&drawing, &page, 1)))
+}
+
+/// The axes, grid and numbers of a chart, in the style of all of them.
+fn mesh(chart: &mut Plane<'_, '_>, x: Option<&str>, y: &str) -> Drawn<()> {
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(GRID.stroke_width(UNITS))
+        .axis_style(pen(1))
+        .set_all_tick_mark_size(units(5))
+        .y_desc(y)
+        .x_label_formatter(&axis_number)
+        .y_label_formatter(&axis_number)
+        .label_style(text(LABEL));
+    if let Some(x) = x {
+        mesh.x_desc(x);
+    }
+    mesh.draw()
 }
 
 fn text(size: i32) -> TextStyle<'static> {

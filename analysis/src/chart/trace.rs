@@ -7,6 +7,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::*;
+use crate::file::SceneFile;
+use crate::quantity::shortened;
+use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
 
 /// A run to draw.
 #[derive(Clone, Debug, Default)]
@@ -29,18 +32,48 @@ pub struct Trace {
     pub face: Option<f64>,
 }
 
+impl Trace {
+    /// What a scene file's simulation does, taken exactly through each tick; `folder` is where its
+    /// torque file is looked for.
+    ///
+    /// # Errors
+    /// Where the file has no `[simulation]`, or its scene cannot run.
+    pub fn simulated(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
+        let experiment = Experiment::of(file, folder)?;
+        let motion = simulate(&experiment, Stride::default())?;
+        let reason = |torque: &f64| match file.scene.torque_limit {
+            // The limit itself is only met where it acts.
+            Some(limit) if torque.abs() >= limit * (1.0 - NEAR) => LimitReason::Torque,
+            _ => LimitReason::None,
+        };
+        Ok(Self {
+            title: file.name.clone(),
+            period: file.scene.timing.period,
+            limit: motion.torque.iter().map(reason).collect(),
+            position: motion.position,
+            torque: motion.torque,
+            hand: Vec::new(),
+            release: None,
+            face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
+        })
+    }
+}
+
+/// Part of the torque limit by which rounding may miss it.
+const NEAR: f64 = 1e-9;
+
 /// Draws position above torque, over one time axis. Where the torque is limited the ground is
 /// grey.
 ///
 /// # Errors
-/// Where there are fewer than two samples, or the file cannot be written.
-pub fn trace(path: &Path, trace: &Trace) -> Result<(), ChartError> {
+/// Where there are fewer than two samples.
+pub fn trace(trace: &Trace) -> Result<Picture, ChartError> {
     if trace.position.len() < 2 || trace.torque.len() < 2 {
         return Err(ChartError::TooFewPoints);
     }
-    draw(path, |area| {
-        let area = area.margin(units(10), 0, 0, 0).titled(&trace.title, text(TITLE))?;
-        let area = area.titled(legend(trace), text(LABEL))?;
+    draw(|area| {
+        let area = area.margin(units(10), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
+        let area = area.titled(&legend(trace), text(LABEL))?;
         let (upper, lower) = area.split_vertically(units(SIZE.1 as i32) * 48 / 100);
         position(&upper, trace)?;
         torque(&lower, trace)
@@ -57,7 +90,7 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
         .x_label_area_size(units(24))
         .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(time.clone(), y.clone())?;
-    mesh(&mut chart, "angle (rad)", None)?;
+    mesh(&mut chart, None, "angle (rad)")?;
     if let Some(face) = trace.face {
         let line = [(time.start, face), (time.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
@@ -71,12 +104,20 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
 }
 
 /// What the lines are, above the picture, where no curve can come in the way.
-fn legend(trace: &Trace) -> &'static str {
-    if trace.hand.is_empty() {
-        "solid: device"
-    } else {
-        "solid: device; broken: where the hand wants to be"
+fn legend(trace: &Trace) -> String {
+    let mut words = vec!["solid: device".to_owned()];
+    if !trace.hand.is_empty() {
+        words.push("broken: where the hand wants to be".to_owned());
     }
+    let mut reasons: Vec<_> =
+        trace.limit.iter().filter(|reason| **reason != LimitReason::None).collect();
+    reasons.sort_by_key(|reason| **reason as u8);
+    reasons.dedup();
+    if !reasons.is_empty() {
+        let names: Vec<_> = reasons.iter().map(|reason| reason.as_str()).collect();
+        words.push(format!("grey: limited ({})", names.join(", ")));
+    }
+    words.join("; ")
 }
 
 fn torque(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
@@ -93,32 +134,9 @@ fn torque(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
         Rectangle::new([(from, y.start), (to, y.end)], FORBIDDEN.filled())
     });
     chart.draw_series(limited)?;
-    mesh(&mut chart, "coupling torque (N m)", Some("time (s)"))?;
+    mesh(&mut chart, Some("time (s)"), "coupling torque (N m)")?;
     chart.draw_series(LineSeries::new(sampled(&trace.torque, trace.period), pen(1)))?;
     release(&mut chart, trace, &y, false)
-}
-
-type Plane<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
->;
-
-fn mesh(chart: &mut Plane<'_, '_>, y: &str, x: Option<&str>) -> Drawn<()> {
-    let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(UNITS))
-        .axis_style(pen(1))
-        .set_all_tick_mark_size(units(5))
-        .y_desc(y)
-        .y_labels(6)
-        .x_label_formatter(&axis_number)
-        .y_label_formatter(&axis_number)
-        .label_style(text(LABEL));
-    if let Some(x) = x {
-        mesh.x_desc(x);
-    }
-    mesh.draw()
 }
 
 fn release(chart: &mut Plane<'_, '_>, trace: &Trace, y: &Range<f64>, named: bool) -> Drawn<()> {

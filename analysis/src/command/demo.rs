@@ -15,6 +15,7 @@ use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
+use crate::chart::{ChartError, Output, Picture};
 use crate::device::Motion;
 use crate::program::{self, Program};
 use crate::progress;
@@ -94,16 +95,21 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         all_well &= report.verdict == Verdict::Certified && outcome.run.difference.is_none();
     }
     past_the_line(&mut out, folder)?;
-    nyquist(
-        &folder.join("nyquist_free_mode.svg"),
-        "Free mode: b = 1 N m s/rad, residual 0.05 N m s/rad, T = 1 ms",
-        &FIGURE_9,
-    )?;
-    nyquist(
-        &folder.join("nyquist_delayed_wall.svg"),
-        "Delayed wall: K = 22 N m/rad, B = 0.01 N m s/rad, T = 1 ms",
-        &DELAYED_WALL,
-    )?;
+    let pictures = [
+        (
+            "nyquist_free_mode.svg",
+            "Free mode: b = 1 N m s/rad, residual 0.05 N m s/rad, T = 1 ms",
+            FIGURE_9,
+        ),
+        (
+            "nyquist_delayed_wall.svg",
+            "Delayed wall: K = 22 N m/rad, B = 0.01 N m s/rad, T = 1 ms",
+            DELAYED_WALL,
+        ),
+    ];
+    for (name, title, scene) in pictures {
+        write(folder, name, &nyquist(title, &[(name.to_owned(), scene)])?)?;
+    }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
     Ok(if all_well { Answer::Yes } else { Answer::No })
@@ -178,8 +184,12 @@ fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), C
     let title = format!("{}: {}", program.name, script.story);
     let mut picture = scenario::trace(title, program.scene.timing.period, &outcome.run, &script);
     picture.face = face(&program.scene.environment);
-    trace(&folder.join(format!("{}.svg", program.name)), &picture)?;
-    Ok(())
+    Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture)?)?)
+}
+
+/// Writes a picture into the folder.
+fn write(folder: &Path, name: &str, picture: &Picture) -> Result<(), ChartError> {
+    Output::new(&folder.join(name))?.write(picture)
 }
 
 /// Where a one-sided wall begins, in rad.
@@ -230,12 +240,12 @@ fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError
             significant(100.0 * (held.spectral_radius - 1.0), 3),
             significant(1e3 * PAST_THE_LINE.timing.period * ticks_to(1e3, &held), 3)
         )?;
-        growth(
-            &folder.join("past_the_line.svg"),
+        let picture = growth(
             "Past the line: what the refused wall would have done",
             PAST_THE_LINE.timing.period,
             &touched(&device, &held)?,
         )?;
+        write(folder, "past_the_line.svg", &picture)?;
     } else {
         writeln!(out, "  no hand was found in which it oscillates")?;
     }

@@ -2,10 +2,12 @@
 
 pub mod bench;
 pub mod certify;
+pub mod chart;
 pub mod demo;
 pub mod design;
 pub mod device;
 pub mod identify;
+pub mod report;
 pub mod run;
 pub mod simulate;
 pub mod stability;
@@ -54,6 +56,10 @@ pub enum Command {
     Run(run::Arguments),
     /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
     Demo(demo::Arguments),
+    /// Draw scenes: Nyquist curves, maps, limits, traces.
+    Chart(chart::Arguments),
+    /// Write one page about a scene: verdict, numbers, assumptions, pictures.
+    Report(report::Arguments),
     /// Measure what a certificate and a tick cost.
     Bench(bench::Arguments),
     /// What would a scene do, certified or not?
@@ -138,6 +144,24 @@ pub enum CommandError {
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),
+    /// No map can be drawn.
+    #[error(transparent)]
+    Map(#[from] crate::map::MapError),
+    /// The scene is certified at no sample rate, however soft its wall.
+    #[error(
+        "{scene}: no stiffness is certified at any of these sample rates; its damping alone, or \
+         what its canceller takes away, is more than the device has"
+    )]
+    NoStiffness {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// A page's file must be called one.
+    #[error("{path}: the name of a page must end in .html")]
+    NoPage {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file or folder could not be written.
     #[error("{path}: {source}")]
     Unwritable {
@@ -170,6 +194,8 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),
+        Command::Chart(arguments) => chart::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),

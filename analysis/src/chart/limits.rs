@@ -1,0 +1,131 @@
+//! The stiffest certified wall over the sample rate, with the encoder's ripple on a second axis.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::dash::Dash;
+use super::*;
+use crate::limits::Point;
+use crate::quantity::significant;
+
+/// Height of a line of the key in pixels.
+const ROW: i32 = 20;
+/// Height in pixels that a title takes.
+const TITLE_ROOM: i32 = 26;
+/// Room for the numbers and the name of the axis on the right, in pixels.
+const RIGHT_LABELS: i32 = units(84);
+/// Room above, below and between the two groups of curves, as a factor.
+const APART: f64 = 1.6;
+
+/// A curve for one delay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayCurve {
+    /// Delay in samples.
+    pub delay: usize,
+    /// Whether any stiffness is certified, so that what is drawn is the coupling.
+    pub is_coupling: bool,
+    /// From the lowest to the highest rate.
+    pub points: Vec<Point>,
+}
+
+/// Draws largest stiffness (thick, left axis) and torque ripple (thin, right axis) for several
+/// delays. The axes are set against each other so that the two groups do not cross. `note` says
+/// what the ripple was computed for.
+///
+/// # Errors
+/// Where there are fewer than two points.
+pub fn limits(title: &str, note: &str, curves: &[DelayCurve]) -> Result<Picture, ChartError> {
+    let all = || curves.iter().flat_map(|curve| &curve.points);
+    let rates = span(all().map(|point| point.rate));
+    let stiffness = span(all().map(|point| point.stiffness));
+    let ripple = span(all().filter_map(|point| point.ripple));
+    if rates.start >= rates.end || stiffness.start <= 0.0 || ripple.start <= 0.0 {
+        return Err(ChartError::TooFewPoints);
+    }
+    let height = |range: &Range<f64>| range.end / range.start;
+    let left = stiffness.start / (height(&ripple) * APART * APART)..stiffness.end * APART;
+    let right = ripple.start / APART..ripple.end * height(&stiffness) * APART * APART;
+    let key = ROW * (curves.len() as i32 + 2) + 10;
+    let size = (SIZE.0, (SIZE.1 as i32 + key) as u32);
+    draw_sized(size, |area| {
+        let area = area.titled(title, text(TITLE))?;
+        let (plot, below) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
+        paint(&plot, curves, rates, left, right)?;
+        write_key(&below, note, curves)
+    })
+}
+
+fn paint(
+    area: &Area<'_>,
+    curves: &[DelayCurve],
+    rates: Range<f64>,
+    left: Range<f64>,
+    right: Range<f64>,
+) -> Drawn<()> {
+    let mut chart = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .x_label_area_size(X_LABELS)
+        .y_label_area_size(Y_LABELS)
+        .right_y_label_area_size(RIGHT_LABELS)
+        .build_cartesian_2d(rates.clone().log_scale(), left.log_scale())?
+        .set_secondary_coord(rates.log_scale(), right.log_scale());
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(GRID.stroke_width(UNITS))
+        .axis_style(pen(1))
+        .set_all_tick_mark_size(units(5))
+        .x_desc("sample rate (Hz)")
+        .y_desc("largest certified stiffness (N m/rad)")
+        .x_label_formatter(&axis_number)
+        .y_label_formatter(&axis_number)
+        .label_style(text(LABEL))
+        .draw()?;
+    chart
+        .configure_secondary_axes()
+        .axis_style(pen(1))
+        .set_all_tick_mark_size(units(5))
+        .y_desc("torque ripple of the encoder (N m)")
+        .y_label_formatter(&axis_number)
+        .label_style(text(LABEL))
+        .draw()?;
+    for (index, curve) in curves.iter().enumerate() {
+        let dash = Dash::of(index);
+        let (main, second) = (chart.plotting_area(), chart.secondary_plotting_area());
+        let stiff = curve.points.iter().map(|p| main.map_coordinate(&(p.rate, p.stiffness)));
+        let ripple = curve.points.iter().filter_map(|p| Some((p.rate, p.ripple?)));
+        let ripple = ripple.map(|point| second.map_coordinate(&point));
+        let (x, y) = main.get_base_pixel();
+        let area = main.strip_coord_spec();
+        let own = |(px, py): (i32, i32)| (px - x, py - y);
+        dash.draw(&area, &stiff.map(own).collect::<Vec<_>>(), 3)?;
+        dash.draw(&area, &ripple.map(own).collect::<Vec<_>>(), 1)?;
+    }
+    Ok(())
+}
+
+fn write_key(area: &Area<'_>, note: &str, curves: &[DelayCurve]) -> Drawn<()> {
+    let style = || anchored(HPos::Left, VPos::Center);
+    let middle = |row: usize| units(ROW * row as i32 + ROW / 2);
+    for (row, curve) in curves.iter().enumerate() {
+        let y = middle(row);
+        Dash::of(row).draw(area, &[(units(20), y), (units(90), y)], 2)?;
+        let end = curve.points.last().map_or_else(
+            || "nothing is certified".to_owned(),
+            |last| {
+                let (k, rate) = (significant(last.stiffness, 3), significant(last.rate, 3));
+                format!("{k} N m/rad at {rate} Hz")
+            },
+        );
+        let what = if curve.is_coupling { " (any wall; the coupling is felt)" } else { "" };
+        let words = format!("delay {}{what}: {end}", curve.delay);
+        area.draw(&Text::new(words, (units(102), y), style()))?;
+    }
+    let notes =
+        ["thick, left axis: stiffness; thin, right axis: ripple".to_owned(), note.to_owned()];
+    for (row, note) in notes.into_iter().enumerate() {
+        let place = (units(20), middle(curves.len() + row));
+        area.draw(&Text::new(note, place, style()))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! Pictures as files: SVG as drawn, PNG from the same drawing.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::{Database, Source};
+use resvg::usvg::{Options, Tree};
+
+use super::ChartError;
+
+/// Pixels of a PNG for each pixel of the drawing: sharp in print and on dense screens.
+const SCALE: f32 = 2.0;
+
+/// A drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    svg: String,
+}
+
+/// A file that a picture goes to, with a name that says of which kind it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl Output {
+    /// By the file's extension, `.svg` or `.png` in any case.
+    ///
+    /// # Errors
+    /// Where it has another one or none.
+    pub fn new(path: &Path) -> Result<Self, ChartError> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy());
+        let format = match extension.as_deref().map(str::to_ascii_lowercase).as_deref() {
+            Some("svg") => Format::Svg,
+            Some("png") => Format::Png,
+            _ => return Err(ChartError::Extension { path: path.to_owned() }),
+        };
+        Ok(Self { path: path.to_owned(), format })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the picture.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write(&self, picture: &Picture) -> Result<(), ChartError> {
+        let bytes = match self.format {
+            Format::Svg => picture.svg.clone().into_bytes(),
+            Format::Png => picture.png()?,
+        };
+        std::fs::write(&self.path, bytes)
+            .map_err(|source| ChartError::Output { path: self.path.clone(), source })
+    }
+}
+
+impl Picture {
+    /// A picture from its SVG.
+    pub(super) fn new(svg: String) -> Self {
+        Self { svg }
+    }
+
+    /// As SVG.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// As PNG, with the same letters on every machine.
+    ///
+    /// # Errors
+    /// Where it cannot be drawn.
+    pub fn png(&self) -> Result<Vec<u8>, ChartError> {
+        let mut fonts = Database::new();
+        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
+        fonts.set_sans_serif_family("DejaVu Sans");
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        let failed = |error: String| ChartError::Drawing(error);
+        let tree = Tree::from_str(&self.svg, &options).map_err(|e| failed(e.to_string()))?;
+        let size = tree.size().to_int_size();
+        let size = size.scale_by(SCALE).unwrap_or(size);
+        let mut pixels = Pixmap::new(size.width(), size.height())
+            .ok_or_else(|| failed("it has no area".to_owned()))?;
+        let scale = Transform::from_scale(SCALE, SCALE);
+        resvg::render(&tree, scale, &mut pixels.as_mut());
+        pixels.encode_png().map_err(|e| failed(e.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chart::growth::growth;
+
+    #[test]
+    fn the_extension_says_what_is_written() {
+        let kinds = ["a.svg", "b.SVG", "c.png"].map(|name| Output::new(Path::new(name)).is_ok());
+        assert_eq!(kinds, [true; 3]);
+        for name in ["a.pdf", "svg", ""] {
+            let error = Output::new(Path::new(name)).unwrap_err().to_string();
+            assert!(error.ends_with("must end in .svg or .png"), "{error}");
+        }
+    }
+
+    #[test]
+    fn letters_are_in_the_png_without_any_font_on_the_machine() {
+        // Only the bundled font is loaded; without it the rows of the title would be white.
+        let picture = growth("A title to be seen", 1e-3, &[0.0, 1.0, -2.0]).unwrap();
+        let pixels = Pixmap::decode_png(&picture.png().unwrap()).unwrap();
+        let rows = 24 * pixels.width() as usize..64 * pixels.width() as usize;
+        let dark = pixels.pixels()[rows].iter().filter(|pixel| pixel.red() < 100).count();
+        assert!(dark > 200, "{dark}");
+    }
+}

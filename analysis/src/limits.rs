@@ -1,0 +1,222 @@
+//! The stiffest wall that is certified, and what an encoder's step does to its torque.
+
+use firmware::certificate::assess;
+use firmware::environment::{Environment, Wall};
+use firmware::passivity::transfer::Unbuildable;
+use firmware::scene::{Coupling, Scene, Timing};
+
+use crate::response::Response;
+use crate::simulation::closed::transfers;
+
+/// How stiff a wall may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// No stiffness is certified.
+    Nothing,
+    /// Up to this one in N m/rad.
+    AtMost(f64),
+    /// However stiff: what the hand feels is the coupling.
+    Any,
+}
+
+/// A stiffness this many times the standard coupling's can no longer be told from a rigid wall.
+const RIGID: f64 = 1e6;
+/// The softest that is tried, over the standard coupling's.
+const SOFT: f64 = 1e-6;
+/// Halvings of the logarithm of the stiffness: to a relative 1e-12.
+const HALVINGS: usize = 45;
+/// Longest impulse response that is summed, in samples.
+const LONGEST: usize = 1_000_000;
+/// An impulse response has died away when this many samples in a row add less than [`SMALL`].
+const QUIET: usize = 64;
+/// Part of the sum.
+const SMALL: f64 = 1e-12;
+
+/// The scene with another stiffness in N m/rad, and with another delay in samples if one is given;
+/// unchanged where its environment is no wall.
+pub fn with_wall(scene: &Scene, stiffness: f64, delay: Option<usize>) -> Scene {
+    let changed = |wall: Wall| Wall { stiffness, delay: delay.unwrap_or(wall.delay), ..wall };
+    let environment = match scene.environment {
+        Environment::DelayedSpring(wall) => Environment::DelayedSpring(changed(wall)),
+        Environment::DamperWall(wall) => Environment::DamperWall(changed(wall)),
+        Environment::FreeModeWall { residual, wall } => {
+            Environment::FreeModeWall { residual, wall: changed(wall) }
+        }
+        other => other,
+    };
+    Scene { environment, ..*scene }
+}
+
+/// The scene at another period in s. A worst period keeps its ratio to it, and a coupling spring
+/// becomes the standard one, `2 delta / T`, which is what a period allows.
+pub fn at_period(scene: &Scene, period: f64) -> Scene {
+    let ratio = period / scene.timing.period;
+    let worst_period = scene.timing.worst_period.map(|worst| worst * ratio);
+    let timed = Scene { timing: Timing { period, worst_period }, ..*scene };
+    match scene.coupling {
+        Coupling::Rigid => timed,
+        Coupling::Spring { .. } => {
+            let stiffness = standard_coupling(&timed);
+            Scene { coupling: Coupling::Spring { stiffness }, ..timed }
+        }
+    }
+}
+
+/// The standard coupling `2 delta / T` in N m/rad, `delta` scaled to the worst period; from below,
+/// so that rounding does not make it the stiffer one.
+pub fn standard_coupling(scene: &Scene) -> f64 {
+    let period = scene.timing.period;
+    let worst = scene.timing.worst_period.unwrap_or(period);
+    let delta = scene.device.passivity.unwrap_or(scene.device.damping);
+    (2.0 * delta / worst) * (1.0 - 1e-12)
+}
+
+/// The largest stiffness of the scene's wall that is certified, everything else as it is.
+pub fn largest_stiffness(scene: &Scene) -> Limit {
+    let passes = |stiffness: f64| assess(&with_wall(scene, stiffness, None)).outcome.is_ok();
+    let standard = standard_coupling(scene);
+    let (mut low, mut high) = ((SOFT * standard).ln(), (RIGID * standard).ln());
+    if !passes(low.exp()) {
+        return Limit::Nothing;
+    }
+    if passes(high.exp()) {
+        return Limit::Any;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if passes(middle.exp()) { low = middle } else { high = middle }
+    }
+    Limit::AtMost(low.exp())
+}
+
+/// Largest change of torque in N m for each rad of position error: the sum of the absolute values
+/// of the controller's impulse response (theory, section 6, item 7).
+///
+/// # Errors
+/// Where the scene has no controller, or its impulse response does not die away.
+pub fn error_gain(scene: &Scene) -> Result<f64, Unbuildable> {
+    let mut filter =
+        Response::new(transfers(scene)?.controller).filter().ok_or(Unbuildable::OutOfRange)?;
+    let (mut sum, mut quiet) = (0.0, 0);
+    for sample in 0..LONGEST {
+        let torque = filter.tick(if sample == 0 { 1.0 } else { 0.0 }).abs();
+        sum += torque;
+        quiet = if torque <= SMALL * sum { quiet + 1 } else { 0 };
+        if quiet == QUIET {
+            return Ok(sum);
+        }
+    }
+    Err(Unbuildable::OutOfRange)
+}
+
+/// Largest stiffness and torque ripple at one sample rate and delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Sample rate in Hz.
+    pub rate: f64,
+    /// Largest certified stiffness in N m/rad; that of the coupling where there is no limit.
+    pub stiffness: f64,
+    /// Peak torque in N m that half an encoder's count may cost at [`Curves::used`] of it.
+    pub ripple: Option<f64>,
+}
+
+/// What is asked about limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// From the lowest to the highest sample rate in Hz.
+    pub rates: std::ops::Range<f64>,
+    /// Number of sample rates.
+    pub points: usize,
+    /// Counts of the encoder a turn.
+    pub counts_per_turn: f64,
+    /// The part of the largest stiffness at which the ripple is taken: at all of it there is no
+    /// bound.
+    pub used: f64,
+}
+
+impl Curves {
+    /// The curve of one delay in samples; sample rates at which no stiffness is certified are left
+    /// out.
+    pub fn of(&self, scene: &Scene, delay: usize) -> Vec<Point> {
+        let decades = (self.rates.end / self.rates.start).ln();
+        let last = self.points.saturating_sub(1).max(1) as f64;
+        let rate = |index: usize| self.rates.start * (decades * index as f64 / last).exp();
+        (0..self.points).filter_map(|index| self.point(scene, delay, rate(index))).collect()
+    }
+
+    fn point(&self, scene: &Scene, delay: usize, rate: f64) -> Option<Point> {
+        let timed = with_wall(&at_period(scene, 1.0 / rate), 0.0, Some(delay));
+        let half_a_count = std::f64::consts::PI / self.counts_per_turn;
+        let (stiffness, used) = match largest_stiffness(&timed) {
+            Limit::Nothing => return None,
+            Limit::AtMost(stiffness) => (stiffness, self.used * stiffness),
+            Limit::Any => match timed.coupling {
+                Coupling::Spring { stiffness } => (stiffness, RIGID * stiffness),
+                Coupling::Rigid => return None,
+            },
+        };
+        let ripple = error_gain(&with_wall(&timed, used, None)).ok();
+        Some(Point { rate, stiffness, ripple: ripple.map(|gain| gain * half_a_count) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware::scene::Device;
+
+    fn wall(damping: f64, delay: usize, coupling: Coupling) -> Scene {
+        Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling,
+            environment: Environment::DamperWall(Wall {
+                stiffness: 22.0,
+                damping,
+                filter: None,
+                delay,
+                face: 0.0,
+                one_sided: false,
+            }),
+            torque_limit: None,
+        }
+    }
+
+    const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
+
+    fn near(a: f64, b: f64, part: f64) {
+        assert!((a - b).abs() <= part * b.abs(), "{a} {b}");
+    }
+
+    #[test]
+    fn the_largest_stiffness_is_the_formulas() {
+        for delay in 1..=4 {
+            let Limit::AtMost(k) = largest_stiffness(&wall(0.0, delay, STANDARD)) else { panic!() };
+            near(k, 0.022 / (0.001 * (delay as f64 - 0.5)), 1e-9);
+        }
+        let Limit::AtMost(k) = largest_stiffness(&wall(0.01, 1, STANDARD)) else { panic!() };
+        near(k, 24.0, 1e-9);
+        assert_eq!(largest_stiffness(&wall(0.0, 0, STANDARD)), Limit::Any);
+        assert_eq!(largest_stiffness(&wall(0.03, 1, STANDARD)), Limit::Nothing);
+        // A rigid coupling costs a sample: K < b / (T (n + 1/2)).
+        let Limit::AtMost(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else { panic!() };
+        near(k, 44.0, 1e-9);
+    }
+
+    #[test]
+    fn the_gain_of_the_papers_wall_and_of_springs() {
+        near(error_gain(&wall(0.01, 1, STANDARD)).unwrap(), 924.0, 1e-6);
+        // (2 delta / T) r / (1 - r)
+        let spring = with_wall(&wall(0.0, 1, STANDARD), 0.7 * 44.0, None);
+        near(error_gain(&spring).unwrap(), 44.0 * 0.7 / 0.3, 1e-9);
+    }
+
+    #[test]
+    fn ten_times_the_rate_allows_ten_times_the_stiffness() {
+        let curves = Curves { rates: 1e3..1e4, points: 2, counts_per_turn: 65536.0, used: 0.7 };
+        let [slow, fast] = curves.of(&wall(0.0, 2, STANDARD), 1)[..] else { panic!() };
+        near(fast.stiffness, 10.0 * slow.stiffness, 1e-6);
+        near(slow.stiffness, 44.0, 1e-6);
+        near(slow.ripple.unwrap(), 44.0 * 0.7 / 0.3 * std::f64::consts::PI / 65536.0, 1e-6);
+    }
+}

@@ -1,0 +1,177 @@
+//! What becomes of walls of every stiffness and damping on one device: certified, merely stable, or
+//! neither.
+
+pub mod border;
+pub mod plant;
+pub mod schur_cohn;
+
+use std::ops::Range;
+
+use firmware::certificate::{Answer, assess};
+use firmware::environment::{Environment, Wall};
+use firmware::scene::Scene;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::file::SceneFile;
+use crate::limits::{Limit, largest_stiffness};
+use crate::simulation::plant::Plant;
+use crate::simulation::tick::Tick;
+use crate::simulation::{Experiment, Stride};
+use plant::SampledPlant;
+
+/// What is known of a scene, from the worst to the best.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Region {
+    /// Even without a hand it does not come to rest.
+    Unstable,
+    /// Without a hand it comes to rest; some hand may make it oscillate.
+    Stable,
+    /// The exact rule proves it, the paper's does not.
+    Exact,
+    /// The paper's rule proves it.
+    Paper,
+}
+
+impl Region {
+    /// All, from the worst to the best.
+    pub const ALL: [Self; 4] = [Self::Unstable, Self::Stable, Self::Exact, Self::Paper];
+}
+
+/// Why there is no map.
+#[derive(Debug, Error)]
+pub enum MapError {
+    /// Nothing of the environment is a stiffness or a damping.
+    #[error(
+        "{scene}: a map is drawn over stiffness and damping of a wall, and this environment has \
+         none; it must be a delayed-spring, a damper-wall or a free-mode-wall"
+    )]
+    NoWall {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// The drawing failed.
+    #[error(transparent)]
+    Chart(#[from] crate::chart::ChartError),
+}
+
+/// The walls that differ from a scene's in stiffness and damping only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Family {
+    scene: Scene,
+    plant: SampledPlant,
+}
+
+impl Family {
+    /// The walls of a scene file, on its device in no hand.
+    ///
+    /// # Errors
+    /// Where the environment has no wall.
+    pub fn of(file: &SceneFile) -> Result<Self, MapError> {
+        if crate::simulation::wall(&file.scene).is_none() {
+            return Err(MapError::NoWall { scene: file.name.clone() });
+        }
+        let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
+        let tick = Tick::new(&alone.plant, &alone.stepping(Stride::default()), 0.0);
+        Ok(Self { scene: file.scene, plant: SampledPlant::new(&tick) })
+    }
+
+    /// The scene that the others differ from.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene with another stiffness (N m/rad) and damping (N m s/rad) of its wall.
+    pub fn member(&self, stiffness: f64, damping: f64) -> Scene {
+        let changed = |wall: Wall| Wall { stiffness, damping, ..wall };
+        let environment = match self.scene.environment {
+            Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
+                Environment::DamperWall(changed(wall))
+            }
+            Environment::FreeModeWall { residual, wall } => {
+                Environment::FreeModeWall { residual, wall: changed(wall) }
+            }
+            other => other,
+        };
+        Scene { environment, ..self.scene }
+    }
+
+    /// What is known of one of the walls.
+    pub fn region(&self, stiffness: f64, damping: f64) -> Region {
+        let scene = self.member(stiffness, damping);
+        let assessment = assess(&scene);
+        if assessment.paper == Answer::Pass {
+            Region::Paper
+        } else if assessment.exact == Answer::Pass {
+            Region::Exact
+        } else if self.plant.is_stable_under(&scene).unwrap_or(false) {
+            Region::Stable
+        } else {
+            Region::Unstable
+        }
+    }
+
+    /// Ranges of stiffness and damping that show the borders: twice the stiffest certified spring,
+    /// and damping of both signs about as far as the device's own goes.
+    pub fn usual_ranges(&self) -> (Range<f64>, Range<f64>) {
+        let delta = assess(&self.scene).delta.midpoint();
+        let stiffest = match largest_stiffness(&self.member(0.0, 0.0)) {
+            Limit::AtMost(stiffness) => stiffness,
+            Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
+        };
+        (0.0..2.2 * stiffest, -0.6 * delta..1.6 * delta)
+    }
+}
+
+/// A grid of scenes, judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// From the lowest to the highest stiffness, in N m/rad.
+    pub stiffness: Range<f64>,
+    /// From the lowest to the highest damping, in N m s/rad.
+    pub damping: Range<f64>,
+    /// Cells along the stiffness.
+    pub columns: usize,
+    /// Cells along the damping.
+    pub rows: usize,
+    regions: Vec<Region>,
+}
+
+impl Map {
+    /// Judges the middle of each of `side` times `side` cells, on all cores. `progress` is told of
+    /// each row.
+    pub fn new(
+        family: &Family,
+        stiffness: Range<f64>,
+        damping: Range<f64>,
+        side: usize,
+        progress: impl Fn() + Sync,
+    ) -> Self {
+        let middle = |range: &Range<f64>, index: usize| {
+            range.start + (range.end - range.start) * (index as f64 + 0.5) / side as f64
+        };
+        let row = |row: usize| {
+            let damping = middle(&damping, row);
+            let region = |column| family.region(middle(&stiffness, column), damping);
+            let regions: Vec<Region> = (0..side).map(region).collect();
+            progress();
+            regions
+        };
+        let regions = (0..side).into_par_iter().flat_map_iter(row).collect();
+        Self { stiffness, damping, columns: side, rows: side, regions }
+    }
+
+    /// What is known of a cell.
+    pub fn at(&self, column: usize, row: usize) -> Region {
+        self.regions[row * self.columns + column]
+    }
+
+    /// The part of the cells that a region has, from 0 to 1.
+    pub fn share(&self, region: Region) -> f64 {
+        let count = self.regions.iter().filter(|&&found| found == region).count();
+        count as f64 / self.regions.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests;

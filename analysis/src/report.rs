@@ -1,0 +1,169 @@
+//! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
+
+use firmware::scene::{Coupling, Scene};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::chart::Picture;
+use crate::quantity::significant;
+use crate::verdict::{Enclosure, Report, RuleAnswer, Verdict};
+
+/// What a page is made of.
+#[derive(Debug)]
+pub struct Page<'p> {
+    /// The judged scene.
+    pub report: &'p Report,
+    /// Its numbers.
+    pub scene: &'p Scene,
+    /// The curve of its environment.
+    pub nyquist: Figure,
+    /// The map of its wall.
+    pub map: Figure,
+    /// What its simulation does.
+    pub motion: Figure,
+}
+
+/// A picture, or why there is none.
+#[derive(Clone, Debug)]
+pub enum Figure {
+    /// The picture.
+    Drawn(Picture),
+    /// Why there is none.
+    Missing(&'static str),
+}
+
+/// Black on white with the reader's own fonts; nothing is fetched. Wide things shrink or wrap, so
+/// that nothing is cut off on a narrow screen or on paper.
+const STYLE: &str = "
+body { font-family: sans-serif; color: black; background: white; max-width: 56rem;
+       margin: 2rem auto; padding: 0 1rem; line-height: 1.45; overflow-wrap: anywhere; }
+h1 { margin-bottom: 0.3rem; }
+.verdict { border: 3px solid black; padding: 0.6rem 1rem; }
+.verdict strong { font-size: 1.4rem; letter-spacing: 0.05em; }
+.certified { border-style: solid; }
+.rejected, .undecided { border-style: double; border-width: 6px; background: #e8e8e8; }
+table { border-collapse: collapse; width: 100%; }
+th, td { text-align: left; vertical-align: top; padding: 0.25rem 0.8rem 0.25rem 0;
+         border-bottom: 1px solid #bbb; font-weight: normal; }
+td { font-variant-numeric: tabular-nums; }
+figure { margin: 1.5rem 0; break-inside: avoid; }
+figure svg { max-width: 100%; height: auto; display: block; }
+figcaption { font-size: 0.95rem; margin-top: 0.3rem; }
+";
+
+impl Page<'_> {
+    /// The page as HTML.
+    pub fn html(&self) -> String {
+        let report = self.report;
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { (report.name) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    h1 { (report.name) }
+                    (verdict(report))
+                    h2 { "Numbers" }
+                    (numbers(report, self.scene))
+                    @if !report.remedies.is_empty() {
+                        h2 { "Remedies" }
+                        p { "Each of these changes alone would make it pass." }
+                        ul id="remedies" { @for item in &report.remedies { li { (item) } } }
+                    }
+                    h2 { "Assumptions" }
+                    p { "The verdict rests on these, and says nothing where they do not hold." }
+                    ul id="assumptions" { @for item in &report.assumptions { li { (item) } } }
+                    h2 { "Pictures" }
+                    (figure("nyquist", &self.nyquist, "Nyquist curve of the environment, from \
+                        velocity to torque. It must stay on the right of the critical line."))
+                    (figure("map", &self.map, "What is known of walls with this scene's device, \
+                        period, coupling and delay."))
+                    (figure("motion", &self.motion, "What the scene's simulation does."))
+                }
+            }
+        };
+        page.into_string()
+    }
+}
+
+fn verdict(report: &Report) -> Markup {
+    let (class, word) = match report.verdict {
+        Verdict::Certified => ("verdict certified", "CERTIFIED"),
+        Verdict::Rejected => ("verdict rejected", "REJECTED"),
+        Verdict::Undecided => ("verdict undecided", "UNDECIDED"),
+    };
+    html! {
+        div id="verdict" class=(class) {
+            strong { (word) }
+            p { (report.message) }
+        }
+    }
+}
+
+fn numbers(report: &Report, scene: &Scene) -> Markup {
+    let (period, device) = (scene.timing.period, scene.device);
+    let hertz = significant(1.0 / period, 6);
+    let coupling = match scene.coupling {
+        Coupling::Rigid => "rigid".to_owned(),
+        Coupling::Spring { stiffness } => format!("{} N m/rad", significant(stiffness, 6)),
+    };
+    let damping = |value: f64| format!("{} N m s/rad", significant(value, 6));
+    let mut rows = vec![
+        ("Inertia of the device", format!("{} kg m\u{b2}", significant(device.inertia, 6))),
+        ("Damping of the device", damping(device.damping)),
+        ("Period", format!("{} s, {hertz} Hz", significant(period, 6))),
+        ("Coupling", coupling),
+        ("Passivity of the device, delta", damping(report.delta)),
+        ("Index of the environment, alpha", enclosure(report.alpha)),
+        ("Index with the coupling, alpha", enclosure(report.alpha_coupled)),
+    ];
+    rows.extend(report.margin.map(|margin| ("Margin", damping(margin))));
+    rows.extend(report.theta.map(|theta| {
+        let degrees = significant(theta.to_degrees(), 4);
+        ("Least real part at", format!("{} rad a sample, {degrees}\u{b0}", significant(theta, 6)))
+    }));
+    rows.extend(
+        scene.torque_limit.map(|limit| ("Torque limit", format!("{} N m", significant(limit, 6)))),
+    );
+    rows.push(("Rule of the paper", answer(report.rules.paper).to_owned()));
+    rows.push(("Exact rule", answer(report.rules.exact).to_owned()));
+    html! {
+        table id="numbers" {
+            @for (name, value) in &rows { tr { th scope="row" { (name) } td { (value) } } }
+        }
+    }
+}
+
+fn answer(answer: RuleAnswer) -> &'static str {
+    match answer {
+        RuleAnswer::Pass => "pass",
+        RuleAnswer::Fail => "fail",
+        RuleAnswer::Undecided => "undecided",
+    }
+}
+
+fn enclosure(enclosure: Enclosure) -> String {
+    match enclosure {
+        Enclosure { lo: Some(lo), hi: Some(hi) } => {
+            format!("{} N m s/rad", significant(0.5 * (lo + hi), 8))
+        }
+        _ => "does not exist".to_owned(),
+    }
+}
+
+fn figure(id: &str, figure: &Figure, caption: &str) -> Markup {
+    html! {
+        figure id=(id) {
+            @match figure {
+                Figure::Drawn(picture) => {
+                    (PreEscaped(picture.svg()))
+                    figcaption { (caption) }
+                },
+                Figure::Missing(why) => { p { (why) } },
+            }
+        }
+    }
+}
