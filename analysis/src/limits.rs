@@ -140,7 +140,10 @@ impl Curves {
     pub fn of(&self, scene: &Scene, delay: usize) -> Vec<Point> {
         let decades = (self.rates.end / self.rates.start).ln();
         let last = self.points.saturating_sub(1).max(1) as f64;
-        let rate = |index: usize| self.rates.start * (decades * index as f64 / last).exp();
+        let rate = |index: usize| match index + 1 == self.points {
+            true => self.rates.end,
+            false => self.rates.start * (decades * index as f64 / last).exp(),
+        };
         (0..self.points).filter_map(|index| self.point(scene, delay, rate(index))).collect()
     }
 

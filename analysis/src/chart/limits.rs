@@ -10,8 +10,6 @@ use crate::quantity::significant;
 
 /// Height of a line of the key in pixels.
 const ROW: i32 = 20;
-/// Height in pixels that a title takes.
-const TITLE_ROOM: i32 = 26;
 /// Room for the numbers and the name of the axis on the right, in pixels.
 const RIGHT_LABELS: i32 = units(84);
 /// Room above, below and between the two groups of curves, as a factor.
@@ -48,7 +46,7 @@ pub fn limits(title: &str, note: &str, curves: &[DelayCurve]) -> Result<Picture,
     let key = ROW * (curves.len() as i32 + 2) + 10;
     let size = (SIZE.0, (SIZE.1 as i32 + key) as u32);
     draw_sized(size, |area| {
-        let area = area.titled(title, text(TITLE))?;
+        let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
         let (plot, below) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
         paint(&plot, curves, rates, left, right)?;
         write_key(&below, note, curves)
@@ -75,6 +73,7 @@ fn paint(
         .bold_line_style(GRID.stroke_width(UNITS))
         .axis_style(pen(1))
         .set_all_tick_mark_size(units(5))
+        .x_labels(12)
         .x_desc("sample rate (Hz)")
         .y_desc("largest certified stiffness (N m/rad)")
         .x_label_formatter(&axis_number)

@@ -50,8 +50,8 @@ fn name(region: Region) -> &'static str {
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
     let size = (SIZE.0, SIZE.1 + KEY as u32);
     draw_sized(size, |area| {
-        let area = area.titled(&overlay.title, text(TITLE))?;
-        let (plot, key) = area.split_vertically(units(SIZE.1 as i32 - 26));
+        let area = area.margin(units(TOP), 0, 0, 0).titled(&overlay.title, text(TITLE))?;
+        let (plot, key) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
         regions(&plot, map, overlay)?;
         write_key(&key, map, overlay)
     })

@@ -35,6 +35,10 @@ const FONT: &str = "sans-serif";
 const TITLE: i32 = units(19);
 /// Size of axis labels and of labels in the picture.
 const LABEL: i32 = units(14);
+/// Room above a title, in pixels.
+const TOP: i32 = 10;
+/// What a title takes with the room above it, in pixels.
+const TITLE_ROOM: i32 = TOP + 26;
 /// Room around a picture.
 const MARGIN: i32 = units(14);
 /// Room to the right, where the last number of the time axis stands out.

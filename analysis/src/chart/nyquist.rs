@@ -16,7 +16,7 @@ use crate::response::Response;
 
 /// Points between two poles on half the unit circle. They are denser towards the poles, where the
 /// curve is longest.
-const POINTS: usize = 800;
+const POINTS: usize = 1600;
 
 /// Nearest to a pole that the curve is drawn, in rad.
 const NEAREST: f64 = 1e-3;
@@ -55,15 +55,14 @@ pub fn nyquist(title: &str, scenes: &[(String, Scene)]) -> Result<Picture, Chart
     let key = units(ROW * rows(&curves) + 10);
     let size = (SIZE.0, SIZE.1 + key as u32 / UNITS);
     draw_sized(size, |area| {
-        let area = area.titled(&shortened(title, LONGEST_TITLE), text(TITLE))?;
+        let area = area
+            .margin(units(TOP), 0, 0, 0)
+            .titled(&shortened(title, LONGEST_TITLE), text(TITLE))?;
         let (plot, below) = area.split_vertically(units(size.1 as i32) - key - units(TITLE_ROOM));
         paint(&plot, &curves)?;
         write_key(&below, &curves)
     })
 }
-
-/// Height in pixels that a title takes.
-const TITLE_ROOM: i32 = 26;
 
 fn curve(name: &str, scene: &Scene) -> Result<Curve, ChartError> {
     let transfers =
@@ -125,17 +124,16 @@ fn paint(area: &Area<'_>, curves: &[Curve]) -> Drawn<()> {
     mesh(&mut chart, Some("real part (N m s/rad)"), "imaginary part (N m s/rad)")?;
     let axes = [vec![(x.start, 0.0), (x.end, 0.0)], vec![(0.0, y.start), (0.0, y.end)]];
     chart.draw_series(axes.map(|axis| PathElement::new(axis, pen(1))))?;
-    for (row, &line) in lines.iter().enumerate() {
-        critical_line(&mut chart, line, row, &x, &y)?;
+    for &line in &lines {
+        chart.draw_series(broken([(line, y.start), (line, y.end)], 8, 5, 2))?;
     }
     for (index, curve) in curves.iter().enumerate() {
         draw_curve(&mut chart, curve, Dash::of(index), &y)?;
     }
-    for (index, curve) in curves.iter().enumerate() {
-        let number = (curves.len() > 1).then_some(index + 1);
-        label_minimum(&mut chart, curve, number, &x, y.end)?;
+    for (row, &line) in lines.iter().enumerate() {
+        name_line(&mut chart, line, row, &x, &y)?;
     }
-    Ok(())
+    label_minima(&mut chart, curves, &x, y.end)
 }
 
 /// The lines at `-delta`, each once.
@@ -172,18 +170,23 @@ fn window(curves: &[Curve]) -> (Range<f64>, Range<f64>) {
     (x, -height..height)
 }
 
-fn critical_line(
+/// Writes the name of a critical line on ground of its own, where curves may pass behind it.
+fn name_line(
     chart: &mut Plane<'_, '_>,
     line: f64,
     row: usize,
     x: &Range<f64>,
     y: &Range<f64>,
 ) -> Drawn<()> {
-    chart.draw_series(broken([(line, y.start), (line, y.end)], 8, 5, 2))?;
-    let left_of_line = line - 0.012 * (x.end - x.start);
+    let width = x.end - x.start;
+    let right = line - 0.012 * width;
+    let top = 0.99 - 0.15 * row as f64;
+    let ground =
+        [(right + 0.004 * width, y.end * top), (right - 0.125 * width, y.end * (top - 0.14))];
+    chart.draw_series([Rectangle::new(ground, FORBIDDEN.filled())])?;
     let names = ["critical line".to_owned(), format!("-delta = {}", significant(line, 4))];
     for (part, name) in names.into_iter().enumerate() {
-        let place = (left_of_line, y.end * (0.95 - 0.075 * (2 * row + part) as f64));
+        let place = (right, y.end * (top - 0.04 - 0.07 * part as f64));
         chart.draw_series([Text::new(name, place, anchored(HPos::Right, VPos::Center))])?;
     }
     Ok(())
@@ -193,7 +196,7 @@ fn critical_line(
 /// rest, where it goes to infinity, in a hairline.
 fn draw_curve(chart: &mut Plane<'_, '_>, curve: &Curve, dash: Dash, y: &Range<f64>) -> Drawn<()> {
     if let Some(re) = curve.asymptote {
-        chart.draw_series(broken([(re, y.start), (re, y.end)], 1, 4, 1))?;
+        chart.draw_series(broken([(re, y.start), (re, y.end)], 1, 7, 1))?;
     }
     let area = chart.plotting_area();
     let (left, top) = (area.get_x_range(), y.clone());
@@ -220,27 +223,39 @@ fn local(
     points.into_iter().map(|point| (point.0 - x, point.1 - y)).collect()
 }
 
-fn label_minimum(
+/// Marks the minima; what is said about several at one place stands in a row.
+fn label_minima(
     chart: &mut Plane<'_, '_>,
-    curve: &Curve,
-    number: Option<usize>,
+    curves: &[Curve],
     x: &Range<f64>,
     height: f64,
 ) -> Drawn<()> {
-    let Some(alpha) = curve.alpha else { return Ok(()) };
-    let at = curve.minimum.filter(|point| point.1.abs() <= height);
-    let (re, im) = at.unwrap_or((-alpha, 0.0));
-    chart.draw_series([
-        Circle::new((re, im), units(5), WHITE.filled()),
-        Circle::new((re, im), units(5), pen(2)),
-    ])?;
-    let name = match number {
-        Some(number) => number.to_string(),
-        None => format!("{} = {}", least_words(curve), significant(-alpha, 4)),
+    let width = x.end - x.start;
+    let near = |a: (f64, f64), b: (f64, f64)| {
+        (a.0 - b.0).abs() < 0.04 * width && (a.1 - b.1).abs() < 0.1 * height
     };
-    // Above the axis, where the mirrored half of the curve leaves the point to the right.
-    let place = (re + 0.02 * (x.end - x.start), im + 0.06 * height);
-    chart.draw_series([Text::new(name, place, anchored(HPos::Left, VPos::Bottom))])?;
+    let mut labels: Vec<((f64, f64), String)> = Vec::new();
+    for (index, curve) in curves.iter().enumerate() {
+        let Some(alpha) = curve.alpha else { continue };
+        let at = curve.minimum.filter(|point| point.1.abs() <= height).unwrap_or((-alpha, 0.0));
+        chart.draw_series([
+            Circle::new(at, units(5), WHITE.filled()),
+            Circle::new(at, units(5), pen(2)),
+        ])?;
+        if let [only] = curves {
+            let words = format!("{} = {}", least_words(only), significant(-alpha, 4));
+            labels.push((at, words));
+        } else if let Some((_, numbers)) = labels.iter_mut().find(|(other, _)| near(*other, at)) {
+            *numbers += &format!(", {}", index + 1);
+        } else {
+            labels.push((at, (index + 1).to_string()));
+        }
+    }
+    for ((re, im), label) in labels {
+        // Above the axis, where the mirrored half of the curve leaves the point to the right.
+        let place = (re + 0.02 * width, im + 0.06 * height);
+        chart.draw_series([Text::new(label, place, anchored(HPos::Left, VPos::Bottom))])?;
+    }
     Ok(())
 }
 
@@ -262,11 +277,15 @@ fn key(curves: &[Curve]) -> Vec<(Dash, Vec<String>)> {
                 || "no alpha: its poles forbid it".to_owned(),
                 |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
             );
-            lines.push(format!("{}  {}: {alpha}", index + 1, shortened(&curve.name, LONGEST_NAME)));
+            lines.push(format!("{}: {}: {alpha}", index + 1, shortened(&curve.name, LONGEST_NAME)));
         } else {
             lines.push("thick: angles from 0 to pi; thin: from -pi to 0".to_owned());
         }
-        lines.extend(curve.poles.iter().map(|pole| format!("    {}", sentence(pole))));
+        lines.extend(curve.poles.iter().map(sentence));
+        if let Some(re) = curve.asymptote {
+            let re = significant(re, 3);
+            lines.push(format!("hairline of dots: its real part near rest, {re} N m s/rad"));
+        }
         (Dash::of(index), lines)
     };
     curves.iter().enumerate().map(entry).collect()

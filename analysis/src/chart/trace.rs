@@ -72,7 +72,8 @@ pub fn trace(trace: &Trace) -> Result<Picture, ChartError> {
         return Err(ChartError::TooFewPoints);
     }
     draw(|area| {
-        let area = area.margin(units(10), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
+        let area =
+            area.margin(units(10), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
         let area = area.titled(&legend(trace), text(LABEL))?;
         let (upper, lower) = area.split_vertically(units(SIZE.1 as i32) * 48 / 100);
         position(&upper, trace)?;
@@ -94,9 +95,6 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
     if let Some(face) = trace.face {
         let line = [(time.start, face), (time.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
-        let place = (time.end, face - 0.02 * (y.end - y.start));
-        let style = anchored(HPos::Right, VPos::Top);
-        chart.draw_series([Text::new("face of the wall", place, style)])?;
     }
     chart.draw_series(broken(sampled(&trace.hand, trace.period), 6, 4, 1))?;
     chart.draw_series(LineSeries::new(sampled(&trace.position, trace.period), pen(2)))?;
@@ -106,6 +104,9 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
 /// What the lines are, above the picture, where no curve can come in the way.
 fn legend(trace: &Trace) -> String {
     let mut words = vec!["solid: device".to_owned()];
+    if trace.face.is_some() {
+        words.push("dotted: face of the wall".to_owned());
+    }
     if !trace.hand.is_empty() {
         words.push("broken: where the hand wants to be".to_owned());
     }

@@ -174,10 +174,7 @@ pub(super) fn draw_map(
     let delay = wall.map_or(0, |wall| wall.delay);
     let period = significant(1e3 * file.scene.timing.period, 4);
     let overlay = Overlay {
-        title: format!(
-            "{}: walls {delay} samples late, T = {period} ms",
-            shortened(&file.name, 40)
-        ),
+        title: format!("{}: walls of delay {delay}, T = {period} ms", shortened(&file.name, 40)),
         border: closed_form_border(&family, &map),
         scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping)),
     };

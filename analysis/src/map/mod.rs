@@ -83,13 +83,14 @@ impl Family {
 
     /// The scene with another stiffness (N m/rad) and damping (N m s/rad) of its wall.
     pub fn member(&self, stiffness: f64, damping: f64) -> Scene {
-        let changed = |wall: Wall| Wall { stiffness, damping, ..wall };
+        let damped = |wall: Wall| Wall { stiffness, damping, ..wall };
         let environment = match self.scene.environment {
+            // A spring with a damper is a wall.
             Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
-                Environment::DamperWall(changed(wall))
+                Environment::DamperWall(damped(wall))
             }
             Environment::FreeModeWall { residual, wall } => {
-                Environment::FreeModeWall { residual, wall: changed(wall) }
+                Environment::FreeModeWall { residual, wall: damped(wall) }
             }
             other => other,
         };
@@ -111,7 +112,7 @@ impl Family {
         }
     }
 
-    /// Ranges of stiffness and damping that show the borders: twice the stiffest certified spring,
+    /// Ranges of stiffness and damping that show the borders: nearly twice the stiffest certified spring,
     /// and damping of both signs about as far as the device's own goes.
     pub fn usual_ranges(&self) -> (Range<f64>, Range<f64>) {
         let delta = assess(&self.scene).delta.midpoint();
@@ -119,7 +120,7 @@ impl Family {
             Limit::AtMost(stiffness) => stiffness,
             Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
         };
-        (0.0..2.2 * stiffest, -0.6 * delta..1.6 * delta)
+        (0.0..1.8 * stiffest, -0.6 * delta..1.25 * delta)
     }
 }
 
