@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{Loop, assess};
+use firmware::certificate::{Assessment, Loop, Rule, assess};
 use firmware::scene::Scene;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -37,6 +37,8 @@ struct Curve {
     /// Passivity of the device, the critical line being at minus that.
     delta: f64,
     alpha: Option<f64>,
+    /// What is judged where it is not the curve that is drawn.
+    judged: Option<String>,
 }
 
 /// Draws the Nyquist plots of the environments of named scenes for velocity,
@@ -89,7 +91,18 @@ fn curve(name: &str, scene: &Scene) -> Result<Curve, ChartError> {
         minimum: minimum.map(|theta| point(theta.max(1e-3))),
         delta: assessment.delta.midpoint(),
         alpha: assessment.alpha.map(|alpha| alpha.midpoint()),
+        judged: judged(&assessment),
     })
+}
+
+/// Where the verdict does not rest on the curve alone: a bound, or the coupling taken in.
+fn judged(assessment: &Assessment) -> Option<String> {
+    let (name, index) = match assessment.rule {
+        Rule::Nonlinear => ("one-sided or limited: judged by the bound", assessment.bound?),
+        Rule::Exact if assessment.alpha == assessment.alpha_coupled => return None,
+        Rule::Exact => ("judged with its coupling taken in", assessment.alpha_coupled?),
+    };
+    Some(format!("{name}, alpha = {} N m s/rad", significant(index.midpoint(), 4)))
 }
 
 /// Angles between the poles.
@@ -286,6 +299,7 @@ fn key(curves: &[Curve]) -> Vec<(Dash, Vec<String>)> {
             let re = significant(re, 3);
             lines.push(format!("hairline of dots: its real part near rest, {re} N m s/rad"));
         }
+        lines.extend(curve.judged.clone());
         (Dash::of(index), lines)
     };
     curves.iter().enumerate().map(entry).collect()

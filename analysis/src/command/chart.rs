@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use firmware::scene::Coupling;
 
 use super::{Answer, CommandError};
 use crate::chart::limits::DelayCurve;
@@ -209,9 +210,12 @@ fn limits(arguments: &Limits) -> Result<Picture, CommandError> {
         })
         .collect();
     bar.finish_and_clear();
+    let coupling = match file.scene.coupling {
+        Coupling::Rigid => "rigid coupling",
+        Coupling::Spring { .. } => "behind the standard coupling 2 delta/T",
+    };
     let note = format!(
-        "ripple of half a count of {} a turn, at {} % of the largest stiffness, behind the standard \
-         coupling 2 delta/T",
+        "ripple of half a count of {} a turn, at {} % of the largest stiffness, {coupling}",
         significant(curves.counts_per_turn, 7),
         significant(100.0 * curves.used, 3)
     );

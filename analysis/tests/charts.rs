@@ -1,0 +1,107 @@
+//! `haptic chart` as somebody runs it.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const WALL: &str = "name = \"wall\"
+[device]
+inertia = 2.2e-5
+damping = 0.022
+[servo]
+period = 0.001
+[coupling]
+stiffness = 44.0
+[environment]
+type = \"damper-wall\"
+stiffness = 22.0
+damping = 0.01
+delay = 1
+";
+
+fn chart(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .arg("chart")
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("wall.toml", WALL.to_owned());
+    write("late.toml", WALL.replace("delay = 1", "delay = 3").replace("\"wall\"", "\"late\""));
+    let limited = "[simulation]\nsamples = 50\nvelocity = 20.0\n[limits]\ntorque = 0.1\n";
+    write("moving.toml", format!("{WALL}{limited}"));
+    let head = WALL.split_once("type").unwrap().0;
+    write("free.toml", format!("{head}type = \"free-mode\"\nresidual = 0.001\n"));
+    write("damped.toml", WALL.replace("damping = 0.01", "damping = 0.03"));
+    folder
+}
+
+#[test]
+fn every_picture_as_svg_and_as_png() {
+    let folder = folder();
+    let pictures: [(&[&str], &[&str]); 5] = [
+        (&["nyquist", "wall.toml"], &["critical line", "-delta = -0.022", "-alpha = -0.021"]),
+        (&["nyquist", "wall.toml", "late.toml", "free.toml"], &["1: wall", "2: late", "real part"]),
+        (
+            &["map", "wall.toml", "--points", "2500"],
+            &["stiffness (N m/rad)", "closed form", "scene"],
+        ),
+        (&["limits", "wall.toml"], &["sample rate (Hz)", "torque ripple", "delay 4"]),
+        (&["trace", "moving.toml"], &["time (s)", "angle (rad)", "grey: limited (torque)"]),
+    ];
+    for (arguments, words) in pictures {
+        for file in ["out.svg", "out.png"] {
+            let run = chart(folder.path(), &[arguments, &["-o", file]].concat());
+            assert_eq!(run.status.code(), Some(0), "{run:?}");
+            assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
+        }
+        let svg = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
+        for word in words {
+            assert!(svg.contains(word), "{arguments:?}: {word}");
+        }
+        // Greys only: red, green and blue are the same in every colour.
+        for colour in svg.split("\"#").skip(1).map(|rest| &rest[..6]) {
+            assert!(colour[..2] == colour[2..4] && colour[2..4] == colour[4..], "{colour}");
+        }
+        let png = std::fs::read(folder.path().join("out.png")).unwrap();
+        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000);
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_a_bad_question() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("taken.svg")).unwrap();
+    let questions: [(&[&str], &str); 12] = [
+        (&["nyquist", "wall.toml", "-o", "a.pdf"], "a.pdf: the name of a picture must end in"),
+        (&["nyquist", "wall.toml", "-o", "picture"], "picture: the name of a picture must end"),
+        (&["nyquist", "wall.toml", "-o", "no/a.svg"], "no/a.svg: the picture cannot be written"),
+        (&["nyquist", "wall.toml", "-o", "taken.svg"], "taken.svg: the picture cannot be written"),
+        (&["nyquist", "none.toml", "-o", "a.svg"], "none.toml"),
+        (&["nyquist", "-o", "a.svg"], "FILE"),
+        (&["map", "free.toml", "-o", "a.svg"], "a map is drawn over stiffness and damping"),
+        (&["map", "wall.toml", "--stiffness", "9:3", "-o", "a.svg"], "9 must be less than 3"),
+        (&["map", "wall.toml", "--points", "1", "-o", "a.svg"], "1 is not in 4..=25000000"),
+        (&["limits", "damped.toml", "-o", "a.svg"], "no stiffness is certified"),
+        (&["limits", "wall.toml", "--rates", "0:10", "-o", "a.svg"], "0 must be above 0"),
+        (&["trace", "wall.toml", "-o", "a.svg"], "a simulation needs a [simulation] table"),
+    ];
+    for (arguments, words) in questions {
+        let run = chart(folder.path(), arguments);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}");
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert!(said.contains(words), "{arguments:?}: {said}");
+        assert!(!folder.path().join("a.svg").exists());
+    }
+}
+
+#[test]
+fn a_range_may_begin_below_zero() {
+    let folder = folder();
+    let map = ["map", "wall.toml", "--points", "400", "--damping", "-0.01:0.01", "-o", "a.svg"];
+    assert_eq!(chart(folder.path(), &map).status.code(), Some(0));
+}

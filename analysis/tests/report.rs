@@ -1,0 +1,140 @@
+//! The report as its reader sees it.
+
+#[path = "page/chromium.rs"]
+mod chromium;
+
+use std::path::Path;
+use std::process::Command;
+
+use base64::Engine;
+use serde_json::Value;
+
+const MEASURE: &str = include_str!("page/measure.js");
+
+const WALL: &str = r#"
+[device]
+inertia = 2.2e-5
+damping = 0.022
+[servo]
+period = 0.001
+[coupling]
+stiffness = 44.0
+[environment]
+type = "damper-wall"
+stiffness = 22.0
+damping = 0.01
+delay = 1
+"#;
+
+const MOTION: &str = r#"
+[simulation]
+samples = 300
+torque_sine = { amplitude = 1.5, omega = 60.0, phase = 0.0 }
+[human]
+inertia = 1e-4
+damping = 0.02
+stiffness = 4.0
+[limits]
+torque = 0.5
+"#;
+
+/// Writes the report of a scene; its text and the program's exit status.
+fn report(folder: &Path, scene: &str) -> (String, Option<i32>) {
+    let (file, page) = (folder.join("scene.toml"), folder.join("report.html"));
+    std::fs::write(&file, scene).unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .args(["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()])
+        .output()
+        .unwrap();
+    assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
+    (std::fs::read_to_string(page).unwrap(), run.status.code())
+}
+
+/// What a browser finds on a page, in a window so many pixels wide.
+fn measure(folder: &Path, page: &str, width: u32) -> Value {
+    let copy = folder.join("measured.html");
+    std::fs::write(&copy, page.replace("</body>", &format!("<script>{MEASURE}</script></body>")))
+        .unwrap();
+    let dom = chromium::dom(&copy, width);
+    let (_, rest) = dom.split_once("<pre id=\"measured\">").expect("the page was measured");
+    let (measured, _) = rest.split_once("</pre>").unwrap();
+    let json = base64::engine::general_purpose::STANDARD.decode(measured).unwrap();
+    serde_json::from_slice(&json).unwrap()
+}
+
+#[test]
+fn nothing_is_missing_cut_off_or_in_the_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "a name so long that no picture has room for all of it, as people write them";
+    let cases = [
+        (format!("name = \"delayed wall\"\n{WALL}{MOTION}"), 0, 3),
+        (
+            format!(
+                "name = \"<b>&amp; {long}\"\n{}{MOTION}",
+                WALL.replace("delay = 1", "delay = 2")
+            ),
+            1,
+            3,
+        ),
+        (
+            format!("name = \"still\"\n{}", WALL.replace("stiffness = 44.0", "stiffness = 30.0")),
+            1,
+            2,
+        ),
+        (
+            format!(
+                "name = \"free\"\n{}\ntype = \"free-mode\"\nresidual = 0.001\n",
+                WALL.split_once("type").unwrap().0
+            ),
+            0,
+            1,
+        ),
+    ];
+    for (scene, status, pictures) in cases {
+        let (page, code) = report(folder.path(), &scene);
+        assert_eq!(code, Some(status), "{scene}");
+        for width in [1200, 500] {
+            let seen = measure(folder.path(), &page, width);
+            assert_eq!(seen["found"], serde_json::json!([]), "{width} pixels: {scene}");
+            assert_eq!(seen["pictures"], pictures, "{scene}");
+            let text = |id: &str| seen["texts"][id].as_str().unwrap_or_default().to_owned();
+            let verdict = if status == 0 { "CERTIFIED" } else { "REJECTED" };
+            assert!(text("verdict").starts_with(verdict), "{}", text("verdict"));
+            assert!(text("numbers").contains("N m s/rad"));
+            assert!(text("assumptions").lines().count() >= 3);
+            assert_eq!(text("remedies").is_empty(), status == 0);
+            for id in ["nyquist", "map", "motion"] {
+                assert!(!text(id).is_empty(), "{id}");
+            }
+            assert!(scene.contains(seen["title"].as_str().unwrap()));
+        }
+    }
+}
+
+#[test]
+fn the_page_stands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let (page, _) = report(folder.path(), &format!("name = \"wall\"\n{WALL}{MOTION}"));
+    let links = page.replace("http://www.w3.org/2000/svg", "");
+    for outside in ["http:", "https:", "src=", "href=", "@import", "url(", "<script"] {
+        assert!(!links.contains(outside), "{outside}");
+    }
+}
+
+#[test]
+fn a_page_that_cannot_be_is_a_bad_question() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.toml");
+    std::fs::write(&file, format!("name = \"wall\"\n{WALL}")).unwrap();
+    for (page, words) in [("page.pdf", "must end in .html"), ("no/such/page.html", "No such file")]
+    {
+        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
+            .args(["report", file.to_str().unwrap(), "-o"])
+            .arg(folder.path().join(page))
+            .output()
+            .unwrap();
+        assert_eq!(run.status.code(), Some(2));
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert!(said.contains(page) && said.contains(words), "{said}");
+    }
+}
