@@ -23,8 +23,10 @@ pub enum Limit {
 const RIGID: f64 = 1e6;
 /// The softest that is tried, over the standard coupling's.
 const SOFT: f64 = 1e-6;
-/// Halvings of the logarithm of the stiffness: to a relative 1e-12.
-const HALVINGS: usize = 45;
+/// Stiffnesses between the two that are tried before the search closes in.
+const STEPS: u32 = 48;
+/// Halvings of the step's logarithm: to a relative 1e-12.
+const HALVINGS: usize = 40;
 /// Longest impulse response that is summed, in samples.
 const LONGEST: usize = 1_000_000;
 /// An impulse response has died away when this many samples in a row add less than [`SMALL`].
@@ -75,13 +77,17 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
 pub fn largest_stiffness(scene: &Scene) -> Limit {
     let passes = |stiffness: f64| assess(&with_wall(scene, stiffness, None)).outcome.is_ok();
     let standard = standard_coupling(scene);
-    let (mut low, mut high) = ((SOFT * standard).ln(), (RIGID * standard).ln());
-    if !passes(low.exp()) {
-        return Limit::Nothing;
-    }
-    if passes(high.exp()) {
+    let (softest, stiffest) = ((SOFT * standard).ln(), (RIGID * standard).ln());
+    if passes(stiffest.exp()) {
         return Limit::Any;
     }
+    // Down from above: there are walls of which the softest are not the ones that pass.
+    let step = (stiffest - softest) / f64::from(STEPS);
+    let tried = (0..=STEPS).rev().map(|index| softest + step * f64::from(index));
+    let Some(mut low) = tried.into_iter().find(|logarithm| passes(logarithm.exp())) else {
+        return Limit::Nothing;
+    };
+    let mut high = low + step;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if passes(middle.exp()) { low = middle } else { high = middle }
@@ -201,6 +207,8 @@ mod tests {
         near(k, 24.0, 1e-9);
         assert_eq!(largest_stiffness(&wall(0.0, 0, STANDARD)), Limit::Any);
         assert_eq!(largest_stiffness(&wall(0.03, 1, STANDARD)), Limit::Nothing);
+        // Undelayed it needs 0.03 - K T / 2: only the stiff ones pass, and all of them.
+        assert_eq!(largest_stiffness(&wall(-0.03, 0, STANDARD)), Limit::Any);
         // A rigid coupling costs a sample: K < b / (T (n + 1/2)).
         let Limit::AtMost(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else { panic!() };
         near(k, 44.0, 1e-9);

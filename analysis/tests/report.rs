@@ -112,6 +112,29 @@ fn nothing_is_missing_cut_off_or_in_the_way() {
 }
 
 #[test]
+fn the_measurement_finds_what_it_looks_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |x: i32, words: &str| format!("<text x='{x}' y='40'>{words}</text>");
+    let bad = [
+        ("off the page", "<p style='width: 3000px'>wide</p>".to_owned()),
+        (
+            "wider than its box",
+            "<p style='width: 3em; overflow: hidden'>unbreakable</p>".to_owned(),
+        ),
+        ("cut off", format!("<svg width='200' height='60'>{}</svg>", text(180, "too far"))),
+        (
+            "overlap",
+            format!("<svg width='200' height='60'>{}{}</svg>", text(9, "one"), text(12, "two")),
+        ),
+    ];
+    for (what, body) in bad {
+        let page = format!("<!DOCTYPE html><html><body>{body}</body></html>");
+        let found = measure(folder.path(), &page, 800)["found"].to_string();
+        assert!(found.contains(what), "{what}: {found}");
+    }
+}
+
+#[test]
 fn the_page_stands_alone() {
     let folder = tempfile::tempdir().unwrap();
     let (page, _) = report(folder.path(), &format!("name = \"wall\"\n{WALL}{MOTION}"));

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use crate::map::{Family, Map, MapError};
 use firmware::certificate::assess;
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -76,6 +77,27 @@ fn scene(rational: Rational) -> Scene {
         environment: Environment::Rational(rational),
         torque_limit: None,
     }
+}
+
+/// Cells along a side of the map that is measured.
+const MAP_SIDE: usize = 300;
+
+/// Walls a second that a map of a scene's walls judges on all cores: both rules, and stability
+/// without a hand where neither certifies. The scene is rigid in its device, as [`scenes`] are.
+///
+/// # Errors
+/// Where the scene has no wall.
+pub fn map_rate(scene: &Scene) -> Result<f64, MapError> {
+    let family = Family::rigid("the scene that is measured", scene)?;
+    let (stiffness, damping) = family.usual_ranges();
+    let round = || {
+        let start = Instant::now();
+        black_box(Map::new(&family, stiffness.clone(), damping.clone(), MAP_SIDE, || {}));
+        (MAP_SIDE * MAP_SIDE) as f64 / start.elapsed().as_secs_f64()
+    };
+    // The first starts the threads and is thrown away.
+    round();
+    Ok(median((0..5).map(|_| round()).collect()))
 }
 
 /// Rounds of the measurement, of which the median counts.

@@ -7,10 +7,12 @@ use std::process::Command;
 use clap::Args;
 use comfy_table::presets;
 use comfy_table::{CellAlignment, Table};
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Scene};
 
 use super::{Answer, CommandError};
 use crate::bench::{self, Figure};
-use crate::program::{self, Program};
+use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Input, play};
@@ -39,6 +41,8 @@ const STEPS_ELSEWHERE: [(&str, f64, &str); 2] = [
     ("C", 5.38, "plain C at -O2, 186 M steps/s"),
     ("dlsim", 4000.0, "scipy's dlsim, 0.25 M steps/s"),
 ];
+/// Fewest walls a second that a map may judge.
+const MAP_BUDGET: f64 = 1e5;
 /// Most milliseconds that a certificate may add to a compilation.
 const COMPILE_BUDGET: f64 = 50.0;
 /// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
@@ -83,6 +87,7 @@ fn on_host() -> Vec<Figure> {
     figures.push(figure("budget", STEP_BUDGET, "budget, 100 M steps/s"));
     figures.push(figure("by hand", by_hand, "a loop written for the scene, same run"));
     figures.extend(STEPS_ELSEWHERE.map(|(name, against, source)| figure(name, against, source)));
+    figures.extend(maps());
     let spinner = progress::spinner("compiling certificates");
     match compile_time() {
         Ok(time) => figures.push(Figure::new(
@@ -96,6 +101,29 @@ fn on_host() -> Vec<Figure> {
     }
     spinner.finish_and_clear();
     figures
+}
+
+/// Walls a second of a map: behind the standard coupling, and behind one that makes `E'` differ
+/// from `E`, two samples late.
+fn maps() -> Vec<Figure> {
+    let name = "a map's walls judged, all cores";
+    let scenes = [("standard coupling, delay 1", 44.0, 1), ("softer coupling, delay 2", 30.0, 2)];
+    let figure = |(what, stiffness, delay): (&str, f64, usize)| {
+        let environment = Environment::DamperWall(Wall {
+            stiffness: 22.0,
+            damping: 0.01,
+            filter: None,
+            delay,
+            face: 0.0,
+            one_sided: false,
+        });
+        let coupling = Coupling::Spring { stiffness };
+        let scene = Scene { coupling, environment, ..damper_wall::SCENE.as_data() };
+        let rate = bench::map_rate(&Scene { torque_limit: None, ..scene }).ok()?;
+        let budget = "budget, a million in 10 s";
+        Some(Figure::new(format!("{name}: {what}"), rate, "1/s", Some(MAP_BUDGET), budget))
+    };
+    scenes.into_iter().filter_map(figure).collect()
 }
 
 /// Builds the library once and measures what a certified constant adds to a program that uses it.

@@ -68,12 +68,24 @@ impl Family {
     /// # Errors
     /// Where the environment has no wall.
     pub fn of(file: &SceneFile) -> Result<Self, MapError> {
-        if crate::simulation::wall(&file.scene).is_none() {
-            return Err(MapError::NoWall { scene: file.name.clone() });
-        }
         let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
+        Self::on(&file.name, alone)
+    }
+
+    /// The walls of a scene that a person calls `name`, on its rigid device in no hand.
+    ///
+    /// # Errors
+    /// Where the environment has no wall.
+    pub fn rigid(name: &str, scene: &Scene) -> Result<Self, MapError> {
+        Self::on(name, Experiment::still(scene))
+    }
+
+    fn on(name: &str, alone: Experiment) -> Result<Self, MapError> {
+        if crate::simulation::wall(&alone.scene).is_none() {
+            return Err(MapError::NoWall { scene: name.to_owned() });
+        }
         let tick = Tick::new(&alone.plant, &alone.stepping(Stride::default()), 0.0);
-        Ok(Self { scene: file.scene, plant: SampledPlant::new(&tick) })
+        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick) })
     }
 
     /// The scene that the others differ from.
@@ -97,18 +109,22 @@ impl Family {
         Scene { environment, ..self.scene }
     }
 
-    /// What is known of one of the walls.
+    /// What is known of one of the walls. Stability comes first, being by far the cheapest: no hand
+    /// at all is a passive hand too, so what does not come to rest without one is not certified,
+    /// as long as the device is as passive as its scene says. Where it is not, the map shows what
+    /// it does.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
+        if !self.plant.is_stable_under(&scene).unwrap_or(false) {
+            return Region::Unstable;
+        }
         let assessment = assess(&scene);
         if assessment.paper == Answer::Pass {
             Region::Paper
         } else if assessment.exact == Answer::Pass {
             Region::Exact
-        } else if self.plant.is_stable_under(&scene).unwrap_or(false) {
-            Region::Stable
         } else {
-            Region::Unstable
+            Region::Stable
         }
     }
 
