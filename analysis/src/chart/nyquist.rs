@@ -255,10 +255,11 @@ fn label_minima(
             Circle::new(at, units(5), WHITE.filled()),
             Circle::new(at, units(5), pen(2)),
         ])?;
-        if let [only] = curves {
-            let words = format!("{} = {}", least_words(only), significant(-alpha, 4));
-            labels.push((at, words));
-        } else if let Some((_, numbers)) = labels.iter_mut().find(|(other, _)| near(*other, at)) {
+        // What is said about a curve alone stands in the key, where nothing crosses it.
+        if curves.len() == 1 {
+            continue;
+        }
+        if let Some((_, numbers)) = labels.iter_mut().find(|(other, _)| near(*other, at)) {
             *numbers += &format!(", {}", index + 1);
         } else {
             labels.push((at, (index + 1).to_string()));
@@ -284,16 +285,17 @@ fn rows(curves: &[Curve]) -> i32 {
 /// What is written below the picture, with the pattern that it is about.
 fn key(curves: &[Curve]) -> Vec<(Dash, Vec<String>)> {
     let entry = |(index, curve): (usize, &Curve)| {
-        let mut lines = Vec::new();
-        if curves.len() > 1 {
-            let alpha = curve.alpha.map_or_else(
-                || "no alpha: its poles forbid it".to_owned(),
-                |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
-            );
-            lines.push(format!("{}: {}: {alpha}", index + 1, shortened(&curve.name, LONGEST_NAME)));
+        let alpha = curve.alpha.map_or_else(
+            || "no alpha: its poles forbid it".to_owned(),
+            |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
+        );
+        let mut lines = if curves.len() > 1 {
+            vec![format!("{}: {}: {alpha}", index + 1, shortened(&curve.name, LONGEST_NAME))]
         } else {
-            lines.push("thick: angles from 0 to pi; thin: from -pi to 0".to_owned());
-        }
+            let mark = if curve.alpha.is_some() { "circle: " } else { "" };
+            let halves = "thick: angles from 0 to pi; thin: from -pi to 0";
+            vec![halves.to_owned(), format!("{mark}{alpha}")]
+        };
         lines.extend(curve.poles.iter().map(sentence));
         if let Some(re) = curve.asymptote {
             let re = significant(re, 3);
