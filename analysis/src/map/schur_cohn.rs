@@ -8,7 +8,9 @@ pub fn all_inside(coefficients: &mut [f64]) -> bool {
     let mut rest = coefficients;
     while let [leading, .., constant] = *rest {
         let reflection = constant / leading;
-        if !(reflection.abs() < 1.0) {
+        // Neither is what is not a number.
+        let goes_on = reflection.abs() < 1.0;
+        if !goes_on {
             return false;
         }
         let last = rest.len() - 1;
