@@ -16,6 +16,9 @@ pub mod torque;
 
 pub mod dac;
 
+// What a device is measured with, before anything is certified for it.
+pub mod excitation;
+
 pub mod certificate;
 pub mod passivity;
 pub mod scene;

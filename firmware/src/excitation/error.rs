@@ -1,0 +1,115 @@
+//! Why tones are no sweep.
+
+use core::fmt;
+
+use super::LEAST_PERIODS;
+use crate::text::Text;
+
+/// What is wrong with a sweep. Tones are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SweepError {
+    /// The period or the motor's torque is zero, negative or not finite.
+    NotPositive {
+        /// What it is.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A frequency that is no sine when it is sampled.
+    Frequency {
+        /// Which tone.
+        tone: usize,
+        /// Its frequency in Hz.
+        frequency: f64,
+        /// Half the sampling rate in Hz, which it must be below.
+        largest: f64,
+    },
+    /// An amplitude that the converter cannot give.
+    Amplitude {
+        /// Which tone.
+        tone: usize,
+        /// Its amplitude in N m.
+        amplitude: f64,
+        /// Torque of one code in N m.
+        least: f64,
+        /// Torque at full scale in N m.
+        largest: f64,
+    },
+    /// Too few periods to measure.
+    Periods {
+        /// Which tone.
+        tone: usize,
+        /// How many are to be measured.
+        measured: u32,
+    },
+    /// Periods that take no whole number of samples, or too many.
+    Samples {
+        /// Which tone.
+        tone: usize,
+        /// How many periods.
+        periods: u32,
+        /// How many samples they take.
+        samples: f64,
+        /// The most that there may be.
+        most: f64,
+    },
+}
+
+impl SweepError {
+    /// The error as a sentence, the same at compile time and later.
+    pub const fn sentence(&self) -> Text<240> {
+        let mut t = Text::new();
+        match *self {
+            Self::NotPositive { name, value } => {
+                t.push("the ");
+                t.push(name);
+                t.push(" is ");
+                t.push_number(value);
+                t.push("; it must be positive and finite");
+            }
+            Self::Frequency { tone, frequency, largest } => {
+                of_tone(&mut t, tone, "a frequency of ", frequency);
+                t.push(" Hz; it must be above 0 and below half the sampling rate, ");
+                t.push_number(largest);
+                t.push(" Hz");
+            }
+            Self::Amplitude { tone, amplitude, least, largest } => {
+                of_tone(&mut t, tone, "an amplitude of ", amplitude);
+                t.push(" N m; the converter gives ");
+                t.push_number(least);
+                t.push(" to ");
+                t.push_number(largest);
+                t.push(" N m");
+            }
+            Self::Periods { tone, measured } => {
+                of_tone(&mut t, tone, "a measured part of ", measured as f64);
+                t.push(" periods; it must be at least ");
+                t.push_number(LEAST_PERIODS as f64);
+            }
+            Self::Samples { tone, periods, samples, most } => {
+                of_tone(&mut t, tone, "a part of ", periods as f64);
+                t.push(" periods, which take ");
+                t.push_number(samples);
+                t.push(" samples; they must take a whole number of samples, and at most ");
+                t.push_number(most);
+            }
+        }
+        t
+    }
+}
+
+const fn of_tone(t: &mut Text<240>, tone: usize, what: &str, value: f64) {
+    t.push("tone ");
+    t.push_number(tone as f64);
+    t.push(" has ");
+    t.push(what);
+    t.push_number(value);
+}
+
+impl fmt::Display for SweepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.sentence().as_str())
+    }
+}
+
+impl core::error::Error for SweepError {}

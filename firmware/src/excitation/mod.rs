@@ -1,0 +1,215 @@
+//! Sines of torque that a device is measured with (theory, section 3.3).
+//!
+//! A [`Sweep`] is made of tones in plain SI numbers and checked as a whole, at compile time where
+//! it is a constant; an [`Exciter`] gives its codes, the same ones on a board and on the host.
+//!
+//! Each tone lasts a whole number of samples, the part that is measured as well as the part in which
+//! the device settles, so that one bin of a Fourier sum is the response, and nothing leaks into it.
+//!
+//! ```
+//! use firmware::encoder::CounterWidth;
+//! use firmware::excitation::{Exciter, Sweep, Tone};
+//! use firmware::servo::Transducers;
+//!
+//! const MOTOR: Transducers = Transducers {
+//!     counts_per_turn: 61_440.0,
+//!     counter: CounterWidth::Bits16,
+//!     full_scale_torque: 2.0,
+//! };
+//! const SWEEP: Sweep<1> = Sweep::planned(
+//!     0.001,
+//!     &MOTOR,
+//!     [Tone { frequency: 64.0, amplitude: 0.5, settle: 8, measured: 16 }],
+//! );
+//! assert_eq!(SWEEP.ticks(), 125 + 250);
+//! let mut exciter = Exciter::new(&SWEEP);
+//! assert_eq!(exciter.next().code.offset(), 0);
+//!
+//! // More than the converter can give does not become a sweep.
+//! let loud = Tone { frequency: 64.0, amplitude: 2.5, settle: 8, measured: 16 };
+//! let error = Sweep::new(0.001, &MOTOR, [loud]).unwrap_err();
+//! assert!(error.to_string().contains("an amplitude of 2.5 N m"));
+//! ```
+
+mod error;
+mod exciter;
+
+use core::fmt;
+
+pub use error::SweepError;
+pub use exciter::{Excitation, Exciter};
+
+use crate::dac::DacCode;
+use crate::servo::Transducers;
+
+/// Fewest periods that are measured of a tone.
+pub const LEAST_PERIODS: u32 = 4;
+
+/// Most samples of a part of a tone: all whole numbers up to here have exact phases in `f32`.
+const MOST_SAMPLES: f64 = (1 << 20) as f64;
+
+/// How far a number of samples may be from a whole one, relatively: what rounding leaves.
+const WHOLE: f64 = 1e-9;
+
+/// One sine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tone {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Amplitude of the motor torque in N m.
+    pub amplitude: f64,
+    /// Periods in which the device settles.
+    pub settle: u32,
+    /// Periods that are measured.
+    pub measured: u32,
+}
+
+/// Tones one after the other, checked: every one within the converter's range and a whole number
+/// of samples long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep<const N: usize> {
+    period: f64,
+    full_scale_torque: f64,
+    tones: [Tone; N],
+    steps: [Step; N],
+}
+
+/// A tone in samples and codes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Step {
+    /// Samples in which the device settles.
+    settle: u32,
+    /// Samples that are measured.
+    measured: u32,
+    /// Periods in the measured samples: the sine turns by `cycles / measured` a sample.
+    cycles: u32,
+    /// Amplitude in codes.
+    codes: f32,
+}
+
+impl<const N: usize> Sweep<N> {
+    /// Checks tones for a period in s and a motor.
+    ///
+    /// # Errors
+    /// For the first tone that is out of the range of converter or sampling, or whose parts are no
+    /// whole number of samples.
+    pub const fn new(
+        period: f64,
+        transducers: &Transducers,
+        tones: [Tone; N],
+    ) -> Result<Self, SweepError> {
+        let full_scale_torque = transducers.full_scale_torque;
+        if !(period > 0.0 && period < f64::INFINITY) {
+            return Err(SweepError::NotPositive { name: "period", value: period });
+        }
+        if !(full_scale_torque > 0.0 && full_scale_torque < f64::INFINITY) {
+            let (name, value) = ("full-scale torque", full_scale_torque);
+            return Err(SweepError::NotPositive { name, value });
+        }
+        let mut steps = [Step { settle: 0, measured: 1, cycles: 0, codes: 0.0 }; N];
+        let mut i = 0;
+        while i < N {
+            steps[i] = match step(i, &tones[i], period, full_scale_torque) {
+                Ok(step) => step,
+                Err(error) => return Err(error),
+            };
+            i += 1;
+        }
+        Ok(Self { period, full_scale_torque, tones, steps })
+    }
+
+    /// The same for a constant: tones that are refused stop the compiler, with a sentence.
+    #[track_caller]
+    pub const fn planned(period: f64, transducers: &Transducers, tones: [Tone; N]) -> Self {
+        match Self::new(period, transducers, tones) {
+            Ok(sweep) => sweep,
+            Err(error) => panic!("{}", error.sentence().as_str()),
+        }
+    }
+
+    /// Sampling period in s.
+    pub const fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Motor torque in N m at the converter's largest code.
+    pub const fn full_scale_torque(&self) -> f64 {
+        self.full_scale_torque
+    }
+
+    /// The tones in their order.
+    pub const fn tones(&self) -> &[Tone; N] {
+        &self.tones
+    }
+
+    /// Samples of the whole.
+    pub const fn ticks(&self) -> u64 {
+        let (mut ticks, mut i) = (0, 0);
+        while i < N {
+            ticks += self.steps[i].settle as u64 + self.steps[i].measured as u64;
+            i += 1;
+        }
+        ticks
+    }
+}
+
+const fn step(
+    tone: usize,
+    &Tone { frequency, amplitude, settle, measured }: &Tone,
+    period: f64,
+    full_scale_torque: f64,
+) -> Result<Step, SweepError> {
+    // All written so that NaN is refused.
+    let largest = 0.5 / period;
+    if !(frequency > 0.0 && frequency < largest) {
+        return Err(SweepError::Frequency { tone, frequency, largest });
+    }
+    let codes = amplitude / full_scale_torque * DacCode::CODES_TO_FULL_SCALE as f64;
+    if !(codes >= 1.0 && amplitude <= full_scale_torque) {
+        let least = full_scale_torque / DacCode::CODES_TO_FULL_SCALE as f64;
+        return Err(SweepError::Amplitude { tone, amplitude, least, largest: full_scale_torque });
+    }
+    if measured < LEAST_PERIODS {
+        return Err(SweepError::Periods { tone, measured });
+    }
+    let parts = (whole(tone, settle, frequency, period), whole(tone, measured, frequency, period));
+    match parts {
+        (Ok(settle), Ok(samples)) => {
+            Ok(Step { settle, measured: samples, cycles: measured, codes: codes as f32 })
+        }
+        (Err(error), _) | (_, Err(error)) => Err(error),
+    }
+}
+
+/// The samples of so many periods.
+const fn whole(tone: usize, periods: u32, frequency: f64, period: f64) -> Result<u32, SweepError> {
+    let samples = periods as f64 / (frequency * period);
+    let nearest = (samples + 0.5) as u32;
+    let off = (samples - nearest as f64).abs();
+    if samples <= MOST_SAMPLES && off <= WHOLE * samples {
+        Ok(nearest)
+    } else {
+        Err(SweepError::Samples { tone, periods, samples, most: MOST_SAMPLES })
+    }
+}
+
+/// The plan: a line a tone, and how long it takes.
+impl<const N: usize> fmt::Display for Sweep<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{:>10} {:>14} {:>12} {:>12}", "frequency", "amplitude", "settle", "measured")?;
+        for (tone, step) in self.tones.iter().zip(&self.steps) {
+            let seconds = |samples: u32| f64::from(samples) * self.period;
+            let (settle, measured) = (seconds(step.settle), seconds(step.measured));
+            let Tone { frequency, amplitude, .. } = tone;
+            writeln!(
+                f,
+                "{frequency:>7} Hz {amplitude:>10} N m {settle:>10.3} s {measured:>10.3} s"
+            )?;
+        }
+        let seconds = self.ticks() as f64 * self.period;
+        writeln!(f, "{} ticks of {} s, {seconds:.3} s in all", self.ticks(), self.period)
+    }
+}
+
+#[cfg(test)]
+mod tests;
