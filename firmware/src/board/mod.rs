@@ -68,6 +68,21 @@ macro_rules! scene_program {
     };
 }
 
+/// Makes a program of a sweep: on a board it plays it, on the host it prints the plan.
+#[macro_export]
+macro_rules! sweep_program {
+    ($sweep:ident) => {
+        /// Prints the plan.
+        #[cfg(not(target_os = "none"))]
+        pub fn main() {
+            print!("{}", $sweep);
+        }
+
+        #[cfg(target_os = "none")]
+        $crate::board_sweep!($sweep);
+    };
+}
+
 /// The number format of the two that the feature `fixed-point` chooses.
 #[cfg(feature = "fixed-point")]
 #[doc(hidden)]
@@ -93,6 +108,16 @@ macro_rules! chosen_number {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
+    ($($any:tt)*) => {
+        compile_error!("name the board that this program is for: --features board-qemu");
+    };
+}
+
+/// The program of a sweep on a board that was not named.
+#[cfg(all(target_os = "none", not(feature = "board-qemu")))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_sweep {
     ($($any:tt)*) => {
         compile_error!("name the board that this program is for: --features board-qemu");
     };

@@ -17,7 +17,7 @@ pub mod meter;
 pub mod pace;
 mod start;
 
-pub use start::{Judgement, SceneProgram, Seat, run};
+pub use start::{Drive, Judgement, SceneProgram, Seat, measure, run};
 
 use embassy_executor::InterruptExecutor;
 
@@ -82,7 +82,9 @@ macro_rules! board_program {
     ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
         /// The servo's task; a task may not be generic, so each program has its own.
         #[embassy_executor::task]
-        async fn serve(seat: $crate::board::qemu::Seat<$environment, $number>) {
+        async fn serve(
+            seat: $crate::board::qemu::Seat<$crate::servo::Servo<$environment, $number>>,
+        ) {
             seat.serve().await
         }
 
@@ -94,6 +96,26 @@ macro_rules! board_program {
                 transducers: &$transducers,
             };
             $crate::board::qemu::run(program, serve)
+        }
+    };
+}
+
+/// The program of a sweep on this board.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_sweep {
+    ($sweep:ident) => {
+        /// The exciter's task.
+        #[embassy_executor::task]
+        async fn serve(
+            seat: $crate::board::qemu::Seat<$crate::excitation::Exciter<'static>>,
+        ) {
+            seat.serve().await
+        }
+
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            $crate::board::qemu::measure(&$sweep, serve)
         }
     };
 }

@@ -1,7 +1,8 @@
-//! From reset to a running servo.
+//! From reset to a running servo, or to a measurement.
 
 use core::hint::black_box;
 
+use cortex_m::peripheral::SYST;
 use embassy_executor::{Executor, SpawnError, SpawnToken};
 use static_cell::StaticCell;
 
@@ -9,11 +10,13 @@ use super::{EXIT_REFUSED, SERVO_EXECUTOR, ServoInterrupt, lockstep, pace};
 use crate::board::StartError;
 use crate::certificate::{Certified, Rejection};
 use crate::dac::Dac;
-use crate::encoder::Encoder;
+use crate::encoder::{Encoder, RawCount};
 use crate::environment::Renderable;
+use crate::excitation::{Exciter, Sweep};
 use crate::number::Number;
 use crate::scene::Scene;
-use crate::servo::{Servo, Transducers};
+use crate::servo::{Output, Servo, Transducers};
+use crate::torque::LimitReason;
 
 /// What `certify` gives.
 pub type Judgement<E> = Result<Certified<Scene<E>>, Rejection>;
@@ -28,17 +31,38 @@ pub struct SceneProgram<E: 'static> {
     pub transducers: &'static Transducers,
 }
 
-/// The servo with its place between encoder and DAC.
-pub struct Seat<E: Renderable<N>, N: Number> {
-    servo: Servo<E, N>,
+/// What has a code for every count.
+pub trait Drive {
+    /// One tick.
+    fn tick(&mut self, raw: RawCount) -> Output;
+}
+
+impl<E: Renderable<N>, N: Number> Drive for Servo<E, N> {
+    #[inline(always)]
+    fn tick(&mut self, raw: RawCount) -> Output {
+        Servo::tick(self, raw)
+    }
+}
+
+/// Open loop: the host, which has the counts, does the measuring.
+impl Drive for Exciter<'_> {
+    #[inline(always)]
+    fn tick(&mut self, _: RawCount) -> Output {
+        Output { code: self.next().code, limit: LimitReason::None }
+    }
+}
+
+/// What drives the motor, with its place between encoder and DAC.
+pub struct Seat<D> {
+    drive: D,
     counts: lockstep::Counts,
     codes: lockstep::Codes,
     #[cfg(feature = "log")]
     frames: super::log::Frames,
 }
 
-impl<E: Renderable<N>, N: Number> Seat<E, N> {
-    /// The servo's loop, one tick a period, until the host closes the pipe.
+impl<D: Drive> Seat<D> {
+    /// The loop, one tick a period, until the host closes the pipe.
     #[cfg(not(feature = "log"))]
     pub async fn serve(mut self) {
         loop {
@@ -47,12 +71,12 @@ impl<E: Renderable<N>, N: Number> Seat<E, N> {
             if !self.counts.open() {
                 semihosting::process::exit(super::EXIT_DONE);
             }
-            let output = self.servo.tick(raw);
+            let output = self.drive.tick(raw);
             self.codes.write(output.code);
         }
     }
 
-    /// The servo's loop, one tick a period, until the host closes the pipe; each tick is measured
+    /// The loop, one tick a period, until the host closes the pipe; each tick is measured
     /// and leaves a frame.
     #[cfg(feature = "log")]
     pub async fn serve(mut self) {
@@ -64,7 +88,7 @@ impl<E: Renderable<N>, N: Number> Seat<E, N> {
             if !self.counts.open() {
                 return self.frames.end();
             }
-            let (output, compute) = meter::tick(raw, |raw| self.servo.tick(raw));
+            let (output, compute) = meter::tick(raw, |raw| self.drive.tick(raw));
             self.codes.write(output.code);
             self.frames.push(Frame { code: output.code, due, compute, interrupt, lockstep });
         }
@@ -74,38 +98,76 @@ impl<E: Renderable<N>, N: Number> Seat<E, N> {
 /// Certifies the scene again, builds its servo, and runs it with the task `serve`.
 pub fn run<E, N, S>(
     program: SceneProgram<E>,
-    serve: fn(Seat<E, N>) -> Result<SpawnToken<S>, SpawnError>,
+    serve: fn(Seat<Servo<E, N>>) -> Result<SpawnToken<S>, SpawnError>,
 ) -> !
 where
     E: Copy + Renderable<N>,
     N: Number,
     S: Send,
 {
-    let core = cortex_m::Peripherals::take().expect("the core is taken once");
-    #[cfg(feature = "log")]
-    let scale = super::meter::Scale::calibrate();
-    #[cfg(feature = "log")]
-    defmt::info!("per_instruction={} overhead={}", scale.per_instruction, scale.overhead);
-
+    let clock = Clock::take();
     let (servo, reload) = prepare(&program);
+    paced(clock, servo, reload, serve)
+}
+
+/// Plays a sweep with the task `serve`.
+pub fn measure<const N: usize, S: Send>(
+    sweep: &'static Sweep<N>,
+    serve: fn(Seat<Exciter<'static>>) -> Result<SpawnToken<S>, SpawnError>,
+) -> ! {
+    let clock = Clock::take();
+    let reload = pace::reload(sweep.period()).unwrap_or_else(|error| refuse(&error));
+    paced(clock, Exciter::new(sweep), reload, serve)
+}
+
+/// What keeps time on the board.
+struct Clock {
+    timer: SYST,
+    #[cfg(feature = "log")]
+    scale: super::meter::Scale,
+}
+
+impl Clock {
+    /// The timer, and the scale of the log's times. To be called once.
+    fn take() -> Self {
+        let core = cortex_m::Peripherals::take().expect("the core is taken once");
+        #[cfg(feature = "log")]
+        let scale = super::meter::Scale::calibrate();
+        #[cfg(feature = "log")]
+        defmt::info!("per_instruction={} overhead={}", scale.per_instruction, scale.overhead);
+        Self {
+            timer: core.SYST,
+            #[cfg(feature = "log")]
+            scale,
+        }
+    }
+}
+
+/// Opens the pipes and has what drives the motor run once a period.
+fn paced<D, S: Send>(
+    clock: Clock,
+    drive: D,
+    reload: u32,
+    serve: fn(Seat<D>) -> Result<SpawnToken<S>, SpawnError>,
+) -> ! {
     let Ok((counts, codes)) = lockstep::open() else { refuse(&"no host holds the pipes") };
 
     #[cfg(feature = "log")]
     let (frames, end) = super::log::frames();
     let seat = Seat {
-        servo,
+        drive,
         counts,
         codes,
         #[cfg(feature = "log")]
         frames,
     };
     SERVO_EXECUTOR.start(ServoInterrupt).spawn(task(serve(seat)));
-    pace::start(core.SYST, reload);
+    pace::start(clock.timer, reload);
 
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {
         #[cfg(feature = "log")]
-        spawner.spawn(task(super::log::log(end, scale)));
+        spawner.spawn(task(super::log::log(end, clock.scale)));
         spawner.spawn(task(idle()));
     })
 }

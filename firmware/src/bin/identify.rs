@@ -1,0 +1,46 @@
+//! Drives a device with sines of torque, open loop, so that the host can measure its inertia, its
+//! damping and its passivity (theory, section 3.3).
+//!
+//! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use firmware::encoder::CounterWidth;
+use firmware::excitation::{Sweep, Tone};
+use firmware::servo::Transducers;
+
+/// The sensor and the motor that it runs on.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+};
+
+/// Sampling period in s: that of the scenes which the device is to be certified for.
+pub const PERIOD: f64 = 0.001;
+
+/// The tones, up to a quarter of the sampling rate, for a device with 2e-5 kg m^2 and 0.02 N m s/rad
+/// or so: at low frequencies as much torque as makes a fifth of a radian, at high ones as much as
+/// the motor has to spare, since the damping is told from a skew only where inertia outweighs it. A
+/// heavier device needs more torque or lower frequencies; the host says so where the motion is lost
+/// in counts.
+///
+/// A torque that the converter cannot give, or a part of a tone that is no whole number of samples,
+/// stops the compiler here.
+pub static SWEEP: Sweep<10> = Sweep::planned(
+    PERIOD,
+    &TRANSDUCERS,
+    [
+        Tone { frequency: 1.0, amplitude: 0.03, settle: 1, measured: 8 },
+        Tone { frequency: 2.0, amplitude: 0.06, settle: 1, measured: 12 },
+        Tone { frequency: 4.0, amplitude: 0.11, settle: 2, measured: 20 },
+        Tone { frequency: 8.0, amplitude: 0.22, settle: 4, measured: 32 },
+        Tone { frequency: 16.0, amplitude: 0.45, settle: 8, measured: 64 },
+        Tone { frequency: 32.0, amplitude: 0.9, settle: 16, measured: 128 },
+        Tone { frequency: 64.0, amplitude: 1.6, settle: 32, measured: 256 },
+        Tone { frequency: 100.0, amplitude: 1.6, settle: 50, measured: 400 },
+        Tone { frequency: 160.0, amplitude: 1.6, settle: 80, measured: 640 },
+        Tone { frequency: 240.0, amplitude: 1.6, settle: 120, measured: 960 },
+    ],
+);
+
+firmware::sweep_program!(SWEEP);
