@@ -6,6 +6,9 @@ pub mod damper_wall;
 pub mod delayed_spring;
 #[path = "../../firmware/src/bin/free_mode.rs"]
 pub mod free_mode;
+// No scene, and so not among them: what a device is measured with.
+#[path = "../../firmware/src/bin/identify.rs"]
+pub mod identify;
 
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Transducers};

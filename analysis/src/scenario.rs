@@ -84,15 +84,33 @@ fn beside(
         let Ok(run) = run::<Alone>(plant, controller, None, ticks, progress);
         return Ok(Outcome { run, energy: None, final_speed: None, board: None });
     };
-    let mut board = Board { emulator: Emulator::boot(elf)?, tick: 0 };
+    let mut board = Board::boot(elf)?;
     let run = run(plant, controller, Some(&mut board), ticks, progress)?;
     Ok(Outcome { run, energy: None, final_speed: None, board: Some(board.emulator.finish()?) })
 }
 
 /// The emulated board, which knows the tick that it is in.
-struct Board {
+pub struct Board {
     emulator: Emulator,
     tick: usize,
+}
+
+impl Board {
+    /// Starts a program.
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self { emulator: Emulator::boot(elf)?, tick: 0 })
+    }
+
+    /// Ends a program that has no scene to report of, and gives its log.
+    ///
+    /// # Errors
+    /// Where the board does not end, or ends with a failure.
+    pub fn end(self) -> Result<Vec<String>, EmulatorError> {
+        self.emulator.end()
+    }
 }
 
 impl Twin for Board {

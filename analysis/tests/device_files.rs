@@ -178,16 +178,18 @@ fn errors_name_file_line_key_value_and_bound() {
 
 #[test]
 fn a_measured_device_is_identified_and_its_table_is_a_device_file() {
-    use analysis::identify::rig::{Excitation, Rig};
+    use analysis::identify::rig::{Excitation, Rig, Sensing};
     use firmware::scene::Device;
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let rig = Rig {
         device,
-        period: 1e-3,
-        counts_per_turn: 61_440.0,
-        torque_noise: 0.02,
-        skew: 1e-5,
-        seed: 7,
+        sensing: Sensing {
+            period: 1e-3,
+            counts_per_turn: 61_440.0,
+            torque_noise: 0.02,
+            skew: 1e-5,
+            seed: 7,
+        },
     };
     let sine = |frequency: f64| {
         let omega = std::f64::consts::TAU * frequency;

@@ -7,9 +7,10 @@
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
 //! takes one bin of each, [`fit`] draws the conclusions. [`rig`] simulates a device that is measured
-//! so, with all that spoils a measurement.
+//! so, with all that spoils a measurement, and [`measurement`] has the emulated board measure it.
 
 pub mod fit;
+pub mod measurement;
 pub mod record;
 pub mod response;
 pub mod rig;

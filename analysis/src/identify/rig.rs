@@ -2,9 +2,12 @@
 //! counts, torque noise that nobody records, records that are skewed in time.
 
 use firmware::scene::Device;
+use nalgebra::{DMatrix, DVector};
 
 use super::record::Record;
-use crate::device::{Grip, Hand, HeldDevice, Motion, SimulatedEncoder};
+use crate::device::SimulatedEncoder;
+use crate::simulation::method::{Method, step};
+use crate::simulation::plant::{Input, POSITION, Plant};
 
 /// One sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,11 +20,9 @@ pub struct Excitation {
     pub duration: f64,
 }
 
-/// A rig.
+/// How a device is driven and seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rig {
-    /// What is measured.
-    pub device: Device,
+pub struct Sensing {
     /// Sampling period in s.
     pub period: f64,
     /// Counts of the encoder in one turn.
@@ -34,34 +35,99 @@ pub struct Rig {
     pub seed: u64,
 }
 
+/// A simulated device between motor and encoder, at rest at zero to begin with.
+#[derive(Clone, Debug)]
+pub struct MeasuredDevice {
+    /// From a tick to the time at which the next row's counts are taken.
+    until: Held,
+    /// From there to the next tick; none without skew.
+    after: Option<Held>,
+    state: DVector<f64>,
+    /// Angle in rad that the encoder sees.
+    seen: f64,
+    encoder: SimulatedEncoder,
+    torque_noise: f64,
+    noise: fastrand::Rng,
+}
+
+/// The exact motion over some time with the motor's torque held.
+#[derive(Clone, Debug)]
+struct Held {
+    states: DMatrix<f64>,
+    motor: DVector<f64>,
+}
+
+impl Held {
+    fn new(plant: &Plant, time: f64) -> Self {
+        let (n, step) = (plant.order(), step(plant, Method::Exact, 0.0, time));
+        let motor = step.view((0, n + Input::Motor as usize), (n, 1)).column(0).into_owned();
+        Self { states: step.view((0, 0), (n, n)).into_owned(), motor }
+    }
+
+    fn step(&self, state: &DVector<f64>, torque: f64) -> DVector<f64> {
+        &self.states * state + &self.motor * torque
+    }
+}
+
+impl MeasuredDevice {
+    /// A device that is driven and seen so.
+    pub fn new(plant: &Plant, sensing: &Sensing) -> Self {
+        let Sensing { period, counts_per_turn, torque_noise, skew, seed } = *sensing;
+        Self {
+            until: Held::new(plant, period - skew),
+            after: (skew > 0.0).then(|| Held::new(plant, skew)),
+            state: plant.moving(0.0, 0.0),
+            seen: 0.0,
+            encoder: SimulatedEncoder::new(counts_per_turn),
+            torque_noise,
+            noise: fastrand::Rng::with_seed(seed),
+        }
+    }
+
+    /// The counter's content of this tick.
+    pub fn count(&self) -> i32 {
+        self.encoder.read(self.seen)
+    }
+
+    /// Holds a torque in N m until the next tick.
+    pub fn hold(&mut self, torque: f64) {
+        let motor = torque + self.torque_noise * normal(&mut self.noise);
+        self.state = self.until.step(&self.state, motor);
+        self.seen = self.state[POSITION];
+        if let Some(after) = &self.after {
+            self.state = after.step(&self.state, motor);
+        }
+    }
+}
+
+/// A rig with a rigid device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rig {
+    /// What is measured.
+    pub device: Device,
+    /// With what.
+    pub sensing: Sensing,
+}
+
 impl Rig {
     /// Applies one sine after the other, from rest, and records.
     pub fn measure(&self, sines: &[Excitation]) -> Record {
-        let held = |time: f64| HeldDevice::new(self.device, Hand::default(), time);
-        let (until, after) = (held(self.period - self.skew), held(self.skew));
-        let encoder = SimulatedEncoder::new(self.counts_per_turn);
-        let mut noise = fastrand::Rng::with_seed(self.seed);
-        let (mut motion, mut seen) = (Motion::default(), Motion::default());
+        let period = self.sensing.period;
+        let mut device = MeasuredDevice::new(&Plant::rigid(self.device), &self.sensing);
         let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
         for sine in sines {
-            let ticks = (sine.duration / self.period).round() as usize;
+            let ticks = (sine.duration / period).round() as usize;
             for tick in 0..ticks {
-                let time = tick as f64 * self.period;
+                let time = tick as f64 * period;
                 let command =
                     sine.amplitude * (std::f64::consts::TAU * sine.frequency * time).sin();
                 torque.push(command);
-                counts.push(f64::from(encoder.read(seen.position)));
+                counts.push(f64::from(device.count()));
                 frequency.push(sine.frequency);
-                let motor = command + self.torque_noise * normal(&mut noise);
-                seen = until.step(motion, motor, Grip::default()).0;
-                // A step of no length would be solved as 0/0.
-                motion = match self.skew {
-                    0.0 => seen,
-                    _ => after.step(seen, motor, Grip::default()).0,
-                };
+                device.hold(command);
             }
         }
-        Record { period: self.period, torque, counts, frequency: Some(frequency) }
+        Record { period, torque, counts, frequency: Some(frequency) }
     }
 }
 

@@ -3,15 +3,14 @@
 use firmware::scene::Device;
 
 use super::record::parse;
-use super::rig::{Excitation, Rig};
+use super::rig::{Excitation, Rig, Sensing};
 use super::*;
 
 const PADDLE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 const KNOB: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
-fn rig(device: Device) -> Rig {
-    Rig { device, period: 1e-3, counts_per_turn: 61_440.0, torque_noise: 0.0, skew: 0.0, seed: 1 }
-}
+const SENSING: Sensing =
+    Sensing { period: 1e-3, counts_per_turn: 61_440.0, torque_noise: 0.0, skew: 0.0, seed: 1 };
 
 /// Sines that move the device by `amplitude` rad, whatever the frequency.
 fn sines(device: Device, frequencies: &[f64], amplitude: f64) -> Vec<Excitation> {
@@ -28,7 +27,7 @@ const LOW_TO_HIGH: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 fn identified(rig: &Rig, frequencies: &[f64], amplitude: f64) -> Identification {
     let record = rig.measure(&sines(rig.device, frequencies, amplitude));
-    identify(&record, &Correction::of_encoder(rig.counts_per_turn)).unwrap()
+    identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap()
 }
 
 fn assert_near(found: &Estimate, wanted: f64, part: f64) {
@@ -39,7 +38,7 @@ fn assert_near(found: &Estimate, wanted: f64, part: f64) {
 fn damping_and_inertia_through_counts_and_noise() {
     for (device, noise) in [(PADDLE, 0.02), (KNOB, 2e-4)] {
         for seed in 0..10 {
-            let rig = Rig { torque_noise: noise, seed, ..rig(device) };
+            let rig = Rig { device, sensing: Sensing { torque_noise: noise, seed, ..SENSING } };
             let found = identified(&rig, LOW_TO_HIGH, 0.02);
             assert_near(&found.damping, device.damping, 0.02);
             assert_near(&found.inertia, device.inertia, 0.01);
@@ -55,7 +54,8 @@ fn damping_and_inertia_through_counts_and_noise() {
 
 #[test]
 fn ten_microseconds_of_skew_are_found_and_taken_out() {
-    let rig = Rig { skew: 1e-5, torque_noise: 0.02, ..rig(PADDLE) };
+    let rig =
+        Rig { device: PADDLE, sensing: Sensing { skew: 1e-5, torque_noise: 0.02, ..SENSING } };
     let found = identified(&rig, &[1.0, 5.0, 20.0, 50.0, 80.0, 100.0], 0.02);
     assert!(found.skew.is_significant(), "{found:?}");
     assert_near(&found.skew, 1e-5, 0.1);
@@ -66,7 +66,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
     // A delay that is declared is no skew.
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
     let correction =
-        Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.counts_per_turn) };
+        Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.sensing.counts_per_turn) };
     let declared = identify(&record, &correction).unwrap();
     assert!(declared.skew.value.abs() < 1e-6, "{:?}", declared.skew);
     assert_near(&declared.damping, PADDLE.damping, 0.02);
@@ -76,7 +76,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
 fn intervals_cover_the_truth_as_often_as_they_say() {
     let mut covered = 0;
     for seed in 0..100 {
-        let rig = Rig { torque_noise: 0.05, seed, ..rig(PADDLE) };
+        let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.05, seed, ..SENSING } };
         let found = identified(&rig, &[1.0, 2.0, 4.0, 8.0, 16.0], 0.02);
         covered += usize::from(found.damping.lo <= 0.5 && 0.5 <= found.damping.hi);
     }
@@ -87,7 +87,7 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
 fn without_noise_only_the_counts_are_left() {
     // As fine an encoder as its counter holds: what is left is the method's own error.
     for device in [PADDLE, KNOB] {
-        let rig = Rig { counts_per_turn: 2f64.powi(30), ..rig(device) };
+        let rig = Rig { device, sensing: Sensing { counts_per_turn: 2f64.powi(30), ..SENSING } };
         let found = identified(&rig, LOW_TO_HIGH, 0.02);
         assert_near(&found.damping, device.damping, 1e-5);
         assert_near(&found.inertia, device.inertia, 1e-5);
@@ -97,7 +97,7 @@ fn without_noise_only_the_counts_are_left() {
 
 #[test]
 fn steps_are_found_without_labels() {
-    let rig = Rig { torque_noise: 0.02, ..rig(PADDLE) };
+    let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.02, ..SENSING } };
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
     let blind = Record { frequency: None, ..record.clone() };
     let (labelled, found) = (step::steps(&record), step::steps(&blind));
@@ -105,15 +105,16 @@ fn steps_are_found_without_labels() {
     for (a, b) in labelled.iter().zip(&found) {
         assert!((a.omega / b.omega - 1.0).abs() < 2e-3, "{a:?} {b:?}");
     }
-    let found = identify(&blind, &Correction::of_encoder(rig.counts_per_turn)).unwrap();
+    let found = identify(&blind, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap();
     assert_near(&found.damping, PADDLE.damping, 0.02);
 }
 
 #[test]
 fn too_little_motion_is_said_to_be_so() {
-    let rig = rig(PADDLE);
+    let rig = Rig { device: PADDLE, sensing: SENSING };
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5));
-    let error = identify(&record, &Correction::of_encoder(rig.counts_per_turn)).unwrap_err();
+    let error =
+        identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap_err();
     assert!(error.to_string().contains("use a larger torque"), "{error}");
     let still =
         Record { torque: vec![0.0; 100], counts: vec![0.0; 100], period: 1e-3, frequency: None };

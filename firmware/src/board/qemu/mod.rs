@@ -107,9 +107,7 @@ macro_rules! board_sweep {
     ($sweep:ident) => {
         /// The exciter's task.
         #[embassy_executor::task]
-        async fn serve(
-            seat: $crate::board::qemu::Seat<$crate::excitation::Exciter<'static>>,
-        ) {
+        async fn serve(seat: $crate::board::qemu::Seat<$crate::excitation::Exciter<'static>>) {
             seat.serve().await
         }
 

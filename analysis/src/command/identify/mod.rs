@@ -1,34 +1,32 @@
 //! `haptic identify`: a device's inertia, damping and passivity from a measurement.
 
+pub mod target;
+
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::{Answer, CommandError};
-use crate::identify::{self, Correction, Disk, Estimate, Identification, record};
+use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::quantity::significant;
+use crate::rig::Difference;
+use target::Origin;
 
 /// Arguments of `haptic identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Record of stepped sines: CSV with the columns time (s), torque (N m), counts, and perhaps
-    /// frequency (Hz)
-    #[arg(value_name = "FILE.csv")]
-    pub file: PathBuf,
-    /// Counts of the encoder in one turn
-    #[arg(long, value_name = "N", value_parser = positive)]
-    pub counts_per_rev: f64,
-    /// Time from a row's time until its torque is applied, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
-    pub torque_delay: f64,
-    /// Time by which the counts of a row are older than its time, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
-    pub count_delay: f64,
-    /// Part of each sine that is left out until the device has settled, 0 to 0.9
-    #[arg(long, value_name = "PART", default_value_t = 0.25, value_parser = part)]
-    pub settle: f64,
+    /// frequency (Hz); `-` is standard input. With --target a file with a device table, which may be a scene
+    #[arg(value_name = "FILE", required_unless_present = "target")]
+    pub file: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub target: target::Arguments,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -36,6 +34,44 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
 }
+
+/// How a record is read.
+#[derive(Debug, Args)]
+pub struct Reading {
+    /// Counts of the encoder in one turn; 61440 with --target
+    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target")]
+    pub counts_per_rev: Option<f64>,
+    /// Time from a row's time until its torque is applied, in s
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    pub torque_delay: f64,
+    /// Time by which the counts of a row are older than its time, in s
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    pub count_delay: f64,
+    /// Part of each sine that is left out until the device has settled, 0 to 0.9; otherwise 0.25,
+    /// or none with --target, where the settling is not part of the sine
+    #[arg(long, value_name = "PART", value_parser = part)]
+    pub settle: Option<f64>,
+}
+
+impl Reading {
+    /// The counts a turn, with those of the program `identify` where nothing is said.
+    fn counts_per_turn(&self) -> f64 {
+        self.counts_per_rev.unwrap_or(target::COUNTS_PER_TURN)
+    }
+
+    /// What is known of the measurement, with so much to settle where nothing is said.
+    fn correction(&self, settle: f64) -> Correction {
+        Correction {
+            torque_delay: self.torque_delay,
+            count_delay: self.count_delay,
+            settle: self.settle.unwrap_or(settle),
+            ..Correction::of_encoder(self.counts_per_turn())
+        }
+    }
+}
+
+/// Part of a sine that is left out where nothing is said.
+const SETTLE: f64 = 0.25;
 
 /// A response as programs read it.
 #[derive(Debug, Serialize)]
@@ -67,20 +103,17 @@ struct Report<'a> {
     rigid: bool,
     passivity: Option<f64>,
     confidence: f64,
+    measured: Option<&'a Origin>,
     responses: Vec<Point>,
     notes: &'a [String],
 }
 
-/// Answers with the device; no if it has no passivity that could be certified with.
+/// Answers with the device; no if it has no passivity that could be certified with, or if a code of
+/// the emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let record = record::load(&arguments.file).map_err(identify::IdentifyError::from)?;
-    let correction = Correction {
-        torque_delay: arguments.torque_delay,
-        count_delay: arguments.count_delay,
-        settle: arguments.settle,
-        ..Correction::of_encoder(arguments.counts_per_rev)
-    };
-    let found = identify::identify(&record, &correction)?;
+    let (record, origin) = record(arguments)?;
+    let settle = if origin.is_some() { 0.0 } else { SETTLE };
+    let found = identify::identify(&record, &arguments.reading.correction(settle))?;
     let notes = notes(&found);
     if let Some(path) = &arguments.output {
         let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
@@ -88,16 +121,51 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     }
     let mut out = io::stdout().lock();
     if arguments.json {
-        serde_json::to_writer(&mut out, &report(&found, &notes)).map_err(io::Error::from)?;
+        serde_json::to_writer(&mut out, &report(&found, &notes, origin.as_ref()))
+            .map_err(io::Error::from)?;
         writeln!(out)?;
     } else {
-        write!(out, "{}", text(&found, &notes))?;
+        write!(out, "{}", text(&found, &notes, origin.as_ref()))?;
     }
     out.flush()?;
-    Ok(if found.passivity().is_some() { Answer::Yes } else { Answer::No })
+    let differs = origin.and_then(|origin| origin.difference);
+    if let Some(Difference { tick, count, host, target }) = differs {
+        eprintln!(
+            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
+             the target"
+        );
+    }
+    Ok(if found.passivity().is_some() && differs.is_none() { Answer::Yes } else { Answer::No })
 }
 
-fn report<'a>(found: &Identification, notes: &'a [String]) -> Report<'a> {
+/// The record of a file, or one that is made.
+fn record(arguments: &Arguments) -> Result<(Record, Option<Origin>), CommandError> {
+    let file = arguments.file.as_deref();
+    let counts_per_turn = arguments.reading.counts_per_turn();
+    match (arguments.target.target, file) {
+        (Some(target), file) => {
+            let (measured, origin) =
+                target::measure(&arguments.target, target, file, counts_per_turn)?;
+            Ok((measured.record, Some(origin)))
+        }
+        (None, file) => Ok((load(file.unwrap_or(Path::new("-")))?, None)),
+    }
+}
+
+/// A record from a file or, as `-`, from standard input.
+fn load(file: &Path) -> Result<Record, CommandError> {
+    let record = match file == Path::new("-") {
+        true => identify::record::parse("standard input", io::stdin().lock()),
+        false => identify::record::load(file),
+    };
+    Ok(record.map_err(identify::IdentifyError::from)?)
+}
+
+fn report<'a>(
+    found: &Identification,
+    notes: &'a [String],
+    measured: Option<&'a Origin>,
+) -> Report<'a> {
     let point = |r: &identify::Response| Point {
         frequency: r.omega / std::f64::consts::TAU,
         re: r.admittance.re,
@@ -117,6 +185,7 @@ fn report<'a>(found: &Identification, notes: &'a [String]) -> Report<'a> {
         rigid: found.is_rigid(),
         passivity: found.passivity(),
         confidence: identify::fit::CONFIDENCE,
+        measured,
         responses: found.responses.iter().map(point).collect(),
         notes,
     }
@@ -175,7 +244,7 @@ pub fn device_table(found: &Identification) -> String {
     )
 }
 
-fn text(found: &Identification, notes: &[String]) -> String {
+fn text(found: &Identification, notes: &[String], origin: Option<&Origin>) -> String {
     let estimate = |e: &Estimate, unit: &str| {
         let reach = significant(0.5 * (e.hi - e.lo), 2);
         format!("{} +- {reach} {unit}", significant(e.value, 5))
@@ -197,6 +266,7 @@ fn text(found: &Identification, notes: &[String]) -> String {
         ("disk", disk),
         ("residuals", format!("{} times the noise", significant(found.misfit.sqrt(), 2))),
     ];
+    rows.extend(origin.map(Origin::row));
     rows.extend(notes.iter().map(|note| ("note", note.clone())));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
     format!("{rows}\n{}\n{}", points(found), device_table(found))

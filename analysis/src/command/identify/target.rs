@@ -1,0 +1,131 @@
+//! Where a record comes from that `haptic identify` makes itself: a simulated device, driven by the
+//! program `identify`.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use super::not_negative;
+use crate::command::CommandError;
+use crate::file;
+use crate::identify::measurement::{self, Measurement};
+use crate::identify::rig::{MeasuredDevice, Sensing};
+use crate::program::damper_wall;
+use crate::program::identify::{SWEEP, TRANSDUCERS};
+use crate::progress;
+use crate::rig::Difference;
+use crate::simulation::plant::Plant;
+use crate::toolchain::{self, NumberFormat};
+
+/// What drives the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Target {
+    /// This machine.
+    Host,
+    /// The emulated board, with every code compared to this machine's.
+    Qemu,
+}
+
+/// A simulated measurement.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "With --target")]
+pub struct Arguments {
+    /// Measure a simulated device with the program `identify`, on this machine or the emulated
+    /// board
+    #[arg(long, value_enum)]
+    pub target: Option<Target>,
+    /// Standard deviation of the torque that is there and not recorded, new in every tick, in N m
+    #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative,
+          requires = "target")]
+    pub torque_noise: f64,
+    /// Time by which the simulated counts are late, whatever is declared, in s; less than a period
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew, requires = "target")]
+    pub skew: f64,
+    /// The noise's seed
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]
+    pub seed: u64,
+    /// Write the record there
+    #[arg(long, value_name = "FILE.csv", requires = "target")]
+    pub record: Option<PathBuf>,
+}
+
+/// How a record was made, as programs read it.
+#[derive(Debug, Serialize)]
+pub struct Origin {
+    /// What drove the device.
+    pub target: Target,
+    /// Samples.
+    pub ticks: usize,
+    /// Codes of the board that were equal to this machine's.
+    pub codes_equal: Option<usize>,
+    /// The first that was not.
+    pub difference: Option<Difference>,
+}
+
+impl Origin {
+    /// What there is to say of it, and its name.
+    pub fn row(&self) -> (&'static str, String) {
+        match self.codes_equal {
+            Some(equal) => ("codes equal", format!("{equal} of {}", self.ticks)),
+            None => ("ticks", self.ticks.to_string()),
+        }
+    }
+}
+
+/// Counts a turn where nothing else is said.
+pub const COUNTS_PER_TURN: f64 = TRANSDUCERS.counts_per_turn;
+
+/// Measures the device of a file, or that of the scenes' programs.
+pub fn measure(
+    arguments: &Arguments,
+    target: Target,
+    file: Option<&Path>,
+    counts_per_turn: f64,
+) -> Result<(Measurement, Origin), CommandError> {
+    let plant = match file {
+        Some(file) => Plant::of(&file::load_device(&file.to_string_lossy())?.chain),
+        None => Plant::rigid(damper_wall::SCENE.device),
+    };
+    let &Arguments { torque_noise, skew, seed, .. } = arguments;
+    let sensing = Sensing { period: SWEEP.period(), counts_per_turn, torque_noise, skew, seed };
+    let elf = match target {
+        Target::Host => None,
+        Target::Qemu => Some(build()?),
+    };
+    let mut device = MeasuredDevice::new(&plant, &sensing);
+    let bar = progress::bar(SWEEP.ticks(), "identify");
+    let stepper = progress::stepper(&bar);
+    let measured = measurement::measure(&SWEEP, &mut device, elf.as_deref(), stepper)?;
+    bar.finish_and_clear();
+    if let Some(path) = &arguments.record {
+        let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
+        let out = File::create(path).map_err(unwritable)?;
+        measurement::write(&measured.record, BufWriter::new(out)).map_err(unwritable)?;
+    }
+    let origin = Origin {
+        target,
+        ticks: measured.record.torque.len(),
+        codes_equal: measured.equal,
+        difference: measured.difference,
+    };
+    Ok((measured, origin))
+}
+
+fn build() -> Result<PathBuf, CommandError> {
+    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let spinner = progress::spinner("building identify");
+    // The program computes its codes in `f32` whatever format the scenes have.
+    let elf = toolchain.build_scene("identify", NumberFormat::F32)?;
+    spinner.finish_and_clear();
+    Ok(elf)
+}
+
+fn skew(text: &str) -> Result<f64, String> {
+    let period = SWEEP.period();
+    let value = not_negative(text)?;
+    if value < period { Ok(value) } else { Err(format!("it must be less than {period} s")) }
+}

@@ -1,0 +1,91 @@
+//! A sweep played to a simulated device, by this process or by the emulated board, and recorded.
+
+use std::io;
+use std::path::Path;
+
+use firmware::dac::DacCode;
+use firmware::excitation::{Exciter, Sweep};
+
+use super::record::Record;
+use super::rig::MeasuredDevice;
+use crate::quantity::significant;
+use crate::rig::{Difference, Twin};
+use crate::scenario::{Board, ScenarioError};
+
+/// A record, and whether the board played what this process would have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// The record; its torque is that of the codes that drove the device.
+    pub record: Record,
+    /// Codes of the board that were equal to this process's; `None` where no board took part.
+    pub equal: Option<usize>,
+    /// The first that was not.
+    pub difference: Option<Difference>,
+}
+
+/// Plays a sweep to a device at rest and records it. With a program `elf` it is the emulated
+/// board's codes that drive the device, and each is compared. `progress` is told of each tick.
+///
+/// # Errors
+/// Where the emulated board cannot be started, fails, or does not end.
+pub fn measure<const N: usize>(
+    sweep: &Sweep<N>,
+    device: &mut MeasuredDevice,
+    elf: Option<&Path>,
+    mut progress: impl FnMut(),
+) -> Result<Measurement, ScenarioError> {
+    let mut board = elf.map(Board::boot).transpose()?;
+    let mut exciter = Exciter::new(sweep);
+    let torque_per_code = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
+    let (mut equal, mut difference) = (0, None);
+    for tick in 0..sweep.ticks() as usize {
+        let (count, excitation) = (device.count(), exciter.next());
+        let host = excitation.code.get();
+        let code = match &mut board {
+            Some(board) => board.exchange(count)?,
+            None => host,
+        };
+        if code == host {
+            equal += 1;
+        } else if difference.is_none() {
+            difference = Some(Difference { tick, count, host, target: code });
+        }
+        let offset = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
+        let command = offset * torque_per_code;
+        device.hold(command);
+        torque.push(command);
+        counts.push(f64::from(count));
+        frequency.push(excitation.measured.map_or(0.0, |tone| sweep.tones()[tone].frequency));
+        progress();
+    }
+    let equal = board.is_some().then_some(equal);
+    if let Some(board) = board {
+        board.end()?;
+    }
+    let record = Record { period: sweep.period(), torque, counts, frequency: Some(frequency) };
+    Ok(Measurement { record, equal, difference })
+}
+
+/// Writes a record as the CSV file that it can be [read](super::record::load) from.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write(record: &Record, out: impl io::Write) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    let labelled = record.frequency.is_some();
+    let columns: &[&str] = &["time", "torque", "counts", "frequency"];
+    writer.write_record(if labelled { columns } else { &columns[..3] })?;
+    for (row, (torque, counts)) in record.torque.iter().zip(&record.counts).enumerate() {
+        // Without the last digits, which are the product's rounding.
+        let time = significant(row as f64 * record.period, 15);
+        writer.write_field(time)?;
+        writer.write_field(torque.to_string())?;
+        writer.write_field(counts.to_string())?;
+        if let Some(frequency) = record.frequency.as_ref().and_then(|all| all.get(row)) {
+            writer.write_field(frequency.to_string())?;
+        }
+        writer.write_record(None::<&[u8]>)?;
+    }
+    writer.flush()
+}
