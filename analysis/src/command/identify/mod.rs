@@ -18,7 +18,8 @@ use target::Origin;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Record of stepped sines: CSV with the columns time (s), torque (N m), counts, and perhaps
-    /// frequency (Hz); `-` is standard input. With --target a file with a device table, which may be a scene
+    /// frequency (Hz); `-` is standard input.
+    /// With --target a file with a device table, which may be a scene
     #[arg(value_name = "FILE", required_unless_present = "target")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
@@ -26,7 +27,7 @@ pub struct Arguments {
     pub reading: Reading,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub target: target::Arguments,
+    pub target: target::Simulated,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -33,7 +33,7 @@ pub enum Target {
 /// A simulated measurement.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "With --target")]
-pub struct Arguments {
+pub struct Simulated {
     /// Measure a simulated device with the program `identify`, on this machine or the emulated
     /// board
     #[arg(long, value_enum)]
@@ -81,7 +81,7 @@ pub const COUNTS_PER_TURN: f64 = TRANSDUCERS.counts_per_turn;
 
 /// Measures the device of a file, or that of the scenes' programs.
 pub fn measure(
-    arguments: &Arguments,
+    arguments: &Simulated,
     target: Target,
     file: Option<&Path>,
     counts_per_turn: f64,
@@ -90,7 +90,7 @@ pub fn measure(
         Some(file) => Plant::of(&file::load_device(&file.to_string_lossy())?.chain),
         None => Plant::rigid(damper_wall::SCENE.device),
     };
-    let &Arguments { torque_noise, skew, seed, .. } = arguments;
+    let &Simulated { torque_noise, skew, seed, .. } = arguments;
     let sensing = Sensing { period: SWEEP.period(), counts_per_turn, torque_noise, skew, seed };
     let elf = match target {
         Target::Host => None,
