@@ -3,6 +3,7 @@
 
 pub mod dash;
 pub mod growth;
+pub mod identify;
 pub mod limits;
 pub mod map;
 pub mod nyquist;

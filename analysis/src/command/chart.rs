@@ -38,6 +38,8 @@ pub enum Kind {
     Limits(Limits),
     /// What the scene's [simulation] does, with the ground grey where the torque is limited
     Trace(TraceArguments),
+    /// The responses of a measured device in their disk, with the device that was fitted to them
+    Identify(Identify),
 }
 
 /// Arguments of `haptic chart nyquist`.
@@ -106,6 +108,26 @@ pub struct TraceArguments {
     pub output: OutputArguments,
 }
 
+/// Arguments of `haptic chart identify`.
+#[derive(Debug, Args)]
+pub struct Identify {
+    /// Record of stepped sines, as `haptic identify` reads it; `-` is standard input
+    #[arg(value_name = "FILE.csv")]
+    pub file: PathBuf,
+    /// Counts of the encoder in one turn
+    #[arg(long, value_name = "N", value_parser = super::identify::positive)]
+    pub counts_per_rev: f64,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: super::identify::Reading,
+    /// Title of the picture; otherwise the file's name
+    #[arg(long)]
+    pub title: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
 /// Where a picture goes.
 #[derive(Debug, Args)]
 pub struct OutputArguments {
@@ -122,6 +144,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Kind::Map(arguments) => &arguments.output,
         Kind::Limits(arguments) => &arguments.output,
         Kind::Trace(arguments) => &arguments.output,
+        Kind::Identify(arguments) => &arguments.output,
     };
     let output = Output::new(&to.output)?;
     let picture = match &arguments.kind {
@@ -132,6 +155,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             let file = file::load_for(Purpose::Simulate, &arguments.file)?;
             let folder = Path::new(&arguments.file).parent().unwrap_or(Path::new(""));
             chart::trace::trace(&Trace::simulated(&file, folder)?)?
+        }
+        Kind::Identify(arguments) => {
+            let Identify { file, counts_per_rev, reading, .. } = arguments;
+            let found = super::identify::of_file(file, *counts_per_rev, reading)?;
+            let name = || file.file_stem().unwrap_or_default().to_string_lossy();
+            let title = arguments.title.clone().unwrap_or_else(|| format!("Measured: {}", name()));
+            chart::identify::identify(&title, &found)?
         }
     };
     output.write(&picture)?;

@@ -22,6 +22,9 @@ pub struct Arguments {
     /// With --target a file with a device table, which may be a scene
     #[arg(value_name = "FILE", required_unless_present = "target")]
     pub file: Option<PathBuf>,
+    /// Counts of the encoder in one turn; 61440 with --target
+    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target")]
+    pub counts_per_rev: Option<f64>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
@@ -39,9 +42,6 @@ pub struct Arguments {
 /// How a record is read.
 #[derive(Debug, Args)]
 pub struct Reading {
-    /// Counts of the encoder in one turn; 61440 with --target
-    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target")]
-    pub counts_per_rev: Option<f64>,
     /// Time from a row's time until its torque is applied, in s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
     pub torque_delay: f64,
@@ -55,18 +55,13 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// The counts a turn, with those of the program `identify` where nothing is said.
-    fn counts_per_turn(&self) -> f64 {
-        self.counts_per_rev.unwrap_or(target::COUNTS_PER_TURN)
-    }
-
     /// What is known of the measurement, with so much to settle where nothing is said.
-    fn correction(&self, settle: f64) -> Correction {
+    fn correction(&self, counts_per_turn: f64, settle: f64) -> Correction {
         Correction {
             torque_delay: self.torque_delay,
             count_delay: self.count_delay,
             settle: self.settle.unwrap_or(settle),
-            ..Correction::of_encoder(self.counts_per_turn())
+            ..Correction::of_encoder(counts_per_turn)
         }
     }
 }
@@ -112,9 +107,11 @@ struct Report<'a> {
 /// Answers with the device; no if it has no passivity that could be certified with, or if a code of
 /// the emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let (record, origin) = record(arguments)?;
+    let counts_per_turn = arguments.counts_per_rev.unwrap_or(target::COUNTS_PER_TURN);
+    let (record, origin) = record(arguments, counts_per_turn)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
-    let found = identify::identify(&record, &arguments.reading.correction(settle))?;
+    let correction = arguments.reading.correction(counts_per_turn, settle);
+    let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
     if let Some(path) = &arguments.output {
         let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
@@ -140,9 +137,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
 }
 
 /// The record of a file, or one that is made.
-fn record(arguments: &Arguments) -> Result<(Record, Option<Origin>), CommandError> {
+fn record(
+    arguments: &Arguments,
+    counts_per_turn: f64,
+) -> Result<(Record, Option<Origin>), CommandError> {
     let file = arguments.file.as_deref();
-    let counts_per_turn = arguments.reading.counts_per_turn();
     match (arguments.target.target, file) {
         (Some(target), file) => {
             let (measured, origin) =
@@ -151,6 +150,15 @@ fn record(arguments: &Arguments) -> Result<(Record, Option<Origin>), CommandErro
         }
         (None, file) => Ok((load(file.unwrap_or(Path::new("-")))?, None)),
     }
+}
+
+/// Identifies the device of a recorded file.
+pub fn of_file(
+    file: &Path,
+    counts_per_turn: f64,
+    reading: &Reading,
+) -> Result<Identification, CommandError> {
+    Ok(identify::identify(&load(file)?, &reading.correction(counts_per_turn, SETTLE))?)
 }
 
 /// A record from a file or, as `-`, from standard input.
@@ -294,7 +302,7 @@ fn number(text: &str, bound: &str, admits: impl Fn(f64) -> bool) -> Result<f64, 
     value.ok_or_else(|| format!("it must be {bound}"))
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, "a number greater than 0", |value| value > 0.0)
 }
 
