@@ -39,7 +39,7 @@ pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartErr
         return Err(ChartError::TooFewPoints);
     }
     draw_sized(SIZE, |area| {
-        let area = area.titled(title, text(TITLE))?;
+        let area = area.margin(MARGIN, 0, 0, 0).titled(title, text(TITLE))?;
         let (left, right) = area.split_horizontally(units(LEFT));
         let (upper, lower) = right.split_vertically(right.dim_in_pixel().1 as i32 / 2);
         nyquist(&left, found)?;
@@ -106,9 +106,14 @@ fn fastest(found: &Identification) -> f64 {
     found.responses.iter().map(|r| r.omega).fold(0.0, f64::max)
 }
 
-/// Frequencies in Hz that a picture shows.
+/// Frequencies in Hz of the responses.
+fn measured(found: &Identification) -> Range<f64> {
+    span(found.responses.iter().map(|r| r.omega / TAU))
+}
+
+/// Frequencies in Hz that the picture shows.
 fn shown(found: &Identification) -> Range<f64> {
-    let range = span(found.responses.iter().map(|r| r.omega / TAU));
+    let range = measured(found);
     range.start / 1.5..range.end * 1.5
 }
 
@@ -153,12 +158,17 @@ fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let shown = shown(found);
     let band = [(shown.start, estimate.lo), (shown.end, estimate.hi)];
     chart.draw_series([Rectangle::new(band, FORBIDDEN.filled())])?;
-    let level = [(shown.start, estimate.value), (shown.end, estimate.value)];
-    chart.draw_series(level.windows(2).map(|level| PathElement::new(level.to_vec(), pen(1))))?;
-    chart.draw_series(broken(over(&shown, |omega| fitted(found, omega).re), 8, 5, 1))?;
+    let level = vec![(shown.start, estimate.value), (shown.end, estimate.value)];
+    chart.draw_series([PathElement::new(level, pen(1))])?;
+    let late = skew(found) != 0.0;
+    if late {
+        chart.draw_series(broken(over(found, |omega| fitted(found, omega).re), 8, 5, 1))?;
+    }
     bars(&mut chart, found, real)?;
     let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
-    caption(area, format!("b = {} +- {reach} N m s/rad", significant(estimate.value, 5)))
+    let late = if late { "; broken: as it looks late" } else { "" };
+    let value = significant(estimate.value, 5);
+    caption(area, format!("b = {value} +- {reach} N m s/rad{late}"))
 }
 
 /// The imaginary parts of `1/J` over frequency: inertia times angular frequency.
@@ -167,19 +177,17 @@ fn inertia(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let imaginary = |r: &Response| r.impedance().im;
     let names = (Some("frequency (Hz)"), "Im 1/J (N m s/rad)");
     let mut chart = spectrum(area, found, imaginary, names)?;
-    chart.draw_series(LineSeries::new(
-        over(&shown(found), |omega| fitted(found, omega).im),
-        pen(1),
-    ))?;
+    chart.draw_series(LineSeries::new(over(found, |omega| fitted(found, omega).im), pen(1)))?;
     bars(&mut chart, found, imaginary)?;
     let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
     caption(area, format!("m = {} +- {reach} kg m^2", significant(estimate.value, 5)))
 }
 
-/// A curve over the frequencies shown.
-fn over(shown: &Range<f64>, value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-    let ratio = shown.end / shown.start;
-    let hertz = |i: usize| shown.start * ratio.powf(i as f64 / POINTS as f64);
+/// A curve from the slowest response to the fastest.
+fn over(found: &Identification, value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let range = measured(found);
+    let ratio = range.end / range.start;
+    let hertz = |i: usize| range.start * ratio.powf(i as f64 / POINTS as f64);
     (0..=POINTS).map(|i| (hertz(i), value(TAU * hertz(i)))).collect()
 }
 
