@@ -28,15 +28,15 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
-    #[command(flatten)]
-    #[allow(missing_docs)]
-    pub target: target::Simulated,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
     /// Write the table of the device there, ready for a scene file
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub target: target::Simulated,
 }
 
 /// How a record is read.
