@@ -36,7 +36,7 @@ pub enum Kind {
     Map(MapArguments),
     /// The largest certified stiffness over the sample rate, with the encoder's torque ripple
     Limits(Limits),
-    /// What the scene's [simulation] does, with the ground grey where the torque is limited
+    /// What the scene's simulation does, with the ground grey where the torque is limited
     Trace(TraceArguments),
     /// The responses of a measured device in their disk, with the device that was fitted to them
     Identify(Identify),
@@ -100,7 +100,7 @@ pub struct Limits {
 /// Arguments of `haptic chart trace`.
 #[derive(Debug, Args)]
 pub struct TraceArguments {
-    /// Scene file with a [simulation] table, TOML or JSON; `-` is standard input
+    /// Scene file with a simulation table, TOML or JSON; `-` is standard input
     #[arg(value_name = "FILE")]
     pub file: String,
     #[command(flatten)]
