@@ -21,6 +21,7 @@ pub mod controller;
 pub mod device;
 pub mod hand;
 pub mod program;
+pub mod recorded;
 pub mod replay;
 pub mod rig;
 pub mod scenario;

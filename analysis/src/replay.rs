@@ -98,14 +98,18 @@ fn counts<R: std::io::Read>(
 
 fn bad_row(file: &str, line: u64, error: &csv::Error) -> ReplayError {
     let line = error.position().map_or(line, csv::Position::line);
-    let message = match error.kind() {
+    ReplayError::BadRow { file: file.to_owned(), line, message: row_message(error) }
+}
+
+/// What is wrong with a row, without its place.
+pub(crate) fn row_message(error: &csv::Error) -> String {
+    match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("{len} fields; the header has {expected_len}")
         }
         csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
         _ => crate::file::excerpt(&error.to_string()),
-    };
-    ReplayError::BadRow { file: file.to_owned(), line, message }
+    }
 }
 
 #[cfg(test)]

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::chart::trace::Trace;
+use crate::chart::trace::{Clock, Trace};
 use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, Report};
 use crate::hand::Script;
 use crate::rig::{Alone, Plant, Recording, Run, SimulatedDevice, Twin, run};
+use crate::simulation::served::Served;
 
 /// What comes into a servo.
 pub enum Input<'a> {
@@ -129,11 +130,12 @@ pub fn trace(title: String, period: f64, run: &Run, script: &Script) -> Trace {
     let held = (0..run.ticks.len()).map(time).take_while(|&time| time < script.release);
     Trace {
         title,
-        period,
+        clock: Clock::Seconds,
+        time: (0..run.ticks.len()).map(time).collect(),
         position: run.ticks.iter().map(|tick| tick.angle).collect(),
         hand: held.map(|time| script.position(time)).collect(),
         torque: run.ticks.iter().map(|tick| tick.torque).collect(),
-        limit: run.ticks.iter().map(|tick| tick.limit).collect(),
+        limit: run.ticks.iter().map(|tick| Served::Ran(tick.limit)).collect(),
         release: Some(script.release).filter(|&release| release < time(run.ticks.len())),
         face: None,
     }

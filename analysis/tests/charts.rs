@@ -52,7 +52,7 @@ fn every_picture_as_svg_and_as_png() {
             &["stiffness (N m/rad)", "closed form", "scene"],
         ),
         (&["limits", "wall.toml"], &["sample rate (Hz)", "torque ripple", "delay 4"]),
-        (&["trace", "moving.toml"], &["time (s)", "angle (rad)", "grey: limited (torque)"]),
+        (&["trace", "moving.toml"], &["time (s)", "angle (rad)", "torque limit"]),
     ];
     for (arguments, words) in pictures {
         for file in ["out.svg", "out.png"] {

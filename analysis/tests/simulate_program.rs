@@ -71,10 +71,13 @@ fn a_motion_as_json_and_the_same_as_csv() {
     assert!((column(&motion, "torque")[1] - 32.0 * 0.001).abs() < 1e-15);
     let output = haptic(&["simulate", name(&scene), "--csv"]).stdout;
     let mut reader = csv::Reader::from_reader(output.as_slice());
-    let header = ["time", "position", "velocity", "torque"];
+    let header = ["time", "position", "velocity", "torque", "limit"];
     assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), header);
-    let rows: Vec<[f64; 4]> = reader.deserialize().map(Result::unwrap).collect();
-    assert_eq!(rows.iter().map(|row| row[1]).collect::<Vec<_>>(), position);
+    type Row = (f64, f64, f64, f64, String);
+    let rows: Vec<Row> = reader.deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.iter().map(|row| row.1).collect::<Vec<_>>(), position);
+    assert!(rows.iter().all(|row| row.4 == "none"));
+    assert_eq!(motion["limit"].as_array().unwrap().len(), 9000);
 }
 
 #[test]

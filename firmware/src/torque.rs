@@ -24,6 +24,10 @@ pub enum LimitReason {
 }
 
 impl LimitReason {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 5] =
+        [Self::None, Self::Torque, Self::Converter, Self::Angle, Self::NotANumber];
+
     /// The reason in one word, for tables.
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -50,8 +54,9 @@ pub struct Limiter<N> {
 }
 
 impl<N: Number> Limiter<N> {
-    /// A limiter with its bound in N m, and the reason that it reports.
-    pub(crate) const fn new(bound: N, reason: LimitReason) -> Self {
+    /// A limiter with its bound in N m, and the reason that it reports; with an infinite bound only
+    /// what is not a number is limited.
+    pub const fn new(bound: N, reason: LimitReason) -> Self {
         Self { bound, reason }
     }
 
@@ -92,15 +97,10 @@ mod tests {
 
     #[test]
     fn has_a_word_for_every_reason() {
-        let reasons = [
-            (LimitReason::None, "none"),
-            (LimitReason::Torque, "torque"),
-            (LimitReason::Converter, "converter"),
-            (LimitReason::Angle, "angle"),
-            (LimitReason::NotANumber, "not-a-number"),
-        ];
-        for (reason, word) in reasons {
-            assert_eq!(reason.to_string(), word);
+        let words = ["none", "torque", "converter", "angle", "not-a-number"];
+        assert_eq!(LimitReason::ALL.map(LimitReason::as_str), words);
+        for (number, reason) in LimitReason::ALL.into_iter().enumerate() {
+            assert_eq!((reason as usize, reason.to_string()), (number, words[number].to_owned()));
         }
     }
 }

@@ -22,6 +22,11 @@ const PATTERNS: [Dash; 6] = [
 ];
 
 impl Dash {
+    /// A pattern of its own: pixels of ink, pixels of gap, and so on.
+    pub(super) const fn new(pattern: &'static [i32]) -> Self {
+        Self(pattern)
+    }
+
     /// The pattern of the curve of that number; after the last they begin again.
     pub fn of(index: usize) -> Self {
         PATTERNS[index % PATTERNS.len()]

@@ -3,6 +3,7 @@
 
 pub mod dash;
 pub mod growth;
+pub mod hatch;
 pub mod identify;
 pub mod limits;
 pub mod map;

@@ -2,31 +2,44 @@
 
 use std::path::Path;
 
-use firmware::torque::LimitReason;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::hatch::Ground;
 use super::*;
 use crate::file::SceneFile;
 use crate::quantity::shortened;
+use crate::simulation::served::Served;
 use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
+
+/// What the samples are counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// Seconds.
+    #[default]
+    Seconds,
+    /// Ticks, of a period that is not known.
+    Ticks,
+}
 
 /// A run to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     /// What it is called.
     pub title: String,
-    /// Seconds between two samples.
-    pub period: f64,
+    /// What the times are in.
+    pub clock: Clock,
+    /// When the samples were taken, each later than the one before.
+    pub time: Vec<f64>,
     /// Angle of the device in rad, a sample each.
     pub position: Vec<f64>,
     /// Where the hand wanted to be in rad, as long as it held the device.
     pub hand: Vec<f64>,
     /// Coupling torque in N m.
     pub torque: Vec<f64>,
-    /// Why the torque is less than the scene asked for.
-    pub limit: Vec<LimitReason>,
-    /// When the hand lets go, in s.
+    /// Why the torque is not what the scene asked for.
+    pub limit: Vec<Served>,
+    /// When the hand lets go, on the same clock.
     pub release: Option<f64>,
     /// Angle in rad beyond which a one-sided wall is felt.
     pub face: Option<f64>,
@@ -41,50 +54,73 @@ impl Trace {
     pub fn simulated(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
         let experiment = Experiment::of(file, folder)?;
         let motion = simulate(&experiment, Stride::default())?;
-        let reason = |torque: &f64| match file.scene.torque_limit {
-            // The limit itself is only met where it acts.
-            Some(limit) if torque.abs() >= limit * (1.0 - NEAR) => LimitReason::Torque,
-            _ => LimitReason::None,
-        };
+        let period = file.scene.timing.period;
         Ok(Self {
             title: file.name.clone(),
-            period: file.scene.timing.period,
-            limit: motion.torque.iter().map(reason).collect(),
+            clock: Clock::Seconds,
+            time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
             position: motion.position,
             torque: motion.torque,
+            limit: motion.limit,
             hand: Vec::new(),
             release: None,
             face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
         })
     }
+
+    /// When a sample begins, and when the last one ends.
+    fn begin(&self, sample: usize) -> f64 {
+        match (self.time.get(sample), &self.time[..]) {
+            (Some(&time), _) => time,
+            (None, [.., before, last]) => 2.0 * last - before,
+            (None, _) => 0.0,
+        }
+    }
+
+    /// From the first sample to the end of the last.
+    fn times(&self) -> Range<f64> {
+        self.begin(0)..self.begin(self.time.len())
+    }
+
+    /// What limited the torque, each once.
+    fn reasons(&self) -> Vec<(Served, Ground)> {
+        let occurs = |served: &Served| self.limit.contains(served);
+        let grounded = |served| Some((served, Ground::of(served)?));
+        Served::all().filter(occurs).filter_map(grounded).collect()
+    }
 }
 
-/// Part of the torque limit by which rounding may miss it.
-const NEAR: f64 = 1e-9;
+/// Height of the line of the key that names the grounds, in pixels.
+const ROW: i32 = 24;
 
-/// Draws position above torque, over one time axis. Where the torque is limited the ground is
-/// grey.
+/// Draws position above torque, over one time axis. Where the torque was limited or a tick was
+/// missed, the ground says why.
 ///
 /// # Errors
 /// Where there are fewer than two samples.
 pub fn trace(trace: &Trace) -> Result<Picture, ChartError> {
-    if trace.position.len() < 2 || trace.torque.len() < 2 {
+    let samples = trace.time.len();
+    if samples < 2 || trace.position.len() != samples || trace.torque.len() != samples {
         return Err(ChartError::TooFewPoints);
     }
-    draw(|area| {
+    let reasons = trace.reasons();
+    let key = if reasons.is_empty() { 0 } else { ROW };
+    draw_sized((SIZE.0, SIZE.1 + key as u32), |area| {
         let area =
             area.margin(units(10), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
         let area = area.titled(&legend(trace), text(LABEL))?;
+        let (grounds, area) = area.split_vertically(units(key));
+        write_grounds(&grounds, &reasons)?;
         let (upper, lower) = area.split_vertically(units(SIZE.1 as i32) * 48 / 100);
         position(&upper, trace)?;
-        torque(&lower, trace)
+        torque(&lower, trace, &reasons)
     })
 }
 
 fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
     let range = span(trace.position.iter().chain(&trace.hand).copied());
     let y = padded(range, 0.16);
-    let time = 0.0..trace.period * trace.position.len() as f64;
+    let time = trace.times();
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
         .margin_right(MARGIN_RIGHT)
@@ -92,12 +128,12 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
         .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(time.clone(), y.clone())?;
     mesh(&mut chart, None, "angle (rad)")?;
-    if let Some(face) = trace.face {
+    if let Some(face) = trace.face.filter(|face| y.contains(face)) {
         let line = [(time.start, face), (time.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
     }
-    chart.draw_series(broken(sampled(&trace.hand, trace.period), 6, 4, 1))?;
-    chart.draw_series(LineSeries::new(sampled(&trace.position, trace.period), pen(2)))?;
+    chart.draw_series(broken(sampled(&trace.hand, trace), 6, 4, 1))?;
+    chart.draw_series(LineSeries::new(sampled(&trace.position, trace), pen(2)))?;
     release(&mut chart, trace, &y, true)
 }
 
@@ -110,34 +146,86 @@ fn legend(trace: &Trace) -> String {
     if !trace.hand.is_empty() {
         words.push("broken: where the hand wants to be".to_owned());
     }
-    let mut reasons: Vec<_> =
-        trace.limit.iter().filter(|reason| **reason != LimitReason::None).collect();
-    reasons.sort_by_key(|reason| **reason as u8);
-    reasons.dedup();
-    if !reasons.is_empty() {
-        let names: Vec<_> = reasons.iter().map(|reason| reason.as_str()).collect();
-        words.push(format!("grey: limited ({})", names.join(", ")));
-    }
     words.join("; ")
 }
 
-fn torque(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
+/// What the grounds of the torque mean, side by side.
+fn write_grounds(area: &Area<'_>, reasons: &[(Served, Ground)]) -> Drawn<()> {
+    const SWATCH: i32 = 30;
+    const GAP: i32 = 8;
+    // About as wide as letters are.
+    let width = |name: &str| SWATCH + 4 * GAP + 15 * name.len() as i32 / 2;
+    let all: i32 = reasons.iter().map(|(served, _)| width(name(*served))).sum();
+    let mut x = (SIZE.0 as i32 - all) / 2;
+    for &(served, ground) in reasons {
+        ground.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
+        let place = (units(x + SWATCH + GAP), units(ROW / 2));
+        let style = anchored(HPos::Left, VPos::Center);
+        area.draw(&Text::new(name(served), place, style))?;
+        x += width(name(served));
+    }
+    Ok(())
+}
+
+/// What a ground means.
+fn name(served: Served) -> &'static str {
+    use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Torque};
+    match served {
+        Served::Ran(None) => "not limited",
+        Served::Ran(Torque) => "torque limit",
+        Served::Ran(Converter) => "converter's limit",
+        Served::Ran(Angle) => "angle out of range",
+        Served::Ran(NotANumber) => "not a number",
+        Served::Missed => "tick missed",
+    }
+}
+
+fn torque(area: &Area<'_>, trace: &Trace, reasons: &[(Served, Ground)]) -> Drawn<()> {
     let y = padded(span(trace.torque.iter().copied()), 0.12);
-    let time = 0.0..trace.period * trace.torque.len() as f64;
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
         .margin_right(MARGIN_RIGHT)
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(time, y.clone())?;
-    let limited = limited(&trace.limit).into_iter().map(|range| {
-        let [from, to] = [range.start, range.end].map(|sample| sample as f64 * trace.period);
-        Rectangle::new([(from, y.start), (to, y.end)], FORBIDDEN.filled())
-    });
-    chart.draw_series(limited)?;
-    mesh(&mut chart, Some("time (s)"), "coupling torque (N m)")?;
-    chart.draw_series(LineSeries::new(sampled(&trace.torque, trace.period), pen(1)))?;
+        .build_cartesian_2d(trace.times(), y.clone())?;
+    for &(served, ground) in reasons {
+        shade(&chart, trace, served, ground)?;
+    }
+    let axis = match trace.clock {
+        Clock::Seconds => "time (s)",
+        Clock::Ticks => "time (ticks)",
+    };
+    mesh(&mut chart, Some(axis), "coupling torque (N m)")?;
+    chart.draw_series(LineSeries::new(sampled(&trace.torque, trace), pen(1)))?;
     release(&mut chart, trace, &y, false)
+}
+
+/// Covers the ground of the samples that were served so.
+fn shade(chart: &Plane<'_, '_>, trace: &Trace, served: Served, ground: Ground) -> Drawn<()> {
+    let plot = chart.plotting_area();
+    let area = plot.strip_coord_spec();
+    let (width, height) = area.dim_in_pixel();
+    let (left, bottom) = (plot.get_base_pixel().0, plot.get_y_range().start);
+    let place = |sample| plot.map_coordinate(&(trace.begin(sample), bottom)).0 - left;
+    for run in runs(&trace.limit, served, place) {
+        ground.fill(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
+    }
+    Ok(())
+}
+
+/// Where samples that were served so are, in units of the drawing: at least a pixel each, and one
+/// where they are less than a pixel apart.
+fn runs(limit: &[Served], served: Served, place: impl Fn(usize) -> i32) -> Vec<Range<i32>> {
+    let mut runs: Vec<Range<i32>> = Vec::new();
+    for (sample, _) in limit.iter().enumerate().filter(|(_, is)| **is == served) {
+        let from = place(sample);
+        let to = place(sample + 1).max(from + units(1));
+        match runs.last_mut() {
+            Some(run) if from < run.end + units(1) => run.end = to,
+            _ => runs.push(from..to),
+        }
+    }
+    runs
 }
 
 fn release(chart: &mut Plane<'_, '_>, trace: &Trace, y: &Range<f64>, named: bool) -> Drawn<()> {
@@ -145,26 +233,60 @@ fn release(chart: &mut Plane<'_, '_>, trace: &Trace, y: &Range<f64>, named: bool
     let line = [(time, y.start), (time, y.end)];
     chart.draw_series(broken(line, 8, 5, 1))?;
     if named {
-        let place = (time + 0.01 * trace.period * trace.position.len() as f64, y.end);
+        let times = trace.times();
+        let place = (time + 0.01 * (times.end - times.start), y.end);
         chart.draw_series([Text::new("lets go", place, anchored(HPos::Left, VPos::Top))])?;
     }
     Ok(())
 }
 
-fn sampled(values: &[f64], period: f64) -> Vec<(f64, f64)> {
-    values.iter().enumerate().map(|(sample, &value)| (sample as f64 * period, value)).collect()
+/// Most parts of a curve that a picture can show.
+const PARTS: usize = 2000;
+
+/// The samples as points. Of more than a picture can show, each part's ends, least and largest.
+fn sampled(values: &[f64], trace: &Trace) -> Vec<(f64, f64)> {
+    let points: Vec<_> = trace.time.iter().copied().zip(values.iter().copied()).collect();
+    if points.len() <= 4 * PARTS {
+        return points.into_iter().filter(|point| point.1.is_finite()).collect();
+    }
+    let part = |points: &[(f64, f64)]| {
+        let order = |a: &usize, b: &usize| points[*a].1.total_cmp(&points[*b].1);
+        let finite = || (0..points.len()).filter(|&i| points[i].1.is_finite());
+        let ends = [finite().next(), finite().next_back()];
+        let extremes = [finite().min_by(order), finite().max_by(order)];
+        let mut kept: Vec<usize> = ends.into_iter().chain(extremes).flatten().collect();
+        kept.sort_unstable();
+        kept.dedup();
+        kept.into_iter().map(|i| points[i]).collect::<Vec<_>>()
+    };
+    points.chunks(points.len().div_ceil(PARTS)).flat_map(part).collect()
 }
 
-/// Runs of samples that were limited.
-fn limited(reasons: &[LimitReason]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (sample, _) in
-        reasons.iter().enumerate().filter(|(_, reason)| **reason != LimitReason::None)
-    {
-        match runs.last_mut() {
-            Some(run) if run.end == sample => run.end = sample + 1,
-            _ => runs.push(sample..sample + 1),
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_of_one_reason_are_one_ground_and_none_is_lost() {
+        let [ran, missed] = [Served::IN_FULL, Served::Missed];
+        let limit = [ran, missed, missed, ran, missed, ran, ran, ran, missed];
+        let wide = runs(&limit, missed, |sample| units(10 * sample as i32));
+        assert_eq!(wide, [units(10)..units(30), units(40)..units(50), units(80)..units(90)]);
+        // Four samples a pixel.
+        let narrow = runs(&limit, missed, |sample| units(1) * sample as i32 / 4);
+        assert_eq!(narrow, [units(1) / 4..units(3)]);
     }
-    runs
+
+    #[test]
+    fn a_long_curve_keeps_its_ends_and_its_spikes() {
+        let mut values = vec![0.0; 100_000];
+        (values[0], values[41_234], values[41_235], values[99_999]) = (1.0, 9.0, -9.0, 2.0);
+        let time = (0..values.len()).map(|i| i as f64).collect();
+        let points = sampled(&values, &Trace { time, ..Trace::default() });
+        assert!(points.len() <= 4 * PARTS);
+        for kept in [(0.0, 1.0), (41_234.0, 9.0), (41_235.0, -9.0), (99_999.0, 2.0)] {
+            assert!(points.contains(&kept), "{kept:?}");
+        }
+        assert!(points.is_sorted_by(|a, b| a.0 < b.0));
+    }
 }

@@ -17,6 +17,7 @@ use crate::map::border::closed_form_border;
 use crate::map::{Family, Map, MapError};
 use crate::progress;
 use crate::quantity::{shortened, significant};
+use crate::recorded::{self, RecordedError};
 use crate::simulation::wall;
 
 /// Arguments of `haptic chart`.
@@ -36,7 +37,7 @@ pub enum Kind {
     Map(MapArguments),
     /// The largest certified stiffness over the sample rate, with the encoder's torque ripple
     Limits(Limits),
-    /// What the scene's simulation does, with the ground grey where the torque is limited
+    /// What a scene's simulation or a recorded run does, with the ground shaded by what limits it
     Trace(TraceArguments),
     /// The responses of a measured device in their disk, with the device that was fitted to them
     Identify(Identify),
@@ -100,9 +101,16 @@ pub struct Limits {
 /// Arguments of `haptic chart trace`.
 #[derive(Debug, Args)]
 pub struct TraceArguments {
-    /// Scene file with a simulation table, TOML or JSON; `-` is standard input
+    /// Scene file with a simulation table, TOML or JSON, `-` being standard input; or a .csv from
+    /// `haptic run --csv` or `haptic simulate --csv`
     #[arg(value_name = "FILE")]
     pub file: String,
+    /// Period of the servo in s, for a .csv that counts ticks
+    #[arg(long, value_name = "SECONDS", value_parser = super::identify::positive)]
+    pub period: Option<f64>,
+    /// Title of the picture; otherwise the scene's or the file's name
+    #[arg(long)]
+    pub title: Option<String>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub output: OutputArguments,
@@ -151,11 +159,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Kind::Nyquist(arguments) => nyquist(arguments)?,
         Kind::Map(arguments) => map(arguments)?,
         Kind::Limits(arguments) => limits(arguments)?,
-        Kind::Trace(arguments) => {
-            let file = file::load_for(Purpose::Simulate, &arguments.file)?;
-            let folder = Path::new(&arguments.file).parent().unwrap_or(Path::new(""));
-            chart::trace::trace(&Trace::simulated(&file, folder)?)?
-        }
+        Kind::Trace(arguments) => trace(arguments)?,
         Kind::Identify(arguments) => {
             let Identify { file, counts_per_rev, reading, .. } = arguments;
             let found = super::identify::of_file(file, *counts_per_rev, reading)?;
@@ -184,6 +188,22 @@ fn map(arguments: &MapArguments) -> Result<Picture, CommandError> {
     let side = (arguments.points as f64).sqrt().ceil() as usize;
     let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
     Ok(draw_map(&file, ranges, side)?)
+}
+
+fn trace(arguments: &TraceArguments) -> Result<Picture, CommandError> {
+    let path = Path::new(&arguments.file);
+    let mut drawn = if recorded::is_recorded(path) {
+        recorded::load(path, arguments.period)?
+    } else if arguments.period.is_some() {
+        return Err(RecordedError::PeriodKnown { file: arguments.file.clone() }.into());
+    } else {
+        let file = file::load_for(Purpose::Simulate, &arguments.file)?;
+        Trace::simulated(&file, path.parent().unwrap_or(Path::new("")))?
+    };
+    if let Some(title) = &arguments.title {
+        drawn.title.clone_from(title);
+    }
+    Ok(chart::trace::trace(&drawn)?)
 }
 
 /// A range of stiffness and one of damping, where they are given.

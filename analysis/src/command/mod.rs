@@ -25,6 +25,7 @@ use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
+use crate::recorded::RecordedError;
 use crate::replay::ReplayError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
@@ -129,6 +130,9 @@ pub enum CommandError {
     /// A bad recording.
     #[error(transparent)]
     Replay(#[from] ReplayError),
+    /// A bad record of a run.
+    #[error(transparent)]
+    Recorded(#[from] RecordedError),
     /// The machine cannot build or run programs for the board.
     #[error(transparent)]
     Setup(#[from] SetupError),

@@ -10,6 +10,7 @@ use super::{Answer, CommandError};
 use crate::file::{self, Purpose};
 use crate::quantity::significant;
 use crate::simulation::method::Method;
+use crate::simulation::served::Served;
 use crate::simulation::{Experiment, Simulator, Stride, Trajectory, simulate};
 
 /// Samples that are computed before they are written, where they are written one by one.
@@ -28,10 +29,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub substeps: u32,
-    /// Print one JSON object: position (rad), velocity (rad/s), torque (N m) at the samples
+    /// Print one JSON object: position (rad), velocity (rad/s), torque (N m) at the samples, and
+    /// what limited the torque
     #[arg(long, conflicts_with = "csv")]
     pub json: bool,
-    /// Print a line for each sample: time (s), position, velocity, torque
+    /// Print a line for each sample: time (s), position, velocity, torque, limit
     #[arg(long)]
     pub csv: bool,
 }
@@ -43,6 +45,7 @@ struct Row {
     position: f64,
     velocity: f64,
     torque: f64,
+    limit: Served,
 }
 
 /// Simulates the scene, certified or not.
@@ -77,8 +80,8 @@ fn rows(experiment: &Experiment, stride: Stride, out: impl Write) -> Result<(), 
         simulator.fill(&mut chunk);
         for (i, &position) in chunk.position.iter().enumerate() {
             let time = (done + i) as f64 * experiment.scene.timing.period;
-            let (velocity, torque) = (chunk.velocity[i], chunk.torque[i]);
-            writer.serialize(Row { time, position, velocity, torque }).map_err(written)?;
+            let (velocity, torque, limit) = (chunk.velocity[i], chunk.torque[i], chunk.limit[i]);
+            writer.serialize(Row { time, position, velocity, torque, limit }).map_err(written)?;
         }
         done += chunk.position.len();
     }

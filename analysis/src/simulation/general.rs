@@ -1,5 +1,6 @@
 //! The loop with everything in it that is not linear.
 
+use firmware::torque::LimitReason;
 use nalgebra::DVector;
 
 use super::drive::Drive;
@@ -8,6 +9,7 @@ use super::kernel::{DEAD, LOOK};
 use super::missed::Missed;
 use super::plant::{POSITION, VELOCITY};
 use super::rendering::Rendering;
+use super::served::Served;
 use super::tick::Tick;
 use super::{Columns, Experiment, SimulationError, Stride};
 
@@ -58,26 +60,43 @@ impl General {
         })
     }
 
-    /// The next samples.
-    pub fn fill(&mut self, drive: &Drive, columns: Columns<'_>) {
+    /// The next samples, and what the servo did at each.
+    pub fn fill(&mut self, drive: &Drive, columns: Columns<'_>, limit: &mut [Served]) {
         let Columns { position, velocity, torque } = columns;
-        let samples = position.iter_mut().zip(velocity).zip(torque);
-        for ((position, velocity), torque) in samples {
+        let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit);
+        for (((position, velocity), torque), served) in samples {
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
             let before = self.torque;
-            if !self.missed.next().unwrap_or(false) {
-                let angle = match self.encoder_step {
-                    Some(step) => (*position / step).floor() * step,
-                    None => *position,
-                };
-                self.torque = self.rendering.tick(angle);
-            }
+            *served = self.serve(*position);
             *torque = self.torque;
             self.machine.tick(self.k, drive, [-before, -self.torque]);
             self.k += 1;
         }
     }
+
+    /// The servo's part in a tick that starts with the device at `position` rad.
+    fn serve(&mut self, position: f64) -> Served {
+        if self.missed.next().unwrap_or(false) {
+            return Served::Missed;
+        }
+        let (angle, standing_still) = match self.encoder_step {
+            Some(step) => read(position, step),
+            None => (position, LimitReason::None),
+        };
+        let (torque, limit) = self.rendering.tick(angle, standing_still);
+        self.torque = torque;
+        Served::Ran(limit)
+    }
+}
+
+/// The angle in rad that an encoder with this step shows, and whether its count was too large for
+/// the servo's 32 bits, where the angle stands still.
+fn read(position: f64, step: f64) -> (f64, LimitReason) {
+    let count = (position / step).floor();
+    let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+    let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
+    (nearest * step, reason)
 }
 
 fn ticks(missed: Missed) -> Box<dyn Ticks> {

@@ -31,6 +31,7 @@ pub mod method;
 pub mod missed;
 pub mod plant;
 pub mod rendering;
+pub mod served;
 pub mod tick;
 
 mod general;
@@ -54,6 +55,7 @@ use kernel::Linear;
 use method::Method;
 use missed::Missed;
 use plant::Plant;
+use served::Served;
 use tick::{Stepping, Tick};
 
 /// Why there is no answer.
@@ -233,18 +235,21 @@ pub struct Trajectory {
     pub velocity: Vec<f64>,
     /// Coupling torque `F` in N m; the motor applies `-F`.
     pub torque: Vec<f64>,
+    /// Why that torque is not what the scene asked for, where it is not.
+    pub limit: Vec<Served>,
 }
 
 impl Trajectory {
     /// Room for so many samples.
     pub fn of_length(samples: usize) -> Self {
         let zeros = || vec![0.0; samples];
-        Self { position: zeros(), velocity: zeros(), torque: zeros() }
+        let limit = vec![Served::IN_FULL; samples];
+        Self { position: zeros(), velocity: zeros(), torque: zeros(), limit }
     }
 
-    fn columns(&mut self) -> Columns<'_> {
-        let Self { position, velocity, torque } = self;
-        Columns { position, velocity, torque }
+    fn columns(&mut self) -> (Columns<'_>, &mut [Served]) {
+        let Self { position, velocity, torque, limit } = self;
+        (Columns { position, velocity, torque }, limit)
     }
 }
 
@@ -291,9 +296,14 @@ impl Simulator {
 
     /// The next samples, as many as `trajectory` has room for.
     pub fn fill(&mut self, trajectory: &mut Trajectory) {
+        let (columns, limit) = trajectory.columns();
         match &mut self.engine {
-            Engine::Linear(linear) => linear.fill(&self.drive, trajectory.columns()),
-            Engine::General(general) => general.fill(&self.drive, trajectory.columns()),
+            Engine::Linear(linear) => {
+                // Nothing limits a linear loop.
+                limit.fill(Served::IN_FULL);
+                linear.fill(&self.drive, columns);
+            }
+            Engine::General(general) => general.fill(&self.drive, columns, limit),
         }
     }
 }

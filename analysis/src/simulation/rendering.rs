@@ -6,13 +6,14 @@ use firmware::coupling::Solver;
 use firmware::environment::{EnvironmentLaw, Law, Renderable, Setting};
 use firmware::scene::Scene;
 use firmware::servo::BuildError;
+use firmware::torque::{LimitReason, Limiter};
 
 /// Environment and coupling of a scene, at rest at zero to begin with.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     law: EnvironmentLaw<f64>,
     solver: Solver<f64>,
-    limit: f64,
+    limiter: Limiter<f64>,
 }
 
 impl Rendering {
@@ -29,14 +30,18 @@ impl Rendering {
         };
         let law = scene.environment.law(&setting)?;
         let solver = Solver::new(scene.coupling, law.slopes())?;
-        Ok(Self { law, solver, limit: scene.torque_limit.unwrap_or(f64::INFINITY) })
+        // No converter ends the range here.
+        let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
+        Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })
     }
 
     /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
-    /// coupling is solved. The motor applies `-F`.
-    pub fn tick(&mut self, x: f64) -> f64 {
-        let torque = self.solver.torque(self.law.offer(x)).clamp(-self.limit, self.limit);
+    /// coupling is solved, and why it is not the one asked for; `otherwise` where it is. The motor
+    /// applies `-F`.
+    pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
+        let wanted = self.solver.torque(self.law.offer(x));
+        let (torque, limit) = self.limiter.limit(wanted, otherwise);
         self.law.advance(self.solver.environment_position(x, torque));
-        torque
+        (torque, limit)
     }
 }

@@ -1,5 +1,6 @@
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::torque::LimitReason;
 
 use super::*;
 use crate::device::Hand;
@@ -62,7 +63,8 @@ fn both_ways_of_running_a_linear_loop_agree() {
             let fast = simulate(&experiment, Stride::default()).unwrap();
             let mut slow = Trajectory::of_length(500);
             let mut general = General::new(&experiment, Stride::default()).unwrap();
-            general.fill(&experiment.drive, slow.columns());
+            let (columns, limit) = slow.columns();
+            general.fill(&experiment.drive, columns, limit);
             assert!(linear(&experiment, Stride::default()).is_some());
             assert!(furthest(&fast.position, &slow.position) < 1e-12, "{environment:?}");
             assert!(furthest(&fast.velocity, &slow.velocity) < 1e-12, "{environment:?}");
@@ -80,13 +82,14 @@ fn chunks_are_one_motion() {
         let experiment = Experiment { drive: drive.clone(), ..moving(&scene, 30, 0.01) };
         let whole = simulate(&experiment, Stride::default()).unwrap();
         let mut simulator = Simulator::new(&experiment, Stride::default()).unwrap();
-        let mut parts = Vec::new();
+        let (mut parts, mut reasons) = (Vec::new(), Vec::new());
         for length in [1, 9, 20] {
             let mut part = Trajectory::of_length(length);
             simulator.fill(&mut part);
             parts.extend(part.position);
+            reasons.extend(part.limit);
         }
-        assert_eq!(parts, whole.position);
+        assert_eq!((parts, reasons), (whole.position, whole.limit));
     }
 }
 
@@ -152,7 +155,27 @@ fn torque_is_limited_before_the_coupling_is_solved() {
     let motion = simulate(&moving(&scene, 50, 0.05), Stride::default()).unwrap();
     // K x / (1 + K / K_vc) would be 0.73.
     assert_eq!(motion.torque[0], 0.1);
-    assert!(motion.torque.iter().all(|torque| torque.abs() <= 0.1));
+    for (torque, served) in motion.torque.iter().zip(&motion.limit) {
+        let limited = *served == Served::Ran(LimitReason::Torque);
+        assert!(torque.abs() < 0.1 || limited && torque.abs() == 0.1, "{torque} {served:?}");
+    }
+}
+
+#[test]
+fn the_record_says_which_ticks_were_missed_and_where_counts_ended() {
+    let scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
+    let missed = Experiment { missed: Missed::Every(3), ..moving(&scene, 6, 0.01) };
+    let motion = simulate(&missed, Stride::default()).unwrap();
+    let (ran, not) = (Served::IN_FULL, Served::Missed);
+    assert_eq!(motion.limit, [ran, ran, not, ran, ran, not]);
+    assert_eq!(motion.torque[2], motion.torque[1]);
+
+    // 0.01 rad are more of these steps than 32 bits hold.
+    let fine = Experiment { encoder_step: Some(1e-12), ..moving(&scene, 1, 0.01) };
+    let motion = simulate(&fine, Stride::default()).unwrap();
+    assert_eq!(motion.limit, [Served::Ran(LimitReason::Angle)]);
+    let behind = f64::from(i32::MAX) * 1e-12 * 22.0 / (1.0 + 22.0 / 44.0);
+    assert!((motion.torque[0] - behind).abs() < 1e-12, "{}", motion.torque[0]);
 }
 
 #[test]

@@ -1,5 +1,9 @@
 //! The paper's Nyquist plots: `(T z / (z - 1)) E(z)` and the line that it must not cross.
 
+mod infinity;
+mod key;
+mod sheet;
+
 use std::f64::consts::PI;
 
 use firmware::certificate::{Assessment, Loop, Rule, assess};
@@ -9,26 +13,31 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::dash::Dash;
 use super::*;
-use crate::circle::{CirclePole, Kind, poles};
+use crate::circle::{CirclePole, poles};
 use crate::minimum::least;
 use crate::quantity::{shortened, significant};
 use crate::response::Response;
+
+use sheet::{Frame, Place, Sheet};
 
 /// Points between two poles on half the unit circle. They are denser towards the poles, where the
 /// curve is longest.
 const POINTS: usize = 1600;
 
+/// A line that is hardly there.
+const HAIRLINE: Dash = Dash::new(&[1, 7]);
+
 /// Nearest to a pole that the curve is drawn, in rad.
 const NEAREST: f64 = 1e-3;
 
-/// Height of a line of the key in pixels.
-const ROW: i32 = 19;
+/// Longest title, in letters.
+const LONGEST_TITLE: usize = 72;
 
 /// An environment to draw, in one pattern of dashes.
 struct Curve {
     name: String,
-    /// Real and imaginary part for angles from nearly 0 to pi, cut where there are poles.
-    branches: Vec<Vec<(f64, f64)>>,
+    /// For angles from nearly 0 to pi, cut where there are poles.
+    branches: Vec<Branch>,
     poles: Vec<CirclePole>,
     /// Real part that the curve has near its pole at rest.
     asymptote: Option<f64>,
@@ -41,10 +50,25 @@ struct Curve {
     judged: Option<String>,
 }
 
+/// The part of a curve between two poles, or from or to the real axis.
+struct Branch {
+    /// Numbers of the poles at its ends, where there are poles.
+    poles: [Option<usize>; 2],
+    /// Real and imaginary part at rising angles.
+    values: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    /// Real and imaginary parts along the curve.
+    fn values(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.branches.iter().flat_map(|branch| &branch.values)
+    }
+}
+
 /// Draws the Nyquist plots of the environments of named scenes for velocity,
 /// `(T z / (z - 1)) E(z)`, with the critical lines at `-delta` and each curve's minimum marked.
-/// Where a pole on the unit circle takes a curve to infinity, the key says on which side it comes
-/// back.
+/// Where a pole on the unit circle takes a curve to infinity, a broken line along the frame shows
+/// on which side it comes back.
 ///
 /// # Errors
 /// Where an environment has no transfer function, or there is none.
@@ -54,7 +78,7 @@ pub fn nyquist(title: &str, scenes: &[(String, Scene)]) -> Result<Picture, Chart
     }
     let curves: Result<Vec<_>, _> = scenes.iter().map(|(name, scene)| curve(name, scene)).collect();
     let curves = curves?;
-    let key = units(ROW * rows(&curves) + 10);
+    let key = key::height(&curves);
     let size = (SIZE.0, SIZE.1 + key as u32 / UNITS);
     draw_sized(size, |area| {
         let area = area
@@ -62,7 +86,7 @@ pub fn nyquist(title: &str, scenes: &[(String, Scene)]) -> Result<Picture, Chart
             .titled(&shortened(title, LONGEST_TITLE), text(TITLE))?;
         let (plot, below) = area.split_vertically(units(size.1 as i32) - key - units(TITLE_ROOM));
         paint(&plot, &curves)?;
-        write_key(&below, &curves)
+        key::write(&below, &curves)
     })
 }
 
@@ -79,10 +103,7 @@ fn curve(name: &str, scene: &Scene) -> Result<Curve, ChartError> {
     let minimum = least(|theta| velocity.at_angle(theta).re, 0.0, PI);
     Ok(Curve {
         name: name.to_owned(),
-        branches: branches(&poles)
-            .into_iter()
-            .map(|angles| angles.into_iter().map(point).collect())
-            .collect(),
+        branches: branches(&poles, point),
         asymptote: poles
             .first()
             .filter(|pole| pole.theta == 0.0 && pole.residue().is_some())
@@ -105,21 +126,27 @@ fn judged(assessment: &Assessment) -> Option<String> {
     Some(format!("{name}, alpha = {} N m s/rad", significant(index.midpoint(), 4)))
 }
 
-/// Angles between the poles.
-fn branches(poles: &[CirclePole]) -> Vec<Vec<f64>> {
+/// The curve between the poles.
+fn branches(poles: &[CirclePole], point: impl Fn(f64) -> (f64, f64)) -> Vec<Branch> {
+    let at = |theta: f64| (theta, poles.iter().position(|pole| pole.theta == theta));
     let inner = poles.iter().map(|pole| pole.theta).filter(|theta| *theta > 0.0 && *theta < PI);
-    let cuts: Vec<f64> = std::iter::once(0.0).chain(inner).chain([PI]).collect();
-    let between = |pair: &[f64]| {
-        let (from, length) = (pair[0], pair[1] - pair[0]);
-        // Logarithmic towards both ends.
-        let half = |index: usize| {
-            (NEAREST / PI).powf(1.0 - index as f64 / (POINTS / 2) as f64) * 0.5 * length
-        };
-        let up = (0..POINTS / 2).map(|index| from + half(index));
-        let down = (0..=POINTS / 2).rev().map(|index| from + length - half(index));
-        up.chain(down).chain((pair[1] == PI).then_some(PI)).collect()
+    let cuts: Vec<_> = [0.0].into_iter().chain(inner).chain([PI]).map(at).collect();
+    let between = |pair: &[(f64, Option<usize>)]| Branch {
+        poles: [pair[0].1, pair[1].1],
+        values: angles(pair[0].0, pair[1].0).map(&point).collect(),
     };
     cuts.windows(2).map(between).collect()
+}
+
+/// Angles from one to another, logarithmic towards both.
+fn angles(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    let length = to - from;
+    let half = move |index: usize| {
+        (NEAREST / PI).powf(1.0 - index as f64 / (POINTS / 2) as f64) * 0.5 * length
+    };
+    let up = (0..POINTS / 2).map(move |index| from + half(index));
+    let down = (0..=POINTS / 2).rev().map(move |index| from + length - half(index));
+    up.chain(down).chain((to == PI).then_some(PI))
 }
 
 fn paint(area: &Area<'_>, curves: &[Curve]) -> Drawn<()> {
@@ -140,11 +167,16 @@ fn paint(area: &Area<'_>, curves: &[Curve]) -> Drawn<()> {
     for &line in &lines {
         chart.draw_series(broken([(line, y.start), (line, y.end)], 8, 5, 2))?;
     }
-    for (index, curve) in curves.iter().enumerate() {
-        draw_curve(&mut chart, curve, Dash::of(index), &y)?;
+    let sheet = Sheet::of(&chart);
+    let frames = infinity::frames(&sheet, curves);
+    let mut ways = Vec::new();
+    for (index, (curve, frames)) in curves.iter().zip(&frames).enumerate() {
+        ways.extend(draw_curve(&sheet, curve, Dash::of(index), frames)?);
     }
+    infinity::name(&sheet, &ways)?;
+    let top = infinity::below(&sheet, &frames);
     for (row, &line) in lines.iter().enumerate() {
-        name_line(&mut chart, line, row, &x, &y)?;
+        name_line(&mut chart, line, top - 0.15 * row as f64, &x, &y)?;
     }
     label_minima(&mut chart, curves, &x, y.end)
 }
@@ -161,7 +193,7 @@ fn critical_lines(curves: &[Curve]) -> Vec<f64> {
 fn window(curves: &[Curve]) -> (Range<f64>, Range<f64>) {
     let is_endless = |curve: &Curve| !curve.poles.is_empty();
     let endless = curves.iter().any(is_endless);
-    let points = || curves.iter().flat_map(|curve| curve.branches.iter().flatten());
+    let points = || curves.iter().flat_map(|curve| curve.values());
     let lines = curves.iter().map(|curve| -curve.delta);
     // Near a pole that is not at rest the curve may go to infinity in any direction; what is far
     // beyond the critical line is cut off.
@@ -171,9 +203,12 @@ fn window(curves: &[Curve]) -> (Range<f64>, Range<f64>) {
     let right = span(seen.chain(lines).chain([0.0]));
     // Room on the left for the name of the critical line.
     let width = right.end - right.start;
-    let x = right.start - 0.3 * width..right.end + 0.1 * width;
+    // More on the right where there is infinity.
+    let ways = curves.iter().flat_map(|curve| &curve.poles).filter(|pole| infinity::is_drawn(pole));
+    let room = [0.1, 0.16 + 0.015 * ways.clone().count() as f64][usize::from(ways.count() > 0)];
+    let x = right.start - 0.3 * width..right.end + room * width;
     let finite = curves.iter().filter(|curve| !is_endless(curve));
-    let tallest = span(finite.flat_map(|curve| curve.branches.iter().flatten()).map(|p| p.1.abs()));
+    let tallest = span(finite.flat_map(|curve| curve.values()).map(|p| p.1.abs()));
     let height = if endless {
         // The curve has no end; as much of it as is wide is enough to see where it goes.
         (1.2 * (x.end - x.start)).max(1.1 * tallest.end)
@@ -183,17 +218,17 @@ fn window(curves: &[Curve]) -> (Range<f64>, Range<f64>) {
     (x, -height..height)
 }
 
-/// Writes the name of a critical line on ground of its own, where curves may pass behind it.
+/// Writes the name of a critical line on ground of its own, where curves may pass behind it; `top`
+/// is a part of the upper half's height.
 fn name_line(
     chart: &mut Plane<'_, '_>,
     line: f64,
-    row: usize,
+    top: f64,
     x: &Range<f64>,
     y: &Range<f64>,
 ) -> Drawn<()> {
     let width = x.end - x.start;
     let right = line - 0.012 * width;
-    let top = 0.99 - 0.15 * row as f64;
     let ground =
         [(right + 0.004 * width, y.end * top), (right - 0.125 * width, y.end * (top - 0.14))];
     chart.draw_series([Rectangle::new(ground, FORBIDDEN.filled())])?;
@@ -205,35 +240,40 @@ fn name_line(
     Ok(())
 }
 
-/// The curve, and in a thinner line its mirror image for negative angles; what it tends to at
-/// rest, where it goes to infinity, in a hairline.
-fn draw_curve(chart: &mut Plane<'_, '_>, curve: &Curve, dash: Dash, y: &Range<f64>) -> Drawn<()> {
+/// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
+/// direction of rising angles; what it tends to at rest, where it goes to infinity, in a hairline;
+/// and its ways through infinity, which are given back.
+fn draw_curve(
+    sheet: &Sheet<'_>,
+    curve: &Curve,
+    dash: Dash,
+    frames: &[Frame],
+) -> Drawn<Vec<Vec<Place>>> {
     if let Some(re) = curve.asymptote {
-        chart.draw_series(broken([(re, y.start), (re, y.end)], 1, 7, 1))?;
+        let (x, all) = (sheet.place((re, 0.0)).0, sheet.all());
+        sheet.line(HAIRLINE, &[(x, all.top), (x, all.bottom)], 1)?;
     }
-    let area = chart.plotting_area();
-    let (left, top) = (area.get_x_range(), y.clone());
     for branch in &curve.branches {
-        for (sign, width) in [(1.0, 2), (-1.0, 1)] {
-            // Cut where the curve leaves the picture.
-            let inside = |&(re, im): &(f64, f64)| left.contains(&re) && top.contains(&im);
-            for piece in branch.split(|point| !inside(point)).filter(|piece| piece.len() > 1) {
-                let place = |&(re, im): &(f64, f64)| area.map_coordinate(&(re, sign * im));
-                let points: Vec<_> = piece.iter().map(place).collect();
-                dash.draw(&area.strip_coord_spec(), &local(area, points), width)?;
-            }
+        let [first, last] = branch.poles.map(|pole| {
+            let drawn = pole.filter(|&pole| infinity::is_drawn(&curve.poles[pole]));
+            drawn.map_or(sheet.all(), |pole| frames[pole])
+        });
+        let places: Vec<_> = branch.values.iter().map(|&value| sheet.place(value)).collect();
+        let half = places.len() / 2;
+        let parts = Frame::clip(&places, |place| if place < half { first } else { last });
+        let longest = parts.iter().max_by_key(|part| part.len());
+        if let Some(part) = longest {
+            let mirrored: Vec<_> = part.iter().rev().map(|&place| sheet.mirrored(place)).collect();
+            sheet.arrow(part, 0.4)?;
+            sheet.arrow(&mirrored, 0.6)?;
+        }
+        for part in &parts {
+            let mirrored: Vec<_> = part.iter().map(|&place| sheet.mirrored(place)).collect();
+            sheet.line(dash, part, 2)?;
+            sheet.line(dash, &mirrored, 1)?;
         }
     }
-    Ok(())
-}
-
-/// From the drawing's units to those of an area of it.
-fn local(
-    area: &DrawingArea<SVGBackend<'_>, Cartesian2d<RangedCoordf64, RangedCoordf64>>,
-    points: Vec<(i32, i32)>,
-) -> Vec<(i32, i32)> {
-    let (x, y) = area.get_base_pixel();
-    points.into_iter().map(|point| (point.0 - x, point.1 - y)).collect()
+    infinity::draw(sheet, curve, frames)
 }
 
 /// Marks the minima; what is said about several at one place stands in a row.
@@ -269,84 +309,6 @@ fn label_minima(
         // Above the axis, where the mirrored half of the curve leaves the point to the right.
         let place = (re + 0.02 * width, im + 0.06 * height);
         chart.draw_series([Text::new(label, place, anchored(HPos::Left, VPos::Bottom))])?;
-    }
-    Ok(())
-}
-
-fn least_words(curve: &Curve) -> &'static str {
-    if curve.minimum.is_some() { "least real part, -alpha" } else { "real part everywhere, -alpha" }
-}
-
-/// Lines that the key has.
-fn rows(curves: &[Curve]) -> i32 {
-    key(curves).iter().map(|(_, lines)| lines.len() as i32).sum()
-}
-
-/// What is written below the picture, with the pattern that it is about.
-fn key(curves: &[Curve]) -> Vec<(Dash, Vec<String>)> {
-    let entry = |(index, curve): (usize, &Curve)| {
-        let alpha = curve.alpha.map_or_else(
-            || "no alpha: its poles forbid it".to_owned(),
-            |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
-        );
-        let mut lines = if curves.len() > 1 {
-            vec![format!("{}: {}: {alpha}", index + 1, shortened(&curve.name, LONGEST_NAME))]
-        } else {
-            let mark = if curve.alpha.is_some() { "circle: " } else { "" };
-            let halves = "thick: angles from 0 to pi; thin: from -pi to 0";
-            vec![halves.to_owned(), format!("{mark}{alpha}")]
-        };
-        lines.extend(curve.poles.iter().map(sentence));
-        if let Some(re) = curve.asymptote {
-            let re = significant(re, 3);
-            lines.push(format!("hairline of dots: its real part near rest, {re} N m s/rad"));
-        }
-        lines.extend(curve.judged.clone());
-        (Dash::of(index), lines)
-    };
-    curves.iter().enumerate().map(entry).collect()
-}
-
-/// Longest title, in letters.
-const LONGEST_TITLE: usize = 72;
-/// Longest name in the key, in letters.
-const LONGEST_NAME: usize = 48;
-
-/// What a pole does to the curve.
-fn sentence(pole: &CirclePole) -> String {
-    let place = match pole.theta {
-        0.0 => "pole at rest, z = 1".to_owned(),
-        PI => "pole at z = -1".to_owned(),
-        theta => format!("poles at +-{} rad", significant(theta, 4)),
-    };
-    match (pole.residue(), pole.kind) {
-        (Some(k), _) if k > 0.0 => format!(
-            "{place}: residue {} N m s/rad > 0, closes through infinity on the right: allowed",
-            significant(k, 4)
-        ),
-        (Some(k), _) => format!(
-            "{place}: residue {} N m s/rad < 0, closes through infinity on the left: not passive",
-            significant(k, 4)
-        ),
-        (None, Kind::Repeated) => format!("{place}: repeated: not passive"),
-        (None, Kind::Simple(_)) => {
-            format!("{place}: residue of the wrong angle, goes to infinity askew: not passive")
-        }
-    }
-}
-
-fn write_key(area: &Area<'_>, curves: &[Curve]) -> Drawn<()> {
-    let mut row = 0;
-    for (dash, lines) in key(curves) {
-        for (index, line) in lines.into_iter().enumerate() {
-            let middle = units(ROW * row + ROW / 2);
-            if index == 0 {
-                dash.draw(area, &[(units(20), middle), (units(76), middle)], 2)?;
-            }
-            let style = anchored(HPos::Left, VPos::Center);
-            area.draw(&Text::new(line, (units(88), middle), style))?;
-            row += 1;
-        }
     }
     Ok(())
 }

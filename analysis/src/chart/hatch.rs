@@ -1,0 +1,124 @@
+//! Grounds that can be told apart without colour, also where they are a pixel wide.
+
+use std::ops::Range;
+
+use firmware::torque::LimitReason;
+use plotters::prelude::*;
+
+use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};
+use crate::simulation::served::Served;
+
+/// Units between two lines of a hatching; all grounds of a kind share one grid of them, so that
+/// narrow ones beside each other show it too.
+const SPACING: i32 = units(7);
+/// Lines that let a black curve be seen on them.
+const INK: RGBColor = RGBColor(150, 150, 150);
+
+/// A ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Light grey.
+    Grey,
+    /// Lines that rise to the right.
+    Rising,
+    /// Lines that fall to the right.
+    Falling,
+    /// Both.
+    Crossed,
+    /// Level lines.
+    Level,
+}
+
+impl Ground {
+    /// The ground of samples that were served so; `None` for those that were served in full.
+    pub fn of(served: Served) -> Option<Self> {
+        match served {
+            Served::Ran(LimitReason::None) => None,
+            Served::Ran(LimitReason::Torque) => Some(Self::Grey),
+            Served::Ran(LimitReason::Converter) => Some(Self::Rising),
+            Served::Ran(LimitReason::Angle) => Some(Self::Falling),
+            Served::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
+            Served::Missed => Some(Self::Level),
+        }
+    }
+
+    /// Covers a rectangle, in units of the area.
+    pub(super) fn fill(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
+        let lines = match self {
+            Self::Grey => {
+                let corners = [(x.start, y.start), (x.end, y.end)];
+                return area.draw(&Rectangle::new(corners, FORBIDDEN.filled()));
+            }
+            Self::Rising => rising(x, y),
+            Self::Falling => falling(x, y),
+            Self::Crossed => [rising(x, y), falling(x, y)].concat(),
+            Self::Level => on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect(),
+        };
+        for line in lines {
+            area.draw(&PathElement::new(line.to_vec(), INK.stroke_width(UNITS)))?;
+        }
+        Ok(())
+    }
+
+    /// A rectangle of it with a border, for a key.
+    pub(super) fn swatch(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
+        self.fill(area, x, y)?;
+        area.draw(&Rectangle::new([(x.start, y.start), (x.end, y.end)], pen(1)))
+    }
+}
+
+type Line = [(i32, i32); 2];
+
+/// Multiples of the spacing in a range.
+fn on_grid(range: &Range<i32>) -> impl Iterator<Item = i32> {
+    let first = range.start.div_euclid(SPACING) * SPACING;
+    (first..range.end).step_by(SPACING as usize).filter(|at| range.contains(at))
+}
+
+/// `x + y` the same along each, as far as they lie in the rectangle.
+fn rising(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
+    let sums = x.start + y.start..x.end + y.end;
+    let line = |sum| {
+        let (from, to) = (x.start.max(sum - y.end), x.end.min(sum - y.start));
+        [(from, sum - from), (to, sum - to)]
+    };
+    on_grid(&sums).map(line).collect()
+}
+
+/// `x - y` the same along each.
+fn falling(x: &Range<i32>, y: &Range<i32>) -> Vec<Line> {
+    let mirrored = rising(x, &(-y.end..-y.start));
+    mirrored.into_iter().map(|line| line.map(|(x, y)| (x, -y))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_stay_in_their_rectangle_and_on_one_grid() {
+        let (x, y) = (units(10)..units(11), units(3)..units(60));
+        let [up, down] = [rising(&x, &y), falling(&x, &y)];
+        // A pixel wide and 57 high: a line every 7 pixels.
+        assert!((8..=9).contains(&up.len()) && (8..=9).contains(&down.len()));
+        for [from, to] in up.iter().chain(&down) {
+            for (px, py) in [from, to] {
+                assert!(x.start <= *px && *px <= x.end && y.start <= *py && *py <= y.end);
+            }
+        }
+        for [from, to] in &up {
+            assert_eq!((from.0 + from.1) % SPACING, 0);
+            assert_eq!(to.0 + to.1, from.0 + from.1);
+        }
+        assert!(down.iter().all(|[from, to]| from.0 - from.1 == to.0 - to.1));
+    }
+
+    #[test]
+    fn every_reason_has_a_ground_of_its_own() {
+        let grounds: Vec<_> = Served::all().filter_map(Ground::of).collect();
+        assert_eq!(grounds.len(), Served::all().count() - 1);
+        for (index, ground) in grounds.iter().enumerate() {
+            assert!(!grounds[..index].contains(ground));
+        }
+    }
+}
