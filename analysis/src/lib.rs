@@ -47,3 +47,20 @@ pub mod minimum;
 pub mod progress;
 pub mod quantity;
 pub mod report;
+
+/// The scene file of the README, as this library reads it.
+///
+/// ```
+/// use analysis::file::{Format, parse};
+///
+/// let readme = include_str!("../../README.md");
+/// let (_, marked) = readme.split_once("<!-- file -->").expect("a marked block");
+/// let lines = marked.lines().skip(2).take_while(|line| !line.starts_with('`'));
+/// let text: String = lines.map(|line| format!("{line}\n")).collect();
+/// let file = parse("wall.toml", Format::Toml, &text)?;
+/// assert_eq!(file.name, "delayed wall");
+/// assert!(file.scene.certify().is_ok());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[cfg(doctest)]
+pub mod readme {}

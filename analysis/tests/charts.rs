@@ -73,11 +73,68 @@ fn every_picture_as_svg_and_as_png() {
     }
 }
 
+fn svg(folder: &Path, arguments: &[&str]) -> String {
+    let run = chart(folder, &[arguments, &["-o", "picture.svg"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    std::fs::read_to_string(folder.join("picture.svg")).unwrap()
+}
+
+#[test]
+fn only_a_curve_with_a_pole_on_the_circle_goes_through_infinity() {
+    let folder = folder();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    let rational = |polynomials: &str| {
+        let head = WALL.split_once("type").unwrap().0;
+        format!("{head}type = \"rational\"\n{polynomials}")
+    };
+    write("pull.toml", WALL.replace("stiffness = 22.0", "stiffness = -5.0"));
+    write("tustin.toml", rational("numerator = [20.0, -20.0]\ndenominator = [1.0, 1.0]\n"));
+    write("circle.toml", rational("numerator = [1.0, 0.0]\ndenominator = [1.0, -1.2, 1.0]\n"));
+    for name in ["wall.toml", "pull.toml", "tustin.toml", "circle.toml"] {
+        assert!(svg(folder.path(), &["nyquist", name]).contains("at infinity"), "{name}");
+    }
+    assert!(!svg(folder.path(), &["nyquist", "free.toml"]).contains("at infinity"));
+}
+
+#[test]
+fn a_trace_names_the_reasons_that_occur_and_no_others() {
+    let folder = folder();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    let rows = ["none", "converter", "converter", "angle", "not-a-number"].iter().enumerate();
+    let rows: String =
+        rows.map(|(tick, word)| format!("{tick},7,0.{tick},0.5,9,{word}\n")).collect();
+    write("run.csv", format!("tick,count,angle,torque,code,limit\n{rows}"));
+    let simulation = "[simulation]\nsamples = 50\nvelocity = 1.0\nmissed = { every = 5 }\n";
+    write("missing.toml", format!("{WALL}{simulation}"));
+    let reasons =
+        ["torque limit", "converter's limit", "angle out of range", "not a number", "tick missed"];
+    let cases: [(&[&str], [bool; 5], &str); 5] = [
+        (&["trace", "moving.toml"], [true, false, false, false, false], "time (s)"),
+        (&["trace", "missing.toml"], [false, false, false, false, true], "time (s)"),
+        (&["trace", "run.csv"], [false, true, true, true, false], "time (ticks)"),
+        (&["trace", "run.csv", "--period", "0.001"], [false, true, true, true, false], "time (s)"),
+        (&["trace", "run.csv", "--title", "a run"], [false, true, true, true, false], "a run"),
+    ];
+    for (arguments, named, other) in cases {
+        let svg = svg(folder.path(), arguments);
+        assert_eq!(reasons.map(|reason| svg.contains(reason)), named, "{arguments:?}");
+        assert!(svg.contains(other), "{arguments:?}: {other}");
+    }
+    // What the program writes it also draws.
+    let simulated = Command::new(env!("CARGO_BIN_EXE_haptic"))
+        .args(["simulate", "missing.toml", "--csv"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    write("simulated.csv", String::from_utf8(simulated.stdout).unwrap());
+    assert!(svg(folder.path(), &["trace", "simulated.csv"]).contains("tick missed"));
+}
+
 #[test]
 fn what_cannot_be_drawn_is_a_bad_question() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("taken.svg")).unwrap();
-    let questions: [(&[&str], &str); 12] = [
+    let questions: [(&[&str], &str); 14] = [
         (&["nyquist", "wall.toml", "-o", "a.pdf"], "a.pdf: the name of a picture must end in"),
         (&["nyquist", "wall.toml", "-o", "picture"], "picture: the name of a picture must end"),
         (&["nyquist", "wall.toml", "-o", "no/a.svg"], "no/a.svg: the picture cannot be written"),
@@ -89,6 +146,8 @@ fn what_cannot_be_drawn_is_a_bad_question() {
         (&["map", "wall.toml", "--points", "1", "-o", "a.svg"], "1 is not in 4..=25000000"),
         (&["limits", "damped.toml", "-o", "a.svg"], "no stiffness is certified"),
         (&["limits", "wall.toml", "--rates", "0:10", "-o", "a.svg"], "0 must be above 0"),
+        (&["trace", "moving.toml", "--period", "1", "-o", "a.svg"], "its times are in seconds"),
+        (&["trace", "none.csv", "-o", "a.svg"], "none.csv: cannot be read"),
         (&["trace", "wall.toml", "-o", "a.svg"], "a simulation needs a [simulation] table"),
     ];
     for (arguments, words) in questions {

@@ -28,3 +28,8 @@ pub mod number;
 pub mod text;
 
 pub mod board;
+
+// Its examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub mod readme {}

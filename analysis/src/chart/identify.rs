@@ -206,7 +206,8 @@ fn spectrum<'a, 'b>(
         .margin_right(MARGIN_RIGHT)
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(shown(found).log_scale(), range)?;
+        .build_cartesian_2d(shown(found).log_scale(), range.clone())?;
+    let up = numbers(&range);
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
         .bold_line_style(GRID.stroke_width(UNITS))
@@ -215,7 +216,7 @@ fn spectrum<'a, 'b>(
         .y_labels(6)
         .y_desc(y)
         .x_label_formatter(&axis_number)
-        .y_label_formatter(&axis_number)
+        .y_label_formatter(&up)
         .label_style(text(LABEL));
     if let Some(x) = x {
         mesh.x_desc(x);

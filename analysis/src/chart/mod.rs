@@ -145,14 +145,15 @@ fn draw_sized(
 
 /// The axes, grid and numbers of a chart, in the style of all of them.
 fn mesh(chart: &mut Plane<'_, '_>, x: Option<&str>, y: &str) -> Drawn<()> {
+    let (across, up) = (numbers(&chart.x_range()), numbers(&chart.y_range()));
     let mut mesh = chart.configure_mesh();
     mesh.light_line_style(TRANSPARENT)
         .bold_line_style(GRID.stroke_width(UNITS))
         .axis_style(pen(1))
         .set_all_tick_mark_size(units(5))
         .y_desc(y)
-        .x_label_formatter(&axis_number)
-        .y_label_formatter(&axis_number)
+        .x_label_formatter(&across)
+        .y_label_formatter(&up)
         .label_style(text(LABEL));
     if let Some(x) = x {
         mesh.x_desc(x);
@@ -186,5 +187,11 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
 
 /// Numbers on an axis, with no more digits than its ticks need.
 fn axis_number(value: &f64) -> String {
-    if value.abs() < 1e-12 { "0".to_owned() } else { crate::quantity::significant(*value, 4) }
+    crate::quantity::significant(*value, 4)
+}
+
+/// The same on an axis that may have a zero, which rounding misses by a small part of the range.
+fn numbers(range: &Range<f64>) -> impl Fn(&f64) -> String + use<> {
+    let nothing = 1e-9 * (range.end - range.start).abs();
+    move |value| if value.abs() < nothing { "0".to_owned() } else { axis_number(value) }
 }

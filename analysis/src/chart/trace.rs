@@ -154,7 +154,7 @@ fn write_grounds(area: &Area<'_>, reasons: &[(Served, Ground)]) -> Drawn<()> {
     const SWATCH: i32 = 30;
     const GAP: i32 = 8;
     // About as wide as letters are.
-    let width = |name: &str| SWATCH + 4 * GAP + 15 * name.len() as i32 / 2;
+    let width = |name: &str| SWATCH + 3 * GAP + 7 * name.len() as i32;
     let all: i32 = reasons.iter().map(|(served, _)| width(name(*served))).sum();
     let mut x = (SIZE.0 as i32 - all) / 2;
     for &(served, ground) in reasons {

@@ -68,10 +68,12 @@ fn sentence(pole: &CirclePole) -> String {
             significant(k, 4)
         ),
         (None, Kind::Repeated) => {
-            format!("{place}: repeated, more than once around infinity: not passive")
+            format!("{place}: repeated, a whole turn or more at infinity: not passive")
         }
         (None, Kind::Simple(_)) => {
-            format!("{place}: residue of the wrong angle, goes to infinity askew: not passive")
+            format!(
+                "{place}: residue of the wrong angle, askew at infinity (shown at +): not passive"
+            )
         }
     }
 }

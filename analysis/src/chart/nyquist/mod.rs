@@ -307,8 +307,16 @@ fn label_minima(
     }
     for ((re, im), label) in labels {
         // Above the axis, where the mirrored half of the curve leaves the point to the right.
-        let place = (re + 0.02 * width, im + 0.06 * height);
-        chart.draw_series([Text::new(label, place, anchored(HPos::Left, VPos::Bottom))])?;
+        let (left, bottom) = (re + 0.02 * width, im + 0.06 * height);
+        // On ground of its own, where curves may pass behind it.
+        let right = left + (0.004 + 0.0115 * label.len() as f64) * width;
+        let ground = [(left - 0.004 * width, bottom), (right, bottom + 0.08 * height)];
+        chart.draw_series([Rectangle::new(ground, WHITE.filled())])?;
+        chart.draw_series([Text::new(
+            label,
+            (left, bottom + 0.04 * height),
+            anchored(HPos::Left, VPos::Center),
+        )])?;
     }
     Ok(())
 }

@@ -1,0 +1,69 @@
+//! The pictures of the README are what its commands draw. With `PICTURES=overwrite` they become it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
+
+fn read(path: impl AsRef<Path>) -> String {
+    let path = path.as_ref();
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The commands of the README that draw, each as its arguments.
+fn commands(readme: &str) -> Vec<Vec<String>> {
+    let (_, marked) = readme.split_once("<!-- pictures -->\n```sh\n").expect("a marked block");
+    let (lines, _) = marked.split_once("```").expect("an end");
+    lines.lines().map(|line| words(line.strip_prefix("cargo haptic ").unwrap())).collect()
+}
+
+/// The words of a command line, of which some are in quotes.
+fn words(line: &str) -> Vec<String> {
+    let part = |(index, part): (usize, &str)| match index % 2 {
+        0 => part.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![part.to_owned()],
+    };
+    line.split('"').enumerate().flat_map(part).collect()
+}
+
+#[test]
+fn the_pictures_of_the_readme_are_what_its_commands_draw() {
+    let overwrite = std::env::var_os("PICTURES").is_some_and(|value| value == "overwrite");
+    let readme = read(root().join("README.md"));
+    let folder = tempfile::tempdir().unwrap();
+    let mut drawn = Vec::new();
+    for mut command in commands(&readme) {
+        let output = command.iter().position(|word| word == "-o").expect("a picture") + 1;
+        let kept = PathBuf::from(&command[output]);
+        let picture = folder.path().join(kept.file_name().unwrap());
+        command[output] = picture.to_str().unwrap().to_owned();
+        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
+            .args(&command)
+            .current_dir(root())
+            .output()
+            .unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        if overwrite {
+            std::fs::copy(&picture, root().join(&kept)).unwrap();
+        }
+        let same = read(root().join(&kept)) == read(&picture);
+        assert!(
+            same,
+            "{} is not what its command draws; PICTURES=overwrite keeps what it draws now",
+            kept.display()
+        );
+        drawn.push(kept);
+    }
+    // Nothing is shown or kept that no command draws.
+    let shown = readme.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    for picture in shown.filter(|link| link.ends_with(".svg")) {
+        assert!(drawn.contains(&PathBuf::from(picture)), "{picture}");
+    }
+    for file in std::fs::read_dir(root().join("analysis/pictures")).unwrap() {
+        let file = file.unwrap().path();
+        let file = file.strip_prefix(root()).unwrap().to_owned();
+        assert!(file.extension().unwrap() == "toml" || drawn.contains(&file), "{file:?}");
+    }
+}
