@@ -107,7 +107,7 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
     let simulation = "[simulation]\nsamples = 50\nvelocity = 1.0\nmissed = { every = 5 }\n";
     write("missing.toml", format!("{WALL}{simulation}"));
     let reasons =
-        ["torque limit", "converter's limit", "angle out of range", "not a number", "tick missed"];
+        ["torque limit", "converter limit", "angle out of range", "not a number", "tick missed"];
     let cases: [(&[&str], [bool; 5], &str); 5] = [
         (&["trace", "moving.toml"], [true, false, false, false, false], "time (s)"),
         (&["trace", "missing.toml"], [false, false, false, false, true], "time (s)"),

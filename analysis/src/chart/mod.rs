@@ -173,25 +173,65 @@ fn anchored(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
 /// A range with room on both sides; never empty.
 fn padded(range: Range<f64>, part: f64) -> Range<f64> {
     let (middle, half) = (0.5 * (range.start + range.end), 0.5 * (range.end - range.start));
-    let least = middle.abs().max(1e-9) * 1e-6;
-    let half = (half * (1.0 + 2.0 * part)).max(least);
+    let level = half <= middle.abs() * f64::EPSILON;
+    let half = match level {
+        // A hundredth of a constant to both sides, and something around zero.
+        true if middle != 0.0 => 0.01 * middle.abs(),
+        true => 1e-9,
+        false => half * (1.0 + 2.0 * part),
+    };
     middle - half..middle + half
+}
+
+/// Whether a value can be on an axis: so far from what is not finite that ranges do not overflow.
+fn is_drawable(value: f64) -> bool {
+    value.abs() <= 1e300
 }
 
 /// The range of some values; from zero to zero if there are none.
 fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let mut finite = values.filter(|value| value.is_finite());
+    let mut finite = values.filter(|value| is_drawable(*value));
     let first = finite.next().unwrap_or(0.0);
     finite.fold(first..first, |range, value| range.start.min(value)..range.end.max(value))
 }
 
-/// Numbers on an axis, with no more digits than its ticks need.
+/// Numbers on a logarithmic axis.
 fn axis_number(value: &f64) -> String {
     crate::quantity::significant(*value, 4)
 }
 
-/// The same on an axis that may have a zero, which rounding misses by a small part of the range.
+/// Numbers on an axis with a range: as many digits as tell its ticks apart, and zero where
+/// rounding misses it by a small part of the range.
 fn numbers(range: &Range<f64>) -> impl Fn(&f64) -> String + use<> {
-    let nothing = 1e-9 * (range.end - range.start).abs();
-    move |value| if value.abs() < nothing { "0".to_owned() } else { axis_number(value) }
+    let width = (range.end - range.start).abs();
+    let largest = range.start.abs().max(range.end.abs());
+    let digits = ((largest / width).log10().ceil() as usize + 2).clamp(4, 17);
+    move |value| match value.abs() < 1e-9 * width {
+        true => "0".to_owned(),
+        false => crate::quantity::significant(*value, digits),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_told_apart_however_small_the_numbers_or_their_range() {
+        let small = numbers(&(-3e-12..3e-12));
+        assert_eq!([1e-12, 2e-12, 1e-28].map(|value| small(&value)), ["1e-12", "2e-12", "0"]);
+        let narrow = numbers(&(0.2..0.200_004));
+        assert_ne!(narrow(&0.200_001), narrow(&0.200_002));
+        assert_eq!(numbers(&(0.0..45.0))(&(3.0 * 0.1)), "0.3");
+    }
+
+    #[test]
+    fn ranges_are_never_empty_and_hold_what_they_are_of() {
+        assert_eq!(padded(1.0..3.0, 0.25), 0.5..3.5);
+        for value in [0.0, 0.2, -7e9, 1e-30, 1e300] {
+            let range = padded(value..value, 0.1);
+            assert!(range.start < value && value < range.end, "{range:?}");
+        }
+        assert_eq!(padded(-1e-20..1e-20, 0.0), -1e-20..1e-20);
+    }
 }
