@@ -22,7 +22,7 @@ fn main() {
     println!("cargo:rustc-link-arg-bins=-L{}", root.display());
     println!("cargo:rustc-link-arg-bins=--nmagic");
     println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+    if ["CARGO_FEATURE_LOG", "CARGO_FEATURE_STM32"].iter().any(|f| env::var_os(f).is_some()) {
         println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
     }
 }

@@ -26,8 +26,8 @@ use pipes::Pipes;
 /// The emulator's program.
 pub const QEMU: &str = "qemu-system-arm";
 
-/// How the emulated board is started; the runner in `.cargo/config.toml` says the same. With
-/// `icount` each instruction takes 32 ns of the board's time, whatever the host does meanwhile.
+/// How the emulated board is started. With `icount` each instruction takes 32 ns of the board's
+/// time, whatever the host does meanwhile.
 const BOARD: [&str; 12] = [
     "-machine",
     "netduinoplus2",

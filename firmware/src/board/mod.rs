@@ -12,6 +12,28 @@ pub mod report;
 #[allow(unsafe_code)]
 pub mod qemu;
 
+#[cfg(all(target_os = "none", feature = "b-g431b-esc1"))]
+pub mod b_g431b_esc1;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+#[allow(unsafe_code)]
+pub mod critical;
+#[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
+#[allow(unsafe_code)]
+pub mod nucleo_g474re;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+#[allow(unsafe_code)]
+pub mod place;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+#[allow(unsafe_code)]
+pub mod stm32;
+#[cfg(all(target_os = "none", feature = "stm32f405"))]
+#[allow(unsafe_code)]
+pub mod stm32f405;
+
+/// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
+/// boards' clocks divide into within a quarter of a per cent.
+pub const BAUD: u32 = 460_800;
+
 /// What stops a board before its servo runs. The motor has not been driven then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartError {
@@ -104,7 +126,7 @@ macro_rules! chosen_number {
 }
 
 /// The program of a scene on a board that was not named.
-#[cfg(all(target_os = "none", not(feature = "board-qemu")))]
+#[cfg(all(target_os = "none", not(any(feature = "board-qemu", feature = "stm32"))))]
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
@@ -114,7 +136,7 @@ macro_rules! board_program {
 }
 
 /// The program of a sweep on a board that was not named.
-#[cfg(all(target_os = "none", not(feature = "board-qemu")))]
+#[cfg(all(target_os = "none", not(any(feature = "board-qemu", feature = "stm32"))))]
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {

@@ -1,0 +1,85 @@
+//! B-G431B-ESC1 and boards like it: STM32G431CB at 170 MHz.
+//!
+//! Facts of the chip are from its datasheet (DS12589) and reference manual (RM0440), facts of the
+//! board from its user manual (UM2516) and schematic.
+//!
+//! The board's own power stage stays off: its gate drivers' inputs are left in reset's state. It is
+//! a speed controller and has no input for an analogue current amplifier; what this firmware needs of it
+//! is reachable, but both pins of the DAC have other purposes (see [`CONVERTER`]).
+
+use embassy_stm32::dac::DacChannel;
+use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::peripherals::USART2;
+use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::Timer;
+use embassy_stm32::timer::qei::Qei;
+use embassy_stm32::usart::BufferedInterruptHandler;
+use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
+
+use super::stm32::converter::Converter;
+use super::stm32::line::{Active, Line};
+use super::stm32::{Connected, quadrature, serial};
+
+/// Its name as a feature and for `haptic flash`.
+pub const NAME: &str = "b-g431b-esc1";
+/// Its chip, as debug probes call it.
+pub const CHIP: &[u8; 13] = b"STM32G431CBUx";
+
+/// The encoder: TIM4, the timer of PB6 and PB7, which are the pads A+ and B+ of J8. It has 16 bits;
+/// the chip's only quadrature timer with 32, TIM2, has no pad with both its inputs.
+pub const ENCODER: pac::timer::TimGp16 = pac::TIM4;
+/// The clock that tells how late the servo is: TIM2, which has 32 bits.
+pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
+/// The converter: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
+/// so there is no pad: the wire to the amplifier is soldered to the pin's side of that divider, and
+/// nothing is connected to the board's motor output 1. Channel 2's pin PA5 is in the middle of a
+/// current sense amplifier.
+pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
+pub const TIMER_TRIGGER: u8 = 7;
+/// The amplifier: PA15, which is the pad PWM of J3. The chip pulls it up in reset, where it belongs
+/// to the debug port, so low is on.
+pub const AMPLIFIER: Line = Line { port: pac::GPIOA, pin: 15, active: Active::Low };
+
+bind_interrupts!(struct Interrupts {
+    USART2 => BufferedInterruptHandler<USART2>;
+});
+
+/// 170 MHz, the chip's most, from the board's 8 MHz crystal: the internal oscillator would be off by
+/// a per cent, and with it every damping.
+pub fn clocks() -> Config {
+    let mut config = Config::default();
+    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Oscillator });
+    config.rcc.pll = Some(Pll {
+        source: PllSource::HSE,
+        prediv: PllPreDiv::DIV2,
+        mul: PllMul::MUL85,
+        divp: None,
+        divq: None,
+        divr: Some(PllRDiv::DIV2),
+    });
+    config.rcc.sys = Sysclk::PLL1_R;
+    // Above 150 MHz the core needs the higher voltage.
+    config.rcc.boost = true;
+    config
+}
+
+/// Gives each pin its purpose; the amplifier is off.
+pub fn connect(chip: Peripherals) -> Connected {
+    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
+    // works with the registers.
+    core::mem::forget((
+        Output::new(chip.PA15, AMPLIFIER.off(), Speed::Low),
+        Qei::new(chip.TIM4, chip.PB6, chip.PB7, quadrature::config()),
+        DacChannel::new_blocking(chip.DAC1, chip.PA4),
+        Timer::new(chip.TIM2),
+        Timer::new(chip.TIM6),
+    ));
+    Connected {
+        // The virtual serial port of the debug probe that the board comes with; without the probe,
+        // the pads TX and RX of J3.
+        serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),
+        watchdog: chip.IWDG,
+    }
+}

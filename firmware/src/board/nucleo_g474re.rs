@@ -1,0 +1,78 @@
+//! NUCLEO-G474RE: STM32G474RE at 170 MHz.
+//!
+//! Facts of the chip are from its datasheet (DS12288) and reference manual (RM0440), facts of the
+//! board from its user manual (UM2505).
+
+use embassy_stm32::dac::DacChannel;
+use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::peripherals::USART2;
+use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::Timer;
+use embassy_stm32::timer::qei::Qei;
+use embassy_stm32::usart::BufferedInterruptHandler;
+use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
+
+use super::stm32::converter::Converter;
+use super::stm32::line::{Active, Line};
+use super::stm32::{Connected, quadrature, serial};
+
+/// Its name as a feature and for `haptic flash`.
+pub const NAME: &str = "nucleo-g474re";
+/// Its chip, as debug probes call it.
+pub const CHIP: &[u8; 13] = b"STM32G474RETx";
+
+/// The encoder: TIM2, one of the chip's two timers with 32 bits and quadrature inputs.
+pub const ENCODER: pac::timer::TimGp32 = pac::TIM2;
+/// The clock that tells how late the servo is: TIM5, the other one with 32 bits.
+pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
+/// The converter: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
+/// drives the board's LED.
+pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
+pub const TIMER_TRIGGER: u8 = 7;
+/// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
+/// the amplifier's input needs a pull-down resistor.
+pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 10, active: Active::High };
+
+bind_interrupts!(struct Interrupts {
+    USART2 => BufferedInterruptHandler<USART2>;
+});
+
+/// 170 MHz, the chip's most, from the 24 MHz crystal X3 that the board comes with: the internal
+/// oscillator would be off by a per cent, and with it every damping.
+pub fn clocks() -> Config {
+    let mut config = Config::default();
+    config.rcc.hse = Some(Hse { freq: Hertz(24_000_000), mode: HseMode::Oscillator });
+    config.rcc.pll = Some(Pll {
+        source: PllSource::HSE,
+        prediv: PllPreDiv::DIV6,
+        mul: PllMul::MUL85,
+        divp: None,
+        divq: None,
+        divr: Some(PllRDiv::DIV2),
+    });
+    config.rcc.sys = Sysclk::PLL1_R;
+    // Above 150 MHz the core needs the higher voltage.
+    config.rcc.boost = true;
+    config
+}
+
+/// Gives each pin its purpose; the amplifier is off.
+pub fn connect(chip: Peripherals) -> Connected {
+    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
+    // works with the registers.
+    core::mem::forget((
+        Output::new(chip.PB10, AMPLIFIER.off(), Speed::Low),
+        // A0 and A1 on the Arduino header.
+        Qei::new(chip.TIM2, chip.PA0, chip.PA1, quadrature::config()),
+        DacChannel::new_blocking(chip.DAC1, chip.PA4),
+        Timer::new(chip.TIM5),
+        Timer::new(chip.TIM6),
+    ));
+    Connected {
+        // The virtual serial port of the board's debug probe.
+        serial: serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts),
+        watchdog: chip.IWDG,
+    }
+}

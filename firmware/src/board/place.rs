@@ -1,0 +1,48 @@
+//! Where an interrupt finds what it works with.
+
+use core::cell::UnsafeCell;
+use core::mem::MaybeUninit;
+
+/// Holds what belongs to one interrupt. The main program fills it before it enables the interrupt,
+/// and leaves it alone from then on; so the interrupt needs no critical section to get at it, and
+/// no test whether it is there.
+pub struct Place<T>(UnsafeCell<MaybeUninit<T>>);
+
+// SAFETY: both functions pass on to their callers that one owner at a time uses the place; what is in
+// it goes from the main program to the interrupt, which `Send` permits.
+unsafe impl<T: Send> Sync for Place<T> {}
+
+impl<T> Place<T> {
+    /// An empty place.
+    pub const fn empty() -> Self {
+        Self(UnsafeCell::new(MaybeUninit::uninit()))
+    }
+
+    /// Fills the place.
+    ///
+    /// # Safety
+    /// The interrupt that uses the place must not be enabled yet, and nobody may hold what
+    /// [`get`](Self::get) has given.
+    pub unsafe fn fill(&'static self, value: T) {
+        // SAFETY: nobody else uses the place, as the caller promises.
+        unsafe { (*self.0.get()).write(value) };
+    }
+
+    /// What is in the place.
+    ///
+    /// # Safety
+    /// The place must have been filled, and the caller must be the handler of the one interrupt that
+    /// uses it, which does not interrupt itself.
+    #[inline(always)]
+    #[expect(clippy::mut_from_ref, reason = "the caller is the only one, as it promises")]
+    pub unsafe fn get(&'static self) -> &'static mut T {
+        // SAFETY: filled and not shared, as the caller promises.
+        unsafe { (*self.0.get()).assume_init_mut() }
+    }
+}
+
+impl<T> Default for Place<T> {
+    fn default() -> Self {
+        Self::empty()
+    }
+}

@@ -1,0 +1,35 @@
+//! What the boards with an STM32 chip have in common: the registers that a tick touches, the way
+//! from reset to a running servo, and what a panic or a fault leaves behind.
+//!
+//! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
+
+pub mod converter;
+#[cfg(feature = "fast-memory")]
+mod fast;
+pub mod line;
+pub mod pace;
+pub mod quadrature;
+pub mod serial;
+mod start;
+mod stop;
+
+#[cfg(feature = "b-g431b-esc1")]
+pub use super::b_g431b_esc1 as wiring;
+#[cfg(feature = "nucleo-g474re")]
+pub use super::nucleo_g474re as wiring;
+#[cfg(feature = "stm32f405")]
+pub use super::stm32f405 as wiring;
+
+// The logger that carries the bytes to a debug probe; it registers itself.
+use defmt_rtt as _;
+use embassy_stm32::{Peri, peripherals};
+
+pub use start::{SceneProgram, Seat, run};
+
+/// What a board gives besides its registers.
+pub struct Connected {
+    /// The port to the host.
+    pub serial: serial::Serial,
+    /// The watchdog, not yet running.
+    pub watchdog: Peri<'static, peripherals::IWDG>,
+}

@@ -1,0 +1,127 @@
+//! When a tick is due: a basic timer whose update starts the servo's interrupt and latches the
+//! converter, and beside it a clock that never stops, which tells how late the servo is.
+//!
+//! Both count the same clock, so that a period is a whole number of the clock's counts and the two
+//! cannot drift apart.
+
+use core::hint::cold_path;
+
+use embassy_stm32::pac;
+use embassy_stm32::pac::timer::vals::{Mms, Urs};
+use embassy_stm32::peripherals;
+use embassy_stm32::rcc;
+
+use super::wiring::CLOCK;
+use crate::board::StartError;
+
+/// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
+/// these chips' converters can take.
+const TIMER: pac::timer::TimBasic = pac::TIM6;
+
+/// A period as the timer counts it.
+#[derive(Clone, Copy, Debug)]
+pub struct Period {
+    /// Clock counts for one count of the timer.
+    prescale: u32,
+    /// Counts of the timer for one period.
+    counts: u32,
+    /// Clock counts a second.
+    clock: f64,
+}
+
+impl Period {
+    /// The period nearest to this many seconds.
+    ///
+    /// # Errors
+    /// Where the timer, 16 bits behind a 16-bit prescaler, cannot pace it.
+    pub fn of(seconds: f64) -> Result<Self, StartError> {
+        let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
+        let wanted = seconds * clock;
+        let longest = MOST * MOST;
+        // Written so that NaN is refused. A hundred counts are not time enough for any tick.
+        if !(wanted >= 100.0 && wanted <= longest) {
+            return Err(StartError::Period { period: seconds, longest: longest / clock });
+        }
+        // The smallest prescaler with which the period fits: the finest steps. Both casts round
+        // down what is positive and small enough.
+        let prescale = (wanted / MOST) as u32 + 1;
+        let counts = (wanted / f64::from(prescale) + 0.5) as u32;
+        Ok(Self { prescale, counts: counts.min(MOST as u32), clock })
+    }
+
+    /// Clock counts in a period.
+    pub const fn clock_counts(&self) -> u32 {
+        self.prescale * self.counts
+    }
+
+    /// Seconds in a period, as it is paced.
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.clock_counts()) / self.clock
+    }
+}
+
+/// Values of a 16-bit counter.
+const MOST: f64 = 65_536.0;
+
+/// Keeps count of the periods. Belongs to the servo's interrupt.
+#[derive(Debug)]
+pub struct Pace {
+    /// Clock counts in a period.
+    period: u32,
+    /// The clock when the present period began.
+    began: u32,
+}
+
+impl Pace {
+    /// Sets both timers up and leaves them standing. The servo's interrupt must still be disabled.
+    pub fn prepare(period: Period) -> Self {
+        rcc::enable_and_reset::<peripherals::TIM6>();
+        TIMER.psc().write_value((period.prescale - 1) as u16);
+        TIMER.arr().write(|w| w.set_arr((period.counts - 1) as u16));
+        // The update is what the converter is triggered by.
+        TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
+        // Prescaler and period are taken over at an update; this one shall be no tick.
+        TIMER.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
+        TIMER.egr().write(|w| w.set_ug(true));
+        TIMER.sr().write(|w| w.set_uif(false));
+        TIMER.dier().write(|w| w.set_uie(true));
+        CLOCK.psc().write_value(0);
+        CLOCK.arr().write_value(u32::MAX);
+        CLOCK.egr().write(|w| w.set_ug(true));
+        Self { period: period.clock_counts(), began: 0 }
+    }
+
+    /// Starts the clock and then the timer, so that a period never begins before the clock says so.
+    pub fn start(&mut self) {
+        CLOCK.cnt().write_value(0);
+        CLOCK.cr1().modify(|w| w.set_cen(true));
+        TIMER.cr1().modify(|w| w.set_cen(true));
+    }
+
+    /// Acknowledges the tick; gives the periods that have begun since the last time: 1 in time.
+    #[inline(always)]
+    pub fn passed(&mut self) -> u32 {
+        TIMER.sr().write(|w| w.set_uif(false));
+        let since = now().wrapping_sub(self.began);
+        if since < 2 * self.period {
+            self.began = self.began.wrapping_add(self.period);
+            return 1;
+        }
+        cold_path();
+        let passed = since / self.period;
+        self.began = self.began.wrapping_add(passed * self.period);
+        passed
+    }
+
+    /// Clock counts since the present period began.
+    #[inline(always)]
+    pub fn elapsed(&self) -> u32 {
+        now().wrapping_sub(self.began)
+    }
+}
+
+/// The clock.
+#[inline(always)]
+fn now() -> u32 {
+    CLOCK.cnt().read()
+}

@@ -1,0 +1,65 @@
+//! The serial port to the host, filled and emptied in interrupts below the servo's.
+
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
+
+use embassy_stm32::Peri;
+use embassy_stm32::interrupt::typelevel::Binding;
+use embassy_stm32::usart::{
+    BufferedInterruptHandler, BufferedUart, Config, Instance, RxPin, TxPin,
+};
+use embedded_io_async::{Read, Write};
+use static_cell::StaticCell;
+
+use crate::board::BAUD;
+
+/// Bytes that may wait for the task that reads them: 5 ms of the line's rate, some ten times what
+/// that task needs for anything but a certificate, during which the host waits for its answer.
+const RECEIVED: usize = 256;
+/// Bytes that may wait to be sent.
+const SENT: usize = 256;
+
+/// The port. Nothing here waits: what does not fit now is for the next time.
+pub struct Serial(BufferedUart<'static>);
+
+/// Opens a port on these pins. To be called once.
+pub fn open<T: Instance>(
+    port: Peri<'static, T>,
+    rx: Peri<'static, impl RxPin<T>>,
+    tx: Peri<'static, impl TxPin<T>>,
+    interrupts: impl Binding<T::Interrupt, BufferedInterruptHandler<T>> + 'static,
+) -> Serial {
+    static SENDING: StaticCell<[u8; SENT]> = StaticCell::new();
+    static RECEIVING: StaticCell<[u8; RECEIVED]> = StaticCell::new();
+    let (sending, receiving) = (SENDING.init([0; _]), RECEIVING.init([0; _]));
+    let mut config = Config::default();
+    config.baudrate = BAUD;
+    let port = BufferedUart::new(port, rx, tx, sending, receiving, interrupts, config);
+    // The rate is a constant, and each board's clock divides into it; a build whose does not would
+    // stop here at its first start, with the amplifier off.
+    Serial(port.expect("the port's clock divides into the line's rate"))
+}
+
+impl Serial {
+    /// Takes what has arrived, as far as there is room; gives the number of bytes.
+    pub fn read(&mut self, bytes: &mut [u8]) -> usize {
+        match now(self.0.read(bytes)) {
+            Some(Ok(count)) => count,
+            Some(Err(_)) | None => 0,
+        }
+    }
+
+    /// Sends the bytes, all of them or none; says whether.
+    pub fn write(&mut self, bytes: &[u8]) -> bool {
+        matches!(now(self.0.write(bytes)), Some(Ok(_)))
+    }
+}
+
+/// What a future gives at once. The executor's next round is not later than the next interrupt, and
+/// the port's own are among those, so nobody needs to be woken.
+fn now<T>(future: impl Future<Output = T>) -> Option<T> {
+    match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(value) => Some(value),
+        Poll::Pending => None,
+    }
+}

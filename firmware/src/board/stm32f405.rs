@@ -1,0 +1,84 @@
+//! Boards of the VESC class, up to version 6: STM32F405RG at 168 MHz.
+//!
+//! Facts of the chip are from its datasheet (DS8626) and reference manual (RM0090), facts of the
+//! boards from their published schematics.
+//!
+//! The board's own power stage stays off: its gate driver is never enabled. These boards are motor
+//! controllers and have no input for an analogue current amplifier; the firmware uses their pin headers.
+
+use embassy_stm32::dac::DacChannel;
+use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::peripherals::USART3;
+use embassy_stm32::rcc::{
+    AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
+};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::Timer;
+use embassy_stm32::timer::qei::Qei;
+use embassy_stm32::usart::BufferedInterruptHandler;
+use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
+
+use super::stm32::converter::Converter;
+use super::stm32::line::{Active, Line};
+use super::stm32::{Connected, quadrature, serial};
+
+/// Its name as a feature and for `haptic flash`.
+pub const NAME: &str = "stm32f405";
+/// Its chip, as debug probes call it.
+pub const CHIP: &[u8; 13] = b"STM32F405RGTx";
+
+/// The encoder: TIM3, the timer of PC6 and PC7, which are H1 and H2 of the hall sensors' connector.
+/// It has 16 bits; the inputs of the chip's timers with 32 are not on a connector.
+pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
+/// The clock that tells how late the servo is: TIM5, which has 32 bits.
+pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
+/// The converter: channel 1, whose pin PA4 is the chip select of the SPI header. Channel 2's pin PA5
+/// is the header's clock, and on some boards has a filter behind it.
+pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
+pub const TIMER_TRIGGER: u8 = 0;
+/// The amplifier: PB6, the signal of the servo connector. It floats while the chip is in reset, so
+/// the amplifier's input needs a pull-down resistor.
+pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 6, active: Active::High };
+
+bind_interrupts!(struct Interrupts {
+    USART3 => BufferedInterruptHandler<USART3>;
+});
+
+/// 168 MHz, the chip's most, from the board's 8 MHz crystal. Timers on the slow bus count 84 MHz.
+pub fn clocks() -> Config {
+    let mut config = Config::default();
+    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Oscillator });
+    config.rcc.pll_src = PllSource::HSE;
+    config.rcc.pll = Some(Pll {
+        // 2 MHz into the oscillator, which the manual recommends against jitter.
+        prediv: PllPreDiv::DIV4,
+        mul: PllMul::MUL168,
+        divp: Some(PllPDiv::DIV2),
+        divq: None,
+        divr: None,
+    });
+    config.rcc.sys = Sysclk::PLL1_P;
+    // 42 MHz and 84 MHz, the most for these buses.
+    (config.rcc.ahb_pre, config.rcc.apb1_pre) = (AHBPrescaler::DIV1, APBPrescaler::DIV4);
+    config.rcc.apb2_pre = APBPrescaler::DIV2;
+    config
+}
+
+/// Gives each pin its purpose; the amplifier is off.
+pub fn connect(chip: Peripherals) -> Connected {
+    // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
+    // works with the registers.
+    core::mem::forget((
+        Output::new(chip.PB6, AMPLIFIER.off(), Speed::Low),
+        Qei::new(chip.TIM3, chip.PC6, chip.PC7, quadrature::config()),
+        DacChannel::new_blocking(chip.DAC1, chip.PA4),
+        Timer::new(chip.TIM5),
+        Timer::new(chip.TIM6),
+    ));
+    Connected {
+        // TX and RX of the communication header.
+        serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
+        watchdog: chip.IWDG,
+    }
+}
