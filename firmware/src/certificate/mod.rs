@@ -30,6 +30,7 @@
 mod assumption;
 mod model;
 mod parameter;
+mod posed;
 mod rejection;
 mod remedy;
 mod rules;
@@ -37,6 +38,7 @@ mod rules;
 pub use assumption::{Assumption, Assumptions};
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
+pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Relation, Remedies, Remedy};
 pub use rules::{Answer, Assessment, Rule, assess, gamma};

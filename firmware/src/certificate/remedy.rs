@@ -4,8 +4,8 @@ use core::fmt;
 
 use super::model::Numbers;
 use super::parameter::Parameter;
+use super::posed::Posed;
 use super::rejection::Rejection;
-use super::rules::assess;
 use crate::environment::Environment;
 use crate::scene::{Coupling, Scene};
 use crate::text::Text;
@@ -185,7 +185,10 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
 
 const fn is_certified(scene: &Scene, parameter: Parameter, value: f64) -> bool {
     match with(scene, parameter, value) {
-        Some(changed) => assess(&changed).outcome.is_ok(),
+        Some(changed) => match Posed::of(&changed) {
+            Ok(posed) => posed.is_certified(),
+            Err(_) => false,
+        },
         None => false,
     }
 }

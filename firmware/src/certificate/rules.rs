@@ -1,14 +1,14 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
-use super::model::{Numbers, nonlinear_bound, transfer};
+use super::model::Numbers;
 use super::parameter::first_invalid;
+use super::posed::Posed;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use crate::environment::{Environment, Wall};
-use crate::passivity::discrete::{RealPart, index};
+use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle, cancelled};
-use crate::passivity::transfer::{Transfer, Unbuildable};
+use crate::passivity::poles::{Doubt, Obstacle};
 use crate::scene::Scene;
 
 /// Answer of one rule.
@@ -107,7 +107,10 @@ pub const fn assess(scene: &Scene) -> Assessment {
     }
     let numbers = Numbers::of(scene);
     out.delta = numbers.delta;
-    out.outcome = judge(scene, &numbers, &mut out);
+    out.outcome = match Posed::with(scene, numbers) {
+        Ok(posed) => judge(&posed, &mut out),
+        Err(rejection) => Err(rejection),
+    };
     out
 }
 
@@ -126,87 +129,19 @@ pub(super) const fn wall_of(environment: &Environment) -> Option<&Wall> {
     }
 }
 
-const fn judge(scene: &Scene, n: &Numbers, out: &mut Assessment) -> Result<(), Rejection> {
-    if !n.delta.is_positive() {
-        return Err(Rejection::NoPassivity { delta: n.delta });
-    }
-    let environment = match transfer(&scene.environment, n) {
-        Ok(environment) => environment,
-        Err(error) => return Err(unbuildable(error)),
-    };
-    let loop_gain = Interval::ONE.add(environment.feedthrough().mul(n.compliance()));
-    let solvable = match out.rule {
-        Rule::Exact => !loop_gain.contains(0.0),
-        // A clipped or one-sided law has one solution with the coupling only if both slopes agree.
-        Rule::Nonlinear => loop_gain.is_positive(),
-    };
-    if !solvable {
-        out.paper = Answer::Fail;
-        return Err(Rejection::IllPosed { loop_gain });
-    }
-    let alone = index(environment, n.period, true);
-    if let Ok(found) = alone {
-        out.alpha = Some(found.minimum);
-        out.cos_theta = Some(found.cos_theta);
-    }
-    if matches!(out.rule, Rule::Nonlinear) {
-        out.bound = nonlinear_bound(&scene.environment, n);
-    }
-    out.paper = paper_rule(n, &alone, out);
-    let coupled = coupled_index(environment, n, &alone);
-    if let Ok(found) = coupled {
-        out.alpha_coupled = Some(found.minimum);
-        if matches!(out.rule, Rule::Exact) {
-            out.cos_theta = Some(found.cos_theta);
-        }
-    }
-    out.exact = exact_rule(n, &coupled);
-    match out.rule {
-        Rule::Exact => exact_outcome(n, &alone, &coupled, out),
-        Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
+/// What the index has to stay below for the paper's rule: `K_vc T / 2`, for the coupling spring to
+/// be output strictly passive enough (condition 18), and `delta`. At the standard coupling both are
+/// `delta`; a stiffness that equals it to the digits that were written, which may be a few units of
+/// the last place above it, counts as standard. `None` where the rule does not hold: above the
+/// standard coupling, and without compliance, `Q` is not passive (equation 19).
+pub(super) const fn paper_limit(n: &Numbers) -> Option<Interval> {
+    match n.coupling_damping() {
+        Some(damping) if !n.delta.is_below(damping) => Some(n.delta.min(damping)),
+        _ => None,
     }
 }
 
-const fn unbuildable(error: Unbuildable) -> Rejection {
-    match error {
-        Unbuildable::Improper => Rejection::Improper,
-        Unbuildable::IllPosed => Rejection::IllPosed { loop_gain: Interval::ZERO },
-        Unbuildable::OutOfRange => Rejection::Undecided {
-            doubt: Doubt::OutOfRange,
-            index: None,
-            limit: None,
-            remedies: Remedies::NONE,
-        },
-    }
-}
-
-/// `K_vc T / 2` and `delta`, whichever is smaller: what the index has to stay below for the
-/// coupling spring to be output strictly passive enough (condition 18). At the standard coupling
-/// both are `delta`; a stiffness that equals it to the digits that were written, which may be a few
-/// units of the last place above it, counts as standard.
-const fn paper_limit(n: &Numbers, damping: Interval) -> Interval {
-    n.delta.min(damping)
-}
-
-const fn paper_rule(n: &Numbers, alone: &Result<RealPart, Obstacle>, out: &Assessment) -> Answer {
-    let Some(damping) = n.coupling_damping() else {
-        // Without compliance Q is not passive (equation 19).
-        return Answer::Fail;
-    };
-    if n.delta.is_below(damping) {
-        return Answer::Fail;
-    }
-    let index = match (alone, out.rule, out.bound) {
-        (Err(Obstacle::Undecided(_)), ..) => return Answer::Undecided,
-        (Err(_), ..) => return Answer::Fail,
-        (Ok(found), Rule::Exact, _) => found.minimum,
-        (Ok(_), Rule::Nonlinear, Some(bound)) => bound,
-        (Ok(_), Rule::Nonlinear, None) => return Answer::Undecided,
-    };
-    compare(index, paper_limit(n, damping))
-}
-
-const fn compare(index: Interval, limit: Interval) -> Answer {
+pub(super) const fn compare(index: Interval, limit: Interval) -> Answer {
     if index.is_below(limit) {
         Answer::Pass
     } else if index.lo() >= limit.hi() {
@@ -218,33 +153,33 @@ const fn compare(index: Interval, limit: Interval) -> Answer {
 
 /// What `alpha_coupled` has to stay below: `delta`; at the standard coupling also the `K_vc T / 2`
 /// that equals it to the digits that were written.
-const fn exact_limit(n: &Numbers) -> Interval {
+pub(super) const fn exact_limit(n: &Numbers) -> Interval {
     match n.coupling_damping() {
-        Some(damping) if n.excess_compliance().contains(0.0) => paper_limit(n, damping),
+        Some(damping) if n.excess_compliance().contains(0.0) => n.delta.min(damping),
         _ => n.delta,
     }
 }
 
-const fn coupled_index(
-    environment: Transfer,
-    n: &Numbers,
-    alone: &Result<RealPart, Obstacle>,
-) -> Result<RealPart, Obstacle> {
-    let excess = n.excess_compliance();
-    if excess.contains(0.0) {
-        return *alone;
+const fn judge(posed: &Posed, out: &mut Assessment) -> Result<(), Rejection> {
+    let n = &posed.numbers;
+    let alone = posed.alone(Interval::ENTIRE);
+    if let Ok(found) = alone {
+        out.alpha = Some(found.minimum);
+        out.cos_theta = Some(found.cos_theta);
     }
-    match cancelled(environment).behind(excess) {
-        Ok(equivalent) => index(equivalent, n.period, false),
-        Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+    out.bound = posed.bound;
+    out.paper = posed.paper(&alone);
+    let coupled = if posed.is_standard() { alone } else { posed.behind(Interval::ENTIRE) };
+    if let Ok(found) = coupled {
+        out.alpha_coupled = Some(found.minimum);
+        if matches!(out.rule, Rule::Exact) {
+            out.cos_theta = Some(found.cos_theta);
+        }
     }
-}
-
-const fn exact_rule(n: &Numbers, coupled: &Result<RealPart, Obstacle>) -> Answer {
-    match coupled {
-        Ok(found) => compare(found.minimum, exact_limit(n)),
-        Err(Obstacle::Undecided(_)) => Answer::Undecided,
-        Err(_) => Answer::Fail,
+    out.exact = posed.exact(&coupled);
+    match out.rule {
+        Rule::Exact => exact_outcome(n, &alone, &coupled, out),
+        Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
     }
 }
 

@@ -4,7 +4,8 @@
 //! coefficients `r_i` are positive, `p / r` is a convex mean of the `p_i / r_i`, so the smallest of
 //! these is a lower bound; the values at the box's ends are upper bounds of the minimum. Boxes
 //! are halved until both meet. The bounds close quadratically, and rounding is outward all the
-//! way, so the result encloses the minimum however early the halving ends.
+//! way, so the result encloses the minimum however early the halving ends. Who only has to know on
+//! which side of a border the minimum is gets an answer after a few boxes.
 
 use super::chebyshev::Series;
 use super::interval::{Interval, div_down, div_up};
@@ -20,6 +21,9 @@ const MAX_BOXES: u32 = 600;
 const MAX_LEVEL: u32 = 30;
 /// Wanted width of the enclosure, relative to its magnitude.
 const TOLERANCE: f64 = 1e-13;
+/// How far from a border a bound has to be to settle on which side the minimum is, relative to the
+/// border: far beyond rounding, so that closer looks would not have told anything else.
+const CLEARANCE: f64 = 1e-9;
 
 /// Where and how small `p / r` gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,11 +64,17 @@ impl Waiting {
 
 /// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
 /// proved on the way.
+///
+/// The enclosure is as tight as it gets around `border`, and no tighter than it takes where the
+/// minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit
+/// it is what tells on which side of the limit the minimum is.
 #[inline(never)]
-pub const fn minimum(p: &Series, r: &Series) -> Minimum {
+pub const fn minimum(p: &Series, r: &Series, border: Interval) -> Minimum {
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
     let mut search = Search {
         degree,
+        clearly_below: border.lo() - CLEARANCE * border.lo().abs(),
+        clearly_above: border.hi() + CLEARANCE * border.hi().abs(),
         upper: f64::INFINITY,
         at: Interval::ZERO,
         lower: f64::INFINITY,
@@ -93,6 +103,9 @@ const fn upper_bound(p: Interval, r: Interval) -> f64 {
 
 struct Search {
     degree: usize,
+    /// A value below this one, or only boxes above that one: no closer look is wanted.
+    clearly_below: f64,
+    clearly_above: f64,
     /// Smallest proved upper bound so far, and the `c` that it was seen at.
     upper: f64,
     at: Interval,
@@ -110,6 +123,10 @@ impl Search {
         let mut boxes = 0;
         loop {
             boxes += 1;
+            if self.upper < self.clearly_below {
+                self.give_up(current.bound);
+                return;
+            }
             if boxes > MAX_BOXES || current.level >= MAX_LEVEL || self.is_settled(current.bound) {
                 self.lower = self.lower.min(current.bound.lower);
             } else {
@@ -120,6 +137,15 @@ impl Search {
                 Some(next) => current = next,
                 None => return,
             }
+        }
+    }
+
+    /// Ends the search with the boxes that are left as they are.
+    const fn give_up(&mut self, current: Bound) {
+        self.lower = self.lower.min(current.lower);
+        while self.waiting_len > 0 {
+            self.waiting_len -= 1;
+            self.lower = self.lower.min(self.waiting[self.waiting_len].bound.lower);
         }
     }
 
@@ -159,7 +185,7 @@ impl Search {
     /// hides.
     const fn is_settled(&self, bound: Bound) -> bool {
         let slack = (TOLERANCE * self.upper.abs()).max(2.0 * bound.rounding);
-        bound.lower >= self.upper - slack
+        bound.lower > self.clearly_above || bound.lower >= self.upper - slack
     }
 
     /// Halves the box. Goes on with the half that has the smaller lower bound and puts the other

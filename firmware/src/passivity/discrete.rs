@@ -24,8 +24,17 @@ pub struct RealPart {
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
+    input_passivity_near(g, widen, Interval::ENTIRE)
+}
+
+/// [`input_passivity`], as tight as it takes to tell on which side of `border` the minimum is.
+const fn input_passivity_near(
+    g: Transfer,
+    widen: bool,
+    border: Interval,
+) -> Result<RealPart, Obstacle> {
     match reduce(g, widen) {
-        Ok(reduced) => real_part(&reduced),
+        Ok(reduced) => real_part(&reduced, border),
         Err(obstacle) => Err(obstacle),
     }
 }
@@ -46,14 +55,26 @@ pub const fn index(
     period: Interval,
     widen: bool,
 ) -> Result<RealPart, Obstacle> {
-    match input_passivity(environment.from_velocity(period), widen) {
+    index_near(environment, period, widen, Interval::ENTIRE)
+}
+
+/// [`index`], as tight as it takes to tell on which side of `limit` it is: a sound enclosure at a
+/// fraction of the cost where the index is not near. What [`index`] proves to be below the limit
+/// is proved here, and nothing else.
+pub const fn index_near(
+    environment: Transfer,
+    period: Interval,
+    widen: bool,
+    limit: Interval,
+) -> Result<RealPart, Obstacle> {
+    match input_passivity_near(environment.from_velocity(period), widen, limit.neg()) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
     }
 }
 
 #[inline(never)]
-const fn real_part(g: &Reduced) -> Result<RealPart, Obstacle> {
+const fn real_part(g: &Reduced, border: Interval) -> Result<RealPart, Obstacle> {
     if let Err(obstacle) = residues_at_real_points(g) {
         return Err(obstacle);
     }
@@ -68,7 +89,9 @@ const fn real_part(g: &Reduced) -> Result<RealPart, Obstacle> {
         };
     }
     let r = Series::squared_magnitude(&g.denominator);
-    let Minimum { value, at } = minimum(&p, &r);
+    // Where the scale's sign turns the sides around, the enclosure is tight everywhere.
+    let border = if g.scale.is_positive() { border } else { Interval::ENTIRE };
+    let Minimum { value, at } = minimum(&p, &r, border.double().div(g.scale));
     let minimum = value.mul(g.scale).half();
     if minimum.is_finite() {
         Ok(RealPart { minimum, cos_theta: at })

@@ -1,0 +1,173 @@
+//! A scene that can be judged, and the answers of the two rules without the numbers behind them.
+
+use super::model::{Numbers, nonlinear_bound, transfer};
+use super::parameter::first_invalid;
+use super::rejection::Rejection;
+use super::remedy::Remedies;
+use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
+use crate::passivity::discrete::{RealPart, index_near};
+use crate::passivity::interval::Interval;
+use crate::passivity::poles::{Doubt, Obstacle, cancelled};
+use crate::passivity::transfer::{Transfer, Unbuildable};
+use crate::scene::Scene;
+
+/// A scene whose numbers are valid, whose device is passive, and whose coupling and environment
+/// have one solution every tick.
+///
+/// It answers yes or no as [`super::assess`] does, at a fraction of the cost: an index is looked at
+/// only until it is clear on which side of its limit it is. For searches and maps, which ask about
+/// thousands of scenes.
+///
+/// ```
+/// use firmware::certificate::Posed;
+/// use firmware::environment::{Environment, Wall};
+/// use firmware::scene::{Coupling, Device, Scene, Timing};
+///
+/// let wall = |stiffness| Wall {
+///     stiffness,
+///     damping: 0.01,
+///     delay: 1,
+///     filter: None,
+///     face: 0.0,
+///     one_sided: false,
+/// };
+/// let scene = |stiffness| Scene {
+///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+///     timing: Timing { period: 0.001, worst_period: None },
+///     coupling: Coupling::Spring { stiffness: 44.0 },
+///     environment: Environment::DamperWall(wall(stiffness)),
+///     torque_limit: None,
+/// };
+/// let passes = |stiffness| Posed::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
+/// assert!(passes(23.9) && !passes(24.1));
+/// ```
+#[derive(Clone, Copy)]
+pub struct Posed {
+    pub(super) numbers: Numbers,
+    pub(super) environment: Transfer,
+    pub(super) rule: Rule,
+    /// Bound on the index of a one-sided or limited scene.
+    pub(super) bound: Option<Interval>,
+}
+
+impl Posed {
+    /// Poses a scene.
+    ///
+    /// # Errors
+    /// What stands against judging it: an invalid number, a device without passivity, an
+    /// environment that is not causal, or a loop without one solution.
+    pub const fn of(scene: &Scene) -> Result<Self, Rejection> {
+        match first_invalid(scene) {
+            Some(invalid) => Err(Rejection::Invalid(invalid)),
+            None => Self::with(scene, Numbers::of(scene)),
+        }
+    }
+
+    /// Poses a scene whose numbers are valid.
+    pub(super) const fn with(scene: &Scene, numbers: Numbers) -> Result<Self, Rejection> {
+        if !numbers.delta.is_positive() {
+            return Err(Rejection::NoPassivity { delta: numbers.delta });
+        }
+        let environment = match transfer(&scene.environment, &numbers) {
+            Ok(environment) => environment,
+            Err(error) => return Err(unbuildable(error)),
+        };
+        let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance()));
+        let (rule, bound, solvable) = if is_nonlinear(scene) {
+            // A clipped or one-sided law has one solution with the coupling only if both slopes
+            // agree.
+            let bound = nonlinear_bound(&scene.environment, &numbers);
+            (Rule::Nonlinear, bound, loop_gain.is_positive())
+        } else {
+            (Rule::Exact, None, !loop_gain.contains(0.0))
+        };
+        if !solvable {
+            return Err(Rejection::IllPosed { loop_gain });
+        }
+        Ok(Self { numbers, environment, rule, bound })
+    }
+
+    /// The verdict: whether the rule that it follows proves the scene, that is, whether
+    /// [`super::assess`] comes to the outcome `Ok`.
+    pub const fn is_certified(&self) -> bool {
+        match self.rule {
+            Rule::Exact => self.passes_exact(),
+            Rule::Nonlinear => self.passes_paper(),
+        }
+    }
+
+    /// Whether equations 17 to 19 prove the scene.
+    pub const fn passes_paper(&self) -> bool {
+        let Some(limit) = paper_limit(&self.numbers) else { return false };
+        let index = match (self.rule, self.bound) {
+            (Rule::Exact, _) => self.alone(limit),
+            // The bound decides; the index only has to exist, however large.
+            (Rule::Nonlinear, Some(bound)) if matches!(compare(bound, limit), Answer::Pass) => {
+                self.alone(Interval::exact(f64::MAX))
+            }
+            (Rule::Nonlinear, _) => return false,
+        };
+        matches!(self.paper(&index), Answer::Pass)
+    }
+
+    /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
+    /// left out.
+    pub const fn passes_exact(&self) -> bool {
+        let limit = exact_limit(&self.numbers);
+        let index = if self.is_standard() { self.alone(limit) } else { self.behind(limit) };
+        matches!(self.exact(&index), Answer::Pass)
+    }
+
+    /// Answer of equations 17 to 19, given the index of the environment alone.
+    pub(super) const fn paper(&self, alone: &Result<RealPart, Obstacle>) -> Answer {
+        let Some(limit) = paper_limit(&self.numbers) else { return Answer::Fail };
+        match (alone, self.rule, self.bound) {
+            (Err(Obstacle::Undecided(_)), ..) => Answer::Undecided,
+            (Err(_), ..) => Answer::Fail,
+            (Ok(found), Rule::Exact, _) => compare(found.minimum, limit),
+            (Ok(_), Rule::Nonlinear, Some(bound)) => compare(bound, limit),
+            (Ok(_), Rule::Nonlinear, None) => Answer::Undecided,
+        }
+    }
+
+    /// Answer of theory, section 4.1, given the index of `E'`.
+    pub(super) const fn exact(&self, coupled: &Result<RealPart, Obstacle>) -> Answer {
+        match coupled {
+            Ok(found) => compare(found.minimum, exact_limit(&self.numbers)),
+            Err(Obstacle::Undecided(_)) => Answer::Undecided,
+            Err(_) => Answer::Fail,
+        }
+    }
+
+    /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
+    /// the environment itself.
+    pub(super) const fn is_standard(&self) -> bool {
+        self.numbers.excess_compliance().contains(0.0)
+    }
+
+    /// Index of the environment alone, looked at closely only near `limit`.
+    pub(super) const fn alone(&self, limit: Interval) -> Result<RealPart, Obstacle> {
+        index_near(self.environment, self.numbers.period, true, limit)
+    }
+
+    /// Index of `E'`, looked at closely only near `limit`.
+    pub(super) const fn behind(&self, limit: Interval) -> Result<RealPart, Obstacle> {
+        match cancelled(self.environment).behind(self.numbers.excess_compliance()) {
+            Ok(equivalent) => index_near(equivalent, self.numbers.period, false, limit),
+            Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        }
+    }
+}
+
+const fn unbuildable(error: Unbuildable) -> Rejection {
+    match error {
+        Unbuildable::Improper => Rejection::Improper,
+        Unbuildable::IllPosed => Rejection::IllPosed { loop_gain: Interval::ZERO },
+        Unbuildable::OutOfRange => Rejection::Undecided {
+            doubt: Doubt::OutOfRange,
+            index: None,
+            limit: None,
+            remedies: Remedies::NONE,
+        },
+    }
+}

@@ -1,0 +1,135 @@
+//! Yes and no without the numbers against the assessment with them: the same answers, far from the
+//! line, next to it, and where rounding decides.
+
+use firmware::certificate::{Answer, Posed, assess};
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tests::scenes::{self, Poles};
+
+/// Compares the answers of both rules and the verdict; tells whether there is a certificate.
+fn compare(scene: &Scene) -> bool {
+    let assessment = assess(scene);
+    match Posed::of(scene) {
+        Ok(posed) => {
+            let found = [posed.passes_paper(), posed.passes_exact(), posed.is_certified()];
+            let wanted = [
+                assessment.paper == Answer::Pass,
+                assessment.exact == Answer::Pass,
+                assessment.outcome.is_ok(),
+            ];
+            assert_eq!(found, wanted, "{scene:?}\n{assessment:?}");
+        }
+        Err(rejection) => assert_eq!(assessment.outcome, Err(rejection), "{scene:?}"),
+    }
+    assessment.outcome.is_ok()
+}
+
+/// Couplings from half the standard one to a rigid one.
+fn couplings(delta: f64, period: f64) -> [Coupling; 5] {
+    let spring = |part: f64| Coupling::Spring { stiffness: part * 2.0 * delta / period };
+    [spring(0.5), spring(0.999), spring(1.0), spring(3.0), Coupling::Rigid]
+}
+
+/// A wall of every kind on the paper's device.
+fn wall(rng: &mut ChaCha8Rng, delay: usize, coupling: Coupling) -> Scene {
+    let (damping, period) = (0.022, 0.001);
+    let wall = Wall {
+        stiffness: 1.0,
+        damping: rng.random_range(-0.6..1.25) * damping,
+        delay,
+        filter: rng.random_bool(0.3).then(|| rng.random_range(0.0..0.95)),
+        face: 0.0,
+        one_sided: rng.random_bool(0.2),
+    };
+    let environment = if rng.random_bool(0.3) {
+        Environment::FreeModeWall { residual: rng.random_range(0.0..1.0) * damping, wall }
+    } else {
+        Environment::DamperWall(wall)
+    };
+    Scene {
+        device: Device { inertia: 2.2e-5, damping, passivity: None },
+        timing: Timing { period, worst_period: rng.random_bool(0.2).then_some(0.0015) },
+        coupling,
+        environment,
+        torque_limit: rng.random_bool(0.1).then_some(1.0),
+    }
+}
+
+fn with_stiffness(scene: &Scene, value: f64) -> Scene {
+    let mut changed = *scene;
+    match &mut changed.environment {
+        Environment::DamperWall(wall) | Environment::FreeModeWall { wall, .. } => {
+            wall.stiffness = value;
+        }
+        _ => unreachable!("only walls are drawn"),
+    }
+    changed
+}
+
+/// Stiffnesses all over the range, and from a tenth to one last place beside each line that a
+/// bisection with the assessment finds in it.
+#[test]
+fn walls_of_every_delay_behind_every_coupling() {
+    let (mut judged, mut certified) = (0, 0);
+    let mut count = |scene: &Scene| {
+        judged += 1;
+        certified += u32::from(compare(scene));
+    };
+    for delay in 0..=8 {
+        for (kind, coupling) in couplings(0.022, 0.001).into_iter().enumerate() {
+            let seed = (delay * 100 + kind) as u64;
+            let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+            for _ in 0..6 {
+                let scene = wall(rng, delay, coupling);
+                let stiffest = 80.0 / (1.0 + delay as f64);
+                let at = |stiffness: f64| with_stiffness(&scene, stiffness);
+                let passes = |stiffness: f64| assess(&at(stiffness)).outcome.is_ok();
+                let mut before = stiffest;
+                for _ in 0..20 {
+                    let next = rng.random_range(0.0..stiffest);
+                    count(&at(next));
+                    if passes(before) != passes(next) {
+                        let (mut a, mut b) = (before, next);
+                        while 0.5 * (a + b) != a && 0.5 * (a + b) != b {
+                            let middle = 0.5 * (a + b);
+                            if passes(middle) == passes(a) { a = middle } else { b = middle }
+                        }
+                        for power in 1..=16 {
+                            let step = 10_f64.powi(-power);
+                            count(&at(a * (1.0 - step)));
+                            count(&at(b * (1.0 + step)));
+                        }
+                        count(&at(a));
+                        count(&at(b));
+                    }
+                    before = next;
+                }
+            }
+        }
+    }
+    println!("scenes={judged} certified={certified}");
+    assert!(judged > 20_000 && certified * 5 > judged && certified * 5 < 4 * judged);
+}
+
+#[test]
+fn environments_of_every_kind() {
+    let certified = (0..3000)
+        .filter(|&seed| compare(&scenes::any(&mut ChaCha8Rng::seed_from_u64(seed)).scene))
+        .count();
+    assert!(certified > 300, "{certified}");
+}
+
+/// Where the subdivision has the most to do, and where it may have to give up.
+#[test]
+fn poles_near_the_circle() {
+    for (nearest, count) in [(1e-2, 8), (1e-4, 6), (1e-6, 8)] {
+        let poles = Poles { count, nearest, delay: 8 };
+        for seed in 0..1000 {
+            let drawn = scenes::rational(&mut ChaCha8Rng::seed_from_u64(seed), poles);
+            compare(&drawn.scene);
+            compare(&Scene { coupling: Coupling::Rigid, ..drawn.scene });
+        }
+    }
+}
