@@ -1,6 +1,6 @@
 //! The stiffest wall that is certified, and what an encoder's step does to its torque.
 
-use firmware::certificate::assess;
+use firmware::certificate::Posed;
 use firmware::environment::{Environment, Wall};
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::{Coupling, Scene, Timing};
@@ -75,7 +75,9 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
 
 /// The largest stiffness of the scene's wall that is certified, everything else as it is.
 pub fn largest_stiffness(scene: &Scene) -> Limit {
-    let passes = |stiffness: f64| assess(&with_wall(scene, stiffness, None)).outcome.is_ok();
+    let passes = |stiffness: f64| {
+        Posed::of(&with_wall(scene, stiffness, None)).is_ok_and(|posed| posed.is_certified())
+    };
     let standard = standard_coupling(scene);
     let (softest, stiffest) = ((SOFT * standard).ln(), (RIGID * standard).ln());
     if passes(stiffest.exp()) {

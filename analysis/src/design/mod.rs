@@ -5,7 +5,7 @@
 //! neighbour among the numbers of `f64` is refused. So every answer is exact and comes as scenes
 //! that certify.
 
-use firmware::certificate::assess;
+use firmware::certificate::Posed;
 use firmware::environment::{Environment, MAX_DELAY, Wall};
 use firmware::scene::{Coupling, Scene};
 
@@ -120,7 +120,7 @@ pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
 }
 
 fn passes(scene: &Scene) -> bool {
-    assess(scene).outcome.is_ok()
+    Posed::of(scene).is_ok_and(|posed| posed.is_certified())
 }
 
 /// The most of a quantity that may be rendered, everything else as in the scene.

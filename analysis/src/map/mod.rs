@@ -7,7 +7,7 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use firmware::certificate::{Answer, assess};
+use firmware::certificate::{Posed, assess};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Scene;
 use rayon::prelude::*;
@@ -118,13 +118,10 @@ impl Family {
         if !self.plant.is_stable_under(&scene).unwrap_or(false) {
             return Region::Unstable;
         }
-        let assessment = assess(&scene);
-        if assessment.paper == Answer::Pass {
-            Region::Paper
-        } else if assessment.exact == Answer::Pass {
-            Region::Exact
-        } else {
-            Region::Stable
+        match Posed::of(&scene) {
+            Ok(posed) if posed.passes_paper() => Region::Paper,
+            Ok(posed) if posed.passes_exact() => Region::Exact,
+            _ => Region::Stable,
         }
     }
 

@@ -1,3 +1,5 @@
+use firmware::certificate::Answer;
+
 use super::border::closed_form_border;
 use super::*;
 use crate::file::{Format, parse};
