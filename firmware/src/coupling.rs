@@ -28,6 +28,19 @@ pub enum Offer<N> {
     LineAndWall(N, Contact<N>),
 }
 
+impl<N: Number> Offer<N> {
+    /// The same with a torque (N m) added that does not depend on this tick's position.
+    #[inline(always)]
+    pub(crate) fn plus(self, torque: N) -> Self {
+        match self {
+            Self::Held(held) => Self::Held(held.plus(torque)),
+            Self::Line(line) => Self::Line(line.plus(torque)),
+            Self::Wall(contact) => Self::LineAndWall(torque, contact),
+            Self::LineAndWall(line, contact) => Self::LineAndWall(line.plus(torque), contact),
+        }
+    }
+}
+
 /// A one-sided wall at `x_E = x`.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<N> {

@@ -122,6 +122,12 @@ impl Position {
         Reading { count: if self.laps < 0 { i32::MIN } else { i32::MAX }, saturated: true }
     }
 
+    /// The low 32 bits of the position.
+    #[inline(always)]
+    pub(crate) const fn low(&self) -> i32 {
+        self.count
+    }
+
     /// The position in counts.
     pub const fn count(&self) -> i64 {
         ((self.laps as i64) << 32) + self.count as i64

@@ -12,12 +12,19 @@ pub mod encoder;
 pub mod coupling;
 pub mod environment;
 
+pub mod energy;
 pub mod torque;
 
 pub mod dac;
 
 // What a device is measured with, before anything is certified for it.
 pub mod excitation;
+
+// What carries the servo on a board: one interrupt a period, from reset to fault.
+pub mod boot;
+pub mod cycle;
+pub mod fault;
+pub mod tuning;
 
 pub mod certificate;
 pub mod passivity;

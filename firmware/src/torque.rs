@@ -21,12 +21,14 @@ pub enum LimitReason {
     Angle = 3,
     /// The torque was not a number; no torque was given.
     NotANumber = 4,
+    /// The clamp is still opening, closing or shut.
+    Ramp = 5,
 }
 
 impl LimitReason {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 5] =
-        [Self::None, Self::Torque, Self::Converter, Self::Angle, Self::NotANumber];
+    pub const ALL: [Self; 6] =
+        [Self::None, Self::Torque, Self::Converter, Self::Angle, Self::NotANumber, Self::Ramp];
 
     /// The reason in one word, for tables.
     pub const fn as_str(self) -> &'static str {
@@ -36,6 +38,7 @@ impl LimitReason {
             Self::Converter => "converter",
             Self::Angle => "angle",
             Self::NotANumber => "not-a-number",
+            Self::Ramp => "ramp",
         }
     }
 }
@@ -46,35 +49,76 @@ impl fmt::Display for LimitReason {
     }
 }
 
-/// Clamps the coupling torque to `-bound..=bound`.
+/// Clamps the coupling torque to `-level..=level`.
+///
+/// The level is the scene's bound, except while the servo fades in or out: then it moves by a
+/// fixed step a tick. What is ramped is the clamp and never the stiffness, since a changing
+/// stiffness is outside the certificate and a clamp is inside (theory, end of section 5); opening
+/// it can release at most what the environment stores at its present depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter<N> {
+    level: N,
     bound: N,
+    step: N,
     reason: LimitReason,
 }
 
 impl<N: Number> Limiter<N> {
-    /// A limiter with its bound in N m, and the reason that it reports; with an infinite bound only
-    /// what is not a number is limited.
+    /// An open limiter with its bound in N m, and the reason that it reports; with an infinite
+    /// bound only what is not a number is limited. It opens and closes in one step.
     pub const fn new(bound: N, reason: LimitReason) -> Self {
-        Self { bound, reason }
+        Self { level: bound, bound, step: bound, reason }
+    }
+
+    /// The same, opening and closing by `step` N m a tick.
+    pub(crate) const fn stepping(self, step: N) -> Self {
+        Self { step, ..self }
     }
 
     /// The torque within bounds, and why it is not the one asked for; `otherwise` where it is.
     #[inline(always)]
     pub fn limit(&self, wanted: N, otherwise: LimitReason) -> (N, LimitReason) {
-        if wanted.within(self.bound) {
+        if wanted.within(self.level) {
             return (wanted, otherwise);
         }
         // Rare: keeps the usual way through the tick free of jumps.
         cold_path();
+        let reason = if self.level < self.bound { LimitReason::Ramp } else { self.reason };
         if wanted > N::ZERO {
-            (self.bound, self.reason)
+            (self.level, reason)
         } else if wanted < N::ZERO {
-            (self.bound.negated(), self.reason)
+            (self.level.negated(), reason)
         } else {
             (N::ZERO, LimitReason::NotANumber)
         }
+    }
+
+    /// Lets no torque through.
+    pub(crate) fn shut(&mut self) {
+        self.level = N::ZERO;
+    }
+
+    /// Whether no torque gets through.
+    pub(crate) fn is_shut(&self) -> bool {
+        self.level <= N::ZERO
+    }
+
+    /// Closes as far as `torque` (N m) needs, so that closing further acts at once.
+    pub(crate) fn meet(&mut self, torque: N) {
+        let magnitude = torque.larger(torque.negated());
+        self.level = self.level.smaller(magnitude);
+    }
+
+    /// Opens by a step; gives whether it is now open.
+    pub(crate) fn open(&mut self) -> bool {
+        self.level = self.level.plus(self.step).smaller(self.bound);
+        self.level >= self.bound
+    }
+
+    /// Closes by a step; gives whether it is now shut.
+    pub(crate) fn close(&mut self) -> bool {
+        self.level = self.level.minus(self.step).positive_part();
+        self.is_shut()
     }
 }
 
@@ -96,8 +140,29 @@ mod tests {
     }
 
     #[test]
+    fn opens_and_closes_by_steps() {
+        let mut limiter = Limiter::new(2.0_f32, LimitReason::Torque).stepping(0.75);
+        assert!(!limiter.is_shut());
+        limiter.meet(-1.0);
+        assert_eq!(limiter.limit(1.5, LimitReason::None), (1.0, LimitReason::Ramp));
+        assert!(!limiter.close());
+        assert_eq!(limiter.limit(-1.5, LimitReason::Angle), (-0.25, LimitReason::Ramp));
+        assert_eq!(limiter.limit(0.25, LimitReason::Angle), (0.25, LimitReason::Angle));
+        assert!(limiter.close() && limiter.is_shut());
+        assert_eq!(limiter.limit(-1.5, LimitReason::None), (0.0, LimitReason::Ramp));
+        assert_eq!(limiter.limit(0.0, LimitReason::None), (0.0, LimitReason::None));
+        assert_eq!(limiter.limit(f32::NAN, LimitReason::None), (0.0, LimitReason::NotANumber));
+        assert!(!limiter.open() && !limiter.open() && limiter.open());
+        assert_eq!(limiter.limit(2.5, LimitReason::None), (2.0, LimitReason::Torque));
+        // What holds more than the level lets through does not open it.
+        limiter.shut();
+        limiter.meet(1.0);
+        assert!(limiter.is_shut());
+    }
+
+    #[test]
     fn has_a_word_for_every_reason() {
-        let words = ["none", "torque", "converter", "angle", "not-a-number"];
+        let words = ["none", "torque", "converter", "angle", "not-a-number", "ramp"];
         assert_eq!(LimitReason::ALL.map(LimitReason::as_str), words);
         for (number, reason) in LimitReason::ALL.into_iter().enumerate() {
             assert_eq!((reason as usize, reason.to_string()), (number, words[number].to_owned()));

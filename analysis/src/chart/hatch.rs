@@ -27,6 +27,8 @@ pub enum Ground {
     Crossed,
     /// Level lines.
     Level,
+    /// Upright lines.
+    Upright,
 }
 
 impl Ground {
@@ -38,6 +40,7 @@ impl Ground {
             Served::Ran(LimitReason::Converter) => Some(Self::Rising),
             Served::Ran(LimitReason::Angle) => Some(Self::Falling),
             Served::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
+            Served::Ran(LimitReason::Ramp) => Some(Self::Upright),
             Served::Missed => Some(Self::Level),
         }
     }
@@ -53,6 +56,7 @@ impl Ground {
             Self::Falling => falling(x, y),
             Self::Crossed => [rising(x, y), falling(x, y)].concat(),
             Self::Level => on_grid(y).map(|level| [(x.start, level), (x.end, level)]).collect(),
+            Self::Upright => on_grid(x).map(|at| [(at, y.start), (at, y.end)]).collect(),
         };
         for line in lines {
             area.draw(&PathElement::new(line.to_vec(), INK.stroke_width(UNITS)))?;

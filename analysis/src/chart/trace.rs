@@ -169,13 +169,14 @@ fn write_grounds(area: &Area<'_>, reasons: &[(Served, Ground)]) -> Drawn<()> {
 
 /// What a ground means.
 fn name(served: Served) -> &'static str {
-    use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Torque};
+    use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Ramp, Torque};
     match served {
         Served::Ran(None) => "not limited",
         Served::Ran(Torque) => "torque limit",
         Served::Ran(Converter) => "converter limit",
         Served::Ran(Angle) => "angle out of range",
         Served::Ran(NotANumber) => "not a number",
+        Served::Ran(Ramp) => "fading in or out",
         Served::Missed => "tick missed",
     }
 }

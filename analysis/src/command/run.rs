@@ -206,6 +206,7 @@ fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
         counts_per_turn: arguments.counts_per_rev.or(from_step).unwrap_or(COUNTS_PER_TURN),
         counter: CounterWidth::Bits32,
         full_scale_torque: arguments.full_scale.or(file.scene.torque_limit).unwrap_or(FULL_SCALE),
+        largest_speed: Transducers::NO_HAND_IS_FASTER,
     };
     let controller = match arguments.format {
         FormatArgument::F32 => controller::<_, f32>(&certified, &transducers)?,

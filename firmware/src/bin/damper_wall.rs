@@ -28,6 +28,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 2.0,
+    largest_speed: 100.0,
 };
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.

@@ -32,6 +32,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 0.25,
+    largest_speed: 100.0,
 };
 
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.

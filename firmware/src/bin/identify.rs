@@ -13,6 +13,7 @@ pub const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 2.0,
+    largest_speed: 100.0,
 };
 
 /// Sampling period in s: that of the scenes which the device is to be certified for.

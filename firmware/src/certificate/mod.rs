@@ -34,6 +34,7 @@ mod posed;
 mod rejection;
 mod remedy;
 mod rules;
+mod timed;
 
 pub use assumption::{Assumption, Assumptions};
 pub use model::Loop;
@@ -42,9 +43,11 @@ pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Relation, Remedies, Remedy};
 pub use rules::{Answer, Assessment, Rule, assess, gamma};
+pub use timed::{Timed, TimingError};
 
 use crate::environment::*;
 use crate::scene::Scene;
+use crate::servo::{OutputMode, Renders};
 
 /// A scene that was proved passive.
 ///
@@ -79,8 +82,8 @@ pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
 
 /// Stops the compiler with the sentence, at the line of the scene that is refused.
 #[track_caller]
-const fn refuse(rejection: &Rejection) -> ! {
-    panic!("{}", rejection.sentence().as_str())
+const fn refuse(sentence: &Sentence) -> ! {
+    panic!("{}", sentence.as_str())
 }
 
 macro_rules! certify_for {
@@ -113,7 +116,40 @@ macro_rules! certify_for {
             pub const fn certified(self) -> Certified<Self> {
                 match self.certify() {
                     Ok(certified) => certified,
-                    Err(rejection) => refuse(&rejection),
+                    Err(rejection) => refuse(&rejection.sentence()),
+                }
+            }
+        }
+
+        impl<$($generics)*> Certified<Scene<$environment>> {
+            /// Pairs the scene with the mode in which a board puts its torques out.
+            ///
+            /// # Errors
+            /// Where they do not agree; see [`TimingError`].
+            pub const fn time<M: OutputMode>(
+                self,
+            ) -> Result<Timed<Scene<$environment>, M>, TimingError>
+            where
+                $environment: Renders<M>,
+            {
+                match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
+                    Ok(room) => Ok(Timed::new(self, room)),
+                    Err(error) => Err(error),
+                }
+            }
+
+            /// For constants: the timed scene, or a compile error that says why not.
+            ///
+            /// # Panics
+            /// If scene and mode do not agree; in a constant that is the compile error.
+            #[track_caller]
+            pub const fn timed<M: OutputMode>(self) -> Timed<Scene<$environment>, M>
+            where
+                $environment: Renders<M>,
+            {
+                match self.time() {
+                    Ok(timed) => timed,
+                    Err(error) => refuse(&error.sentence()),
                 }
             }
         }

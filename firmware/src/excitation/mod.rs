@@ -15,6 +15,7 @@
 //!     counts_per_turn: 61_440.0,
 //!     counter: CounterWidth::Bits16,
 //!     full_scale_torque: 2.0,
+//!     largest_speed: 100.0,
 //! };
 //! const SWEEP: Sweep<1> = Sweep::planned(
 //!     0.001,

@@ -49,6 +49,20 @@ pub enum BuildError {
         /// Degree of the denominator.
         denominator: usize,
     },
+    /// The scene's certificate has no room for damping that is switched on and off.
+    Injection {
+        /// The damping in N m s/rad.
+        damping: f64,
+        /// What it has to stay below in N m s/rad.
+        room: f64,
+    },
+    /// The encoder's counter would wrap unseen at the largest speed.
+    Speed {
+        /// Counts between two ticks at the largest speed.
+        counts: f64,
+        /// Half the counter's range.
+        half: f64,
+    },
 }
 
 impl BuildError {
@@ -100,6 +114,18 @@ impl fmt::Display for BuildError {
                 f,
                 "a numerator of degree {numerator} over a denominator of degree {denominator} \
                  needs samples from the future"
+            ),
+            Self::Injection { damping, room } => write!(
+                f,
+                "a damping of {damping} N m s/rad that is switched on and off uses up as much of \
+                 the device's passivity, of which this scene leaves less than {room} N m s/rad: \
+                 inject less, or make the scene softer"
+            ),
+            Self::Speed { counts, half } => write!(
+                f,
+                "at the largest speed the encoder may move by {counts} counts between two \
+                 ticks, of which its counter tells only those below {half}: a shorter worst \
+                 period or a wider counter tells them all"
             ),
         }
     }

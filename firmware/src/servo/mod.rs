@@ -1,15 +1,23 @@
 //! One tick: encoder count in, converter code out.
 
 mod build_error;
+mod clamp;
+mod mode;
+mod render_error;
+mod rendering;
 mod transducers;
 
 pub use build_error::BuildError;
+pub use mode::{Delayed, Immediate, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
+pub use render_error::RenderError;
+pub use rendering::{Pace, Rendering, RenderingOptions};
 pub use transducers::Transducers;
 
 use crate::certificate::Certified;
-use crate::coupling::Solver;
+use crate::coupling::{Offer, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
+use crate::energy::{Action, NoAction};
 use crate::environment::{Law, Renderable, Setting};
 use crate::number::Number;
 use crate::scene::Scene;
@@ -43,6 +51,7 @@ pub struct Output {
 ///     counts_per_turn: 61_440.0,
 ///     counter: CounterWidth::Bits32,
 ///     full_scale_torque: 1.0,
+///     largest_speed: 100.0,
 /// };
 /// let mut servo: Servo<_, f32> = Servo::new(&scene.certified(), &transducers)?;
 /// assert_eq!(servo.tick(RawCount::from(100_u32)).code.get(), 2048); // one sample late
@@ -93,13 +102,66 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// no division, no allocation, and nothing that could panic.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount) -> Output {
+        self.simultaneous(raw, &mut NoAction)
+    }
+
+    /// One tick in the mode `M`, with an action that adds a torque.
+    #[inline(always)]
+    pub(crate) fn timed_tick<M: OutputMode>(
+        &mut self,
+        raw: RawCount,
+        action: &mut impl Action<N>,
+    ) -> Output {
+        match M::TIMING {
+            OutputTiming::Simultaneous => self.simultaneous(raw, action),
+            OutputTiming::Immediate { .. } | OutputTiming::Latched => self.ahead(raw, action),
+        }
+    }
+
+    /// The code that belongs to the same instant as the count.
+    #[inline(always)]
+    fn simultaneous(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
+        let (x, fits) = self.angle(raw);
+        let offer = action.add_to(self.law.offer(x));
+        let output = self.answer(offer, fits);
+        self.advance(x, action);
+        output
+    }
+
+    /// The code of the *next* tick, which does not depend on the next tick's count, since the
+    /// environment is late by at least one sample: to the bit the code that
+    /// [`Servo::simultaneous`] would give in the tick after this one.
+    #[inline(always)]
+    fn ahead(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
+        let (x, fits) = self.angle(raw);
+        // The torque of this tick was computed in the one before.
+        self.advance(x, action);
+        let offer = action.add_to(self.law.offer(x));
+        self.answer(offer, fits)
+    }
+
+    /// Ends the tick with the device at `x` (rad) under this tick's torque.
+    #[inline(always)]
+    fn advance(&mut self, x: N, action: &mut impl Action<N>) {
+        let x_e = self.solver.environment_position(x, self.torque);
+        self.law.advance(x_e);
+        action.advance(x_e);
+    }
+
+    /// The device's angle in rad, and whether the number format holds it.
+    #[inline(always)]
+    fn angle(&mut self, raw: RawCount) -> (N, bool) {
         let reading = self.position.update(raw);
         let (x, fits) = N::angle(reading.count, self.angle_scale);
-        let saturated = reading.saturated || !fits;
-        let wanted = self.solver.torque(self.law.offer(x));
-        let standing_still = if saturated { LimitReason::Angle } else { LimitReason::None };
+        (x, fits && !reading.saturated)
+    }
+
+    /// Solves coupling and environment with the limited torque, which is then that of this tick.
+    #[inline(always)]
+    fn answer(&mut self, offer: Offer<N>, fits: bool) -> Output {
+        let wanted = self.solver.torque(offer);
+        let standing_still = if fits { LimitReason::None } else { LimitReason::Angle };
         let (torque, limit) = self.limiter.limit(wanted, standing_still);
-        self.law.advance(self.solver.environment_position(x, torque));
         self.torque = torque;
         // The motor pushes against the coupling's deflection.
         let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);
@@ -117,6 +179,12 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// Position in counts.
     pub const fn count(&self) -> i64 {
         self.position.count()
+    }
+
+    /// The position's low 32 bits: its differences are steps.
+    #[inline(always)]
+    pub(crate) const fn low_count(&self) -> i32 {
+        self.position.low()
     }
 
     /// Angle of the device in rad.

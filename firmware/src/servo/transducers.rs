@@ -17,9 +17,16 @@ pub struct Transducers {
     pub counter: CounterWidth,
     /// Torque of the motor on the device's axis in N m at the converter's largest code.
     pub full_scale_torque: f64,
+    /// The fastest in rad/s that the device can turn in any hand: a count that needs more speed
+    /// than this is a broken encoder, and a fault.
+    pub largest_speed: f64,
 }
 
 impl Transducers {
+    /// A speed in rad/s that no hand reaches at a paddle or a knob, 16 turns a second: for
+    /// [`Transducers::largest_speed`] where the device is not known better.
+    pub const NO_HAND_IS_FASTER: f64 = 100.0;
+
     pub(super) fn radians_per_count(&self) -> Result<f64, BuildError> {
         let counts = self.counts_per_turn;
         BuildError::unless_positive("counts per turn", counts)?;
@@ -30,6 +37,28 @@ impl Transducers {
         let full_scale = self.full_scale_torque;
         BuildError::unless_positive("full-scale torque", full_scale)?;
         Ok(f64::from(DacCode::CODES_TO_FULL_SCALE) / full_scale)
+    }
+
+    /// The most counts that the encoder can move in `time` s, and one for its edges.
+    ///
+    /// # Errors
+    /// Where the counter would wrap unseen in that time.
+    pub(crate) fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
+        let speed = self.largest_speed;
+        BuildError::unless_positive("largest speed", speed)?;
+        let counts = speed * time / self.radians_per_count()? + 1.0;
+        let half = match self.counter {
+            CounterWidth::Bits16 => f64::from(1_u32 << 15),
+            CounterWidth::Bits32 => f64::from(1_u32 << 31),
+        };
+        // Written so that NaN is refused.
+        if counts < half { Ok(counts as u32) } else { Err(BuildError::Speed { counts, half }) }
+    }
+
+    /// Energy in J of one count against one code: the unit of the energy monitor.
+    pub fn energy_unit(&self) -> f64 {
+        TAU / self.counts_per_turn * self.full_scale_torque
+            / f64::from(DacCode::CODES_TO_FULL_SCALE)
     }
 
     /// The limiter of a scene's torque limit, or else of the converter's range.

@@ -15,6 +15,7 @@ const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 4096.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 2.0,
+    largest_speed: 100.0,
 };
 
 fn main() {

@@ -18,6 +18,7 @@ const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits32,
     full_scale_torque: 1.0,
+    largest_speed: 100.0,
 };
 const TICKS: usize = 150;
 

@@ -174,7 +174,7 @@ proptest! {
             torque_limit,
         };
         let counter = if narrow { CounterWidth::Bits16 } else { CounterWidth::Bits32 };
-        let transducers = Transducers { counts_per_turn, counter, full_scale_torque };
+        let transducers = Transducers { counts_per_turn, counter, full_scale_torque, ..TRANSDUCERS };
         endures::<f32>(&scene, &transducers, &raw);
         endures::<f64>(&scene, &transducers, &raw);
         endures::<FixedI32<U16>>(&scene, &transducers, &raw);

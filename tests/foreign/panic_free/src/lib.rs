@@ -16,6 +16,7 @@ const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 1.0,
+    largest_speed: 100.0,
 };
 
 fn scene<E>(environment: E) -> Scene<E> {

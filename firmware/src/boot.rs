@@ -1,0 +1,85 @@
+//! From reset to a servo that may run, in an order in which nothing can move by surprise:
+//! amplifier off, converter at mid-scale, self-check, encoder zeroed, watchdog; and then, in the
+//! servo's first tick, amplifier on, and from there on the clamp opens step by step.
+
+use core::hint::black_box;
+
+use crate::cycle::{Cycle, Hardware, Options, Requests};
+use crate::dac::DacCode;
+use crate::fault::{Fault, Retained};
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+use crate::tuning::{self, Tunable};
+
+/// What a board has besides, before its servo runs.
+pub trait Startup: Hardware {
+    /// Sets the encoder's counter to zero: where the device is now is its zero.
+    fn zero(&mut self);
+    /// Starts the watchdog. From here on only the servo feeds it.
+    fn guard(&mut self);
+    /// The words that outlived the reset; see [`Retained`].
+    fn kept(&mut self) -> [u32; Retained::WORDS];
+    /// Whether the watchdog was the reset's cause.
+    fn was_reset_by_watchdog(&mut self) -> bool;
+    /// Timer counts in the servo's period.
+    fn period(&self) -> u32;
+}
+
+/// What a program brings.
+#[derive(Clone, Copy, Debug)]
+pub struct Program<E> {
+    /// The scene that was certified when the program was compiled.
+    pub scene: Scene<E>,
+    /// Sensor and motor.
+    pub transducers: Transducers,
+    /// How the scene is rendered.
+    pub rendering: RenderingOptions,
+    /// What the cycle does beside it.
+    pub options: Options,
+}
+
+/// A cycle that may run, and what was left from before the reset.
+pub type Booted<E, N, M> = (Cycle<E, N, M>, Option<Retained>);
+
+/// Everything up to the first tick. Arms the servo, unless something was left from before the
+/// reset: then it stays off until somebody arms it.
+///
+/// # Errors
+/// Where the self-check fails. The amplifier is off and the converter at mid-scale then.
+pub fn boot<E, N, M>(
+    program: &Program<E>,
+    hardware: &mut impl Startup,
+    requests: &Requests<'_, Rendering<E, N, M>>,
+) -> Result<Booted<E, N, M>, RenderError>
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    hardware.amplifier(false);
+    hardware.write(DacCode::MID_SCALE);
+    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
+    let scene = black_box(program.scene);
+    let (_, rendering) = tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
+    hardware.zero();
+    let left = left(hardware);
+    let fault = left.map(|left| left.fault);
+    let cycle = Cycle::new(rendering, &program.options, hardware.period(), fault);
+    hardware.guard();
+    if left.is_none() {
+        requests.arm();
+    }
+    Ok((cycle, left))
+}
+
+/// What was left from before the reset.
+fn left(hardware: &mut impl Startup) -> Option<Retained> {
+    let by_watchdog = hardware.was_reset_by_watchdog();
+    // A panic or a hard fault lets the watchdog reset the board: what it wrote says more.
+    Retained::decode(&hardware.kept()).or(by_watchdog.then_some(Retained {
+        fault: Fault::Watchdog,
+        tick: 0,
+        count: 0,
+    }))
+}

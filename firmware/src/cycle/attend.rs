@@ -1,0 +1,156 @@
+//! What a tick does beside rendering while the servo is not simply running: requests, ramps and
+//! swaps. Kept out of line, so that the usual tick does not pay for it.
+
+use super::*;
+use crate::environment::MAX_DELAY;
+use crate::fault::Retained;
+
+/// Ticks that a new set runs without torque before its clamp opens: its delay is then full of
+/// samples, and so is the velocity that is delayed with it.
+const SETTLING: u32 = MAX_DELAY as u32 + 2;
+
+impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
+    /// Whatever is not a tick of a running servo that nobody asks anything.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn attend(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        dropped: u32,
+    ) {
+        let asked = inbox.take();
+        if asked.arm {
+            self.arm(hardware, inbox);
+        }
+        if asked.disarm {
+            self.disarm(inbox);
+        }
+        match self.state {
+            State::Running => self.close_for_a_set(inbox),
+            State::FadingIn => self.fade_in(inbox),
+            State::FadingOut => self.fade_out(hardware, inbox),
+            State::Settling => self.settle(inbox),
+            State::Disarmed | State::Faulted => self.rest(inbox),
+        }
+        if asked.status {
+            inbox.tell(Notice::Status(self.status(inbox.silent(), dropped)));
+        }
+    }
+
+    fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+        if !self.state.is_armed() {
+            if let Some(fault) = self.persists(inbox.silent()) {
+                return inbox.tell(Notice::NotArmed(fault));
+            }
+            self.fault = None;
+            hardware.keep(&Retained::NOTHING);
+            self.energy.reset();
+            hardware.amplifier(true);
+            self.state = State::FadingIn;
+        }
+        match (self.state, self.goal) {
+            (State::FadingOut, Goal::Stop(fault)) => return inbox.tell(Notice::NotArmed(fault)),
+            (State::FadingOut, Goal::Release) => self.state = State::FadingIn,
+            _ => {}
+        }
+        self.goal = Goal::Render;
+        inbox.tell(Notice::Armed);
+    }
+
+    fn disarm(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+        if self.state.is_armed() {
+            self.begin_fading_out(Goal::Release);
+        } else {
+            inbox.tell(Notice::Disarmed);
+        }
+    }
+
+    /// Closes the clamp from where the torque is, so that the torque moves at once.
+    pub(super) fn begin_fading_out(&mut self, goal: Goal) {
+        self.goal = goal;
+        self.state = State::FadingOut;
+        self.rendering.servo_mut().meet();
+    }
+
+    fn close_for_a_set(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
+        if inbox.has_set() {
+            self.begin_fading_out(Goal::Render);
+        }
+    }
+
+    fn fade_in(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
+        if inbox.has_set() {
+            self.begin_fading_out(Goal::Render);
+        } else if self.rendering.servo_mut().open() {
+            self.state = State::Running;
+        }
+    }
+
+    fn fade_out(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) {
+        // Shut before this tick, so that this tick's code was mid-scale.
+        if !self.rendering.servo().is_shut() {
+            self.rendering.servo_mut().close();
+            return;
+        }
+        match self.goal {
+            Goal::Render => {
+                self.swap(inbox);
+                self.settling = SETTLING;
+                self.state = State::Settling;
+            }
+            Goal::Release => {
+                hardware.amplifier(false);
+                self.state = State::Disarmed;
+                inbox.tell(Notice::Disarmed);
+            }
+            Goal::Stop(fault) => self.stop(fault, hardware, inbox),
+        }
+    }
+
+    fn settle(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+        if self.swap(inbox) {
+            self.settling = SETTLING;
+        }
+        self.settling = self.settling.saturating_sub(1);
+        if self.settling == 0 {
+            self.state = State::FadingIn;
+        }
+    }
+
+    /// A tick without amplifier.
+    fn rest(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+        self.swap(inbox);
+        self.calm = self.calm.saturating_add(1);
+    }
+
+    /// Puts the set that waits in the place of the running one, between two ticks and whole. To be
+    /// called with the clamp shut: the new set's is, too.
+    fn swap(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) -> bool {
+        let Some(mut set) = inbox.set() else { return false };
+        set.servo_mut().follow(self.rendering.servo());
+        self.rendering = set;
+        inbox.tell(Notice::Applied);
+        true
+    }
+
+    fn status(&self, silent: u32, dropped: u32) -> Status {
+        Status {
+            state: self.state,
+            fault: self.fault,
+            tick: self.tick,
+            count: self.rendering.servo().count(),
+            period: self.period,
+            worst_slack: self.worst_slack,
+            missed: self.missed,
+            dropped,
+            energy: self.energy.net(),
+            worst_deficit: self.energy.worst(),
+            link_lost: self.link != LinkPolicy::Ignore && silent >= self.link_timeout,
+        }
+    }
+}

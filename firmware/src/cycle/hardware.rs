@@ -1,0 +1,29 @@
+//! What a board gives the servo's interrupt.
+
+use crate::dac::DacCode;
+use crate::encoder::RawCount;
+use crate::fault::Retained;
+
+/// The board in the servo's interrupt: each method is an access or two to a register.
+pub trait Hardware {
+    /// The encoder's counter.
+    fn count(&mut self) -> RawCount;
+    /// Gives a code to the converter; when it reaches the motor is the mode's matter.
+    fn write(&mut self, code: DacCode);
+    /// Switches the motor's amplifier.
+    fn amplifier(&mut self, on: bool);
+    /// Whole periods that began since the last call: 1 in time, more where ticks were missed.
+    fn passed(&mut self) -> u32;
+    /// Timer counts since the period of this tick began; at least a period once the next one has
+    /// begun.
+    fn elapsed(&mut self) -> u32;
+    /// Whether the converter wanted a code before there was one, since the last call.
+    #[inline(always)]
+    fn underrun(&mut self) -> bool {
+        false
+    }
+    /// Feeds the watchdog.
+    fn feed(&mut self);
+    /// Keeps a [`Retained`] record in memory that outlives a reset, or clears it. Rare.
+    fn keep(&mut self, _record: &[u32; Retained::WORDS]) {}
+}

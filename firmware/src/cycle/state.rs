@@ -1,0 +1,93 @@
+//! What the servo is doing, and what it tells those who ask.
+
+use core::fmt;
+
+use crate::fault::Fault;
+
+/// What the servo is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum State {
+    /// The amplifier is off.
+    #[default]
+    Disarmed = 0,
+    /// The clamp is opening.
+    FadingIn = 1,
+    /// The scene is felt.
+    Running = 2,
+    /// The clamp is closing, to disarm or to swap a set of parameters in.
+    FadingOut = 3,
+    /// The clamp is shut while a new set fills its memory with samples.
+    Settling = 4,
+    /// A fault stopped it; the amplifier is off.
+    Faulted = 5,
+}
+
+impl State {
+    /// The state in one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Disarmed => "disarmed",
+            Self::FadingIn => "fading-in",
+            Self::Running => "running",
+            Self::FadingOut => "fading-out",
+            Self::Settling => "settling",
+            Self::Faulted => "faulted",
+        }
+    }
+
+    /// Whether the amplifier is on.
+    pub const fn is_armed(self) -> bool {
+        !matches!(self, Self::Disarmed | Self::Faulted)
+    }
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// What the servo says of itself when it is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// What it is doing.
+    pub state: State,
+    /// The fault that stopped it, or that was left from before the last reset; until it is armed.
+    pub fault: Option<Fault>,
+    /// Periods since the start, wrapping.
+    pub tick: u32,
+    /// Position in counts.
+    pub count: i64,
+    /// Timer counts in a period.
+    pub period: u32,
+    /// The least timer counts that were left of a period since the start.
+    pub worst_slack: u32,
+    /// Updates missed since the start.
+    pub missed: u32,
+    /// Frames dropped since the start.
+    pub dropped: u32,
+    /// Net energy put into the hand since the servo was armed, in counts times codes.
+    pub energy: i64,
+    /// The worst deficit since then, in counts times codes.
+    pub worst_deficit: i64,
+    /// Whether the host has been silent for too long.
+    pub link_lost: bool,
+}
+
+/// What the interrupt tells the low-priority side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// The answer to a question for the status.
+    Status(Status),
+    /// The servo is armed, or was so already.
+    Armed,
+    /// The servo was not armed: what stopped it is still there.
+    NotArmed(Fault),
+    /// The amplifier is off.
+    Disarmed,
+    /// The submitted set is now the one that runs.
+    Applied,
+    /// The servo has stopped.
+    Stopped(Fault),
+}

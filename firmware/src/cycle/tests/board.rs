@@ -1,0 +1,163 @@
+//! A board that exists in memory only, and remembers what was done to it.
+
+use heapless::spsc::Consumer;
+
+use super::*;
+use crate::boot::{Program, Startup, boot};
+use crate::encoder::RawCount;
+use crate::fault::Retained;
+use crate::servo::{RenderError, Renders};
+use crate::tuning::Tunable;
+
+/// Timer counts in a period of every board here.
+pub const PERIOD: u32 = 1000;
+
+/// What was done to the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    Amplifier(bool),
+    Write(u16),
+    Zero,
+    Guard,
+    Feed,
+}
+
+pub struct Board {
+    pub events: Vec<Event>,
+    pub count: i32,
+    /// What the next tick finds; in time and without trouble again after it.
+    pub passed: u32,
+    pub elapsed: u32,
+    pub underrun: bool,
+    pub kept: [u32; Retained::WORDS],
+    pub by_watchdog: bool,
+}
+
+impl Board {
+    pub fn new() -> Self {
+        Self {
+            events: Vec::new(),
+            count: 0,
+            passed: 1,
+            elapsed: 300,
+            underrun: false,
+            kept: Retained::NOTHING,
+            by_watchdog: false,
+        }
+    }
+
+    /// Whether the amplifier is on; it is off out of reset.
+    pub fn is_on(&self) -> bool {
+        let switched = self.events.iter().rev().find_map(|event| match event {
+            Event::Amplifier(on) => Some(*on),
+            _ => None,
+        });
+        switched.unwrap_or(false)
+    }
+
+    /// The codes that were written, in order.
+    pub fn codes(&self) -> Vec<i32> {
+        let code = |event: &Event| match event {
+            Event::Write(code) => Some(i32::from(*code)),
+            _ => None,
+        };
+        self.events.iter().filter_map(code).collect()
+    }
+}
+
+impl Hardware for Board {
+    fn count(&mut self) -> RawCount {
+        RawCount::from(self.count)
+    }
+    fn write(&mut self, code: DacCode) {
+        self.events.push(Event::Write(code.get()));
+    }
+    fn amplifier(&mut self, on: bool) {
+        self.events.push(Event::Amplifier(on));
+    }
+    fn passed(&mut self) -> u32 {
+        core::mem::replace(&mut self.passed, 1)
+    }
+    fn elapsed(&mut self) -> u32 {
+        core::mem::replace(&mut self.elapsed, 300)
+    }
+    fn underrun(&mut self) -> bool {
+        core::mem::take(&mut self.underrun)
+    }
+    fn feed(&mut self) {
+        self.events.push(Event::Feed);
+    }
+    fn keep(&mut self, record: &[u32; Retained::WORDS]) {
+        self.kept = *record;
+    }
+}
+
+impl Startup for Board {
+    fn zero(&mut self) {
+        self.events.push(Event::Zero);
+        self.count = 0;
+    }
+    fn guard(&mut self) {
+        self.events.push(Event::Guard);
+    }
+    fn kept(&mut self) -> [u32; Retained::WORDS] {
+        self.kept
+    }
+    fn was_reset_by_watchdog(&mut self) -> bool {
+        self.by_watchdog
+    }
+    fn period(&self) -> u32 {
+        PERIOD
+    }
+}
+
+/// A board with its cycle, and both ends of what connects it.
+pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
+    pub board: Board,
+    pub cycle: Cycle<E, N, M>,
+    pub inbox: Inbox<'static, Rendering<E, N, M>>,
+    pub requests: Requests<'static, Rendering<E, N, M>>,
+    pub frames: Frames<'static>,
+    pub seen: Consumer<'static, Frame>,
+    pub left: Option<Retained>,
+}
+
+impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
+    /// Boots the board.
+    pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
+        let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
+        let (frames, seen) = Box::leak(Box::new(FrameQueue::<9>::new())).split();
+        let (cycle, left) = boot(program, &mut board, &requests)?;
+        Ok(Self { board, cycle, inbox, requests, frames, seen, left })
+    }
+
+    /// One tick with the device at this count; gives its frame.
+    pub fn tick(&mut self, count: i32) -> Frame {
+        self.board.count = count;
+        self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
+        self.seen.dequeue().expect("every tick leaves a frame")
+    }
+
+    /// Ticks with the device standing still.
+    pub fn stand(&mut self, count: i32, ticks: usize) {
+        for _ in 0..ticks {
+            self.tick(count);
+        }
+    }
+
+    /// All notices so far.
+    pub fn notices(&mut self) -> Vec<Notice> {
+        core::iter::from_fn(|| self.requests.notice()).collect()
+    }
+
+    /// The status, a tick later.
+    pub fn status(&mut self) -> Status {
+        self.requests.ask_status();
+        self.tick(self.board.count);
+        let status = self.notices().into_iter().rev().find_map(|notice| match notice {
+            Notice::Status(status) => Some(status),
+            _ => None,
+        });
+        status.expect("an answer")
+    }
+}

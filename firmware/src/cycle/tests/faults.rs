@@ -1,0 +1,200 @@
+//! What stops the servo, one test each; and that arming again is refused while the cause is there.
+
+use super::*;
+
+/// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
+fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
+    assert_eq!(bench.cycle.state(), State::Faulted);
+    assert_eq!(bench.cycle.fault(), Some(fault));
+    assert!(!bench.board.is_on());
+    assert_eq!(bench.board.codes().last(), Some(&2048));
+    assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
+    let kept = Retained::decode(&bench.board.kept).unwrap();
+    assert_eq!((kept.fault, kept.count), (fault, bench.board.count));
+    // It stays so, and there is no torque whatever the device does.
+    bench.board.events.clear();
+    bench.stand(bench.board.count, 50);
+    assert!(bench.board.codes().iter().all(|code| *code == 2048) && !bench.board.is_on());
+    assert_eq!(bench.cycle.fault(), Some(fault));
+}
+
+/// Arms again, which works: the clamp opens from nothing.
+fn assert_armed_again(bench: &mut Bench<Spring, f32, Latched>) {
+    bench.requests.arm();
+    bench.stand(bench.board.count, 102);
+    assert_eq!(bench.notices(), [Notice::Armed]);
+    assert_eq!((bench.cycle.state(), bench.cycle.fault()), (State::Running, None));
+    assert!(bench.board.is_on());
+    assert_eq!(bench.board.kept, Retained::NOTHING);
+}
+
+#[test]
+fn a_tick_that_begins_late() {
+    let mut bench = running(&SPRING, 500);
+    bench.board.passed = 2;
+    let frame = bench.tick(500);
+    assert_eq!((frame.code.get(), frame.state), (2048, State::Faulted));
+    assert_stopped(&mut bench, Fault::MissedTick { missed: 1, tolerated: 0 });
+    assert_eq!(bench.status().missed, 1);
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn a_tick_that_ends_late() {
+    let mut bench = running(&SPRING, 500);
+    bench.board.elapsed = PERIOD;
+    let frame = bench.tick(500);
+    assert_eq!((frame.slack, frame.state), (0, State::Faulted));
+    assert_stopped(&mut bench, Fault::MissedTick { missed: 1, tolerated: 0 });
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn the_worst_period_is_how_many_updates_may_be_missed_in_a_row() {
+    let mut program = SPRING;
+    program.scene.timing.worst_period = Some(3e-3);
+    program.scene.environment.stiffness = 3.0;
+    program.scene.coupling = Coupling::Spring { stiffness: 14.0 };
+    // Two at once, two ticks that end late one after the other, and one of each: tolerated.
+    let mut bench = running(&program, 500);
+    bench.board.passed = 3;
+    bench.tick(500);
+    bench.tick(500);
+    for _ in 0..2 {
+        bench.board.elapsed = PERIOD + 10;
+        bench.tick(500);
+    }
+    bench.tick(500);
+    (bench.board.passed, bench.board.elapsed) = (2, PERIOD);
+    bench.tick(500);
+    bench.tick(500);
+    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.status().missed, 6);
+    // One more than that, each way.
+    let mut bench = running(&program, 500);
+    bench.board.passed = 4;
+    bench.tick(500);
+    assert_stopped(&mut bench, Fault::MissedTick { missed: 3, tolerated: 2 });
+    let mut bench = running(&program, 500);
+    for _ in 0..3 {
+        bench.board.elapsed = PERIOD;
+        bench.tick(500);
+    }
+    assert_stopped(&mut bench, Fault::MissedTick { missed: 3, tolerated: 2 });
+    let mut bench = running(&program, 500);
+    (bench.board.passed, bench.board.elapsed) = (3, PERIOD);
+    bench.tick(500);
+    assert_stopped(&mut bench, Fault::MissedTick { missed: 3, tolerated: 2 });
+}
+
+#[test]
+fn an_encoder_that_jumps() {
+    // 100 rad/s are 977.8 counts a millisecond; one more for the encoder's edges.
+    let mut bench = running(&SPRING, 500);
+    bench.tick(500 + 978);
+    assert_eq!(bench.cycle.state(), State::Running);
+    bench.tick(500 - 1);
+    assert_stopped(&mut bench, Fault::EncoderJump { counts: 979, largest: 978 });
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn an_encoder_that_goes_on_jumping_keeps_the_servo_from_being_armed() {
+    let mut bench = running(&SPRING, 0);
+    let mut jumping = (0..).map(|k: i32| if k % 2 == 0 { 5000 } else { 0 });
+    let mut jump = |bench: &mut Bench<_, _, _>| bench.tick(jumping.next().unwrap());
+    jump(&mut bench);
+    let fault = Fault::EncoderJump { counts: 5000, largest: 978 };
+    assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
+    bench.requests.arm();
+    jump(&mut bench);
+    assert_eq!(bench.notices(), [Notice::NotArmed(fault)]);
+    assert!(!bench.board.is_on());
+    bench.stand(0, 20);
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn a_converter_that_had_no_code() {
+    let mut bench = running(&SPRING, 500);
+    bench.board.underrun = true;
+    bench.tick(500);
+    assert_stopped(&mut bench, Fault::Underrun);
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
+    let mut board = Board::new();
+    board.by_watchdog = true;
+    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+    bench.board.underrun = true;
+    bench.requests.arm();
+    bench.tick(0);
+    assert_eq!(bench.notices(), [Notice::NotArmed(Fault::Underrun)]);
+    bench.stand(0, 20);
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
+    let panicked = Retained { fault: Fault::Panic { line: 12, column: 5 }, tick: 77, count: -3 };
+    let watchdog = Retained { fault: Fault::Watchdog, tick: 0, count: 0 };
+    for (kept, by_watchdog, left) in [
+        (panicked.encode(), true, panicked),
+        (panicked.encode(), false, panicked),
+        (Retained::NOTHING, true, watchdog),
+    ] {
+        let board = Board { kept, by_watchdog, ..Board::new() };
+        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+        assert_eq!(bench.left, Some(left));
+        bench.stand(300, 200);
+        assert!(!bench.board.is_on() && bench.board.codes().iter().all(|code| *code == 2048));
+        assert_eq!(bench.notices(), []);
+        let status = bench.status();
+        assert_eq!((status.state, status.fault), (State::Disarmed, Some(left.fault)));
+        assert_armed_again(&mut bench);
+    }
+}
+
+fn with_link(link: LinkPolicy) -> Program<Spring> {
+    Program { options: Options { link, link_timeout: 0.2 }, ..SPRING }
+}
+
+#[test]
+fn a_host_that_falls_silent_lets_the_device_go() {
+    let mut bench = running(&with_link(LinkPolicy::Release), 500);
+    for _ in 0..10 {
+        bench.requests.heard();
+        bench.stand(500, 199);
+        assert_eq!(bench.cycle.state(), State::Running);
+    }
+    bench.tick(500);
+    assert_eq!(bench.cycle.state(), State::FadingOut);
+    // At once, but step by step: 3 codes at most are the spring's own.
+    let before = bench.board.codes();
+    bench.stand(500, 100);
+    let codes = bench.board.codes();
+    let largest = codes.windows(2).skip(before.len() - 1).map(|pair| (pair[1] - pair[0]).abs());
+    assert!(largest.max().unwrap() <= 11 + 3);
+    let lost = Fault::LinkLost { silent: 200, allowed: 200 };
+    assert_stopped(&mut bench, lost);
+    // The cause is still there, until the host is heard.
+    bench.requests.arm();
+    bench.tick(500);
+    assert!(matches!(bench.notices()[..], [Notice::NotArmed(Fault::LinkLost { .. })]));
+    bench.requests.heard();
+    assert_armed_again(&mut bench);
+}
+
+#[test]
+fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
+    for (link, lost) in [(LinkPolicy::Hold, true), (LinkPolicy::Ignore, false)] {
+        let mut bench = running(&with_link(link), 500);
+        bench.stand(500, 500);
+        assert_eq!(bench.cycle.state(), State::Running);
+        assert_eq!(bench.status().link_lost, lost);
+        bench.requests.heard();
+        assert!(!bench.status().link_lost);
+    }
+}

@@ -1,0 +1,162 @@
+//! Arming, disarming and swapping sets: whole, in their order, and without a step in torque.
+
+use super::*;
+use crate::certificate::Parameter;
+use crate::environment::{DamperWall, FilteredWall, FreeMode, OneSided};
+use crate::servo::Renders;
+use crate::tuning::{self, Tunable};
+
+/// Largest change from one code to the next.
+fn largest_step(codes: &[i32]) -> i32 {
+    codes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).max().unwrap()
+}
+
+fn set<E: Tunable<f32> + Renders<Latched>>(
+    program: &Program<E>,
+    changes: &[(Parameter, f64)],
+) -> Rendering<E, f32, Latched> {
+    let Program { scene, transducers, rendering, .. } = program;
+    tuning::prepare(scene, changes, transducers, rendering).unwrap().1
+}
+
+/// Counts of a hand that goes in and out, slowly enough that no scene here changes its torque by
+/// more than a ramp does.
+fn hand() -> impl Iterator<Item = i32> {
+    (0..).map(|k: i32| (600.0 + 500.0 * (f64::from(k) * 0.004).sin()) as i32)
+}
+
+/// Swaps sets while the hand moves, at moments that fall anywhere in the ramps, and sees to it
+/// that no code is further from the last one than a step of the ramp and the scene's own change.
+fn swaps_without_a_step<E>(environment: E, changes: [&[(Parameter, f64)]; 2], own: i32)
+where
+    E: Tunable<f32> + Renders<Latched>,
+{
+    let program = program(environment);
+    let mut bench: Bench<E, f32, Latched> = Bench::boot(&program, Board::new()).unwrap();
+    let mut applied = 0;
+    for (k, count) in hand().take(20_000).enumerate() {
+        if k % 397 == 0 {
+            let _ = bench.requests.submit(set(&program, changes[k / 397 % 2]));
+        }
+        match k % 4999 {
+            3000 => bench.requests.disarm(),
+            3100 | 4000 => bench.requests.arm(),
+            _ => {}
+        }
+        bench.tick(count);
+        applied += bench.notices().iter().filter(|n| **n == Notice::Applied).count();
+    }
+    assert!(applied > 20, "{applied}");
+    let codes = bench.board.codes();
+    assert!(codes.iter().any(|code| *code != 2048), "no torque at all");
+    let largest = largest_step(&codes);
+    assert!(largest <= 11 + own, "a step of {largest} codes");
+}
+
+#[test]
+fn no_swap_makes_a_step() {
+    use Parameter::{Damping, Face, Filter, Residual, Stiffness, TorqueLimit};
+    let spring = DelayedSpring::<1> { stiffness: 11.0 };
+    swaps_without_a_step(spring, [&[(Stiffness, 3.0)], &[(Stiffness, 21.0)]], 8);
+    let wall = DamperWall::<2> { stiffness: 6.0, damping: 0.002 };
+    swaps_without_a_step(
+        wall,
+        [&[(Stiffness, 2.0), (TorqueLimit, 0.3)], &[(Stiffness, 9.0), (Damping, 0.004)]],
+        8,
+    );
+    let faced = OneSided { face: 0.02, wall: DamperWall::<1> { stiffness: 9.0, damping: 0.002 } };
+    swaps_without_a_step(faced, [&[(Face, -0.05)], &[(Face, 0.04), (Stiffness, 19.0)]], 8);
+    let filtered = FilteredWall::<8> { stiffness: 1.0, damping: 0.004, filter: 0.8 };
+    swaps_without_a_step(filtered, [&[(Filter, 0.2)], &[(Stiffness, 2.0)]], 8);
+    let free = FreeMode::<1> { residual: 0.015 };
+    let scene = program(free);
+    assert!(
+        tuning::prepare::<_, f32, Latched>(
+            &scene.scene,
+            &[(Residual, 0.01)],
+            &scene.transducers,
+            &scene.rendering
+        )
+        .is_ok()
+    );
+}
+
+#[test]
+fn a_set_is_the_one_that_was_built_and_runs_as_one_that_always_ran() {
+    let mut bench = running(&SPRING, 300);
+    let stiff = [(Parameter::Stiffness, 20.0), (Parameter::TorqueLimit, 0.7)];
+    bench.requests.submit(set(&SPRING, &stiff)).unwrap();
+    bench.stand(300, 250);
+    assert_eq!(bench.notices(), [Notice::Applied]);
+    let mut always = SPRING;
+    always.scene = tuning::apply(&SPRING.scene, &stiff).unwrap();
+    let mut always = running(&always, 300);
+    always.stand(300, 200);
+    for count in hand().take(500) {
+        let (swapped, compiled) = (bench.tick(count), always.tick(count));
+        assert_eq!((swapped.code, swapped.limit), (compiled.code, compiled.limit));
+    }
+}
+
+#[test]
+fn the_position_is_carried_over() {
+    // A 16-bit counter that has wrapped: only the servo knows where the device is.
+    let mut bench = running(&SPRING, 0);
+    let far = 200_000;
+    for k in 0..=far / 500 {
+        bench.tick(k * 500);
+    }
+    bench.requests.submit(set(&SPRING, &[(Parameter::Stiffness, 12.0)])).unwrap();
+    bench.stand(far, 300);
+    assert!(bench.notices().contains(&Notice::Applied));
+    assert_eq!(bench.status().count, i64::from(far));
+}
+
+#[test]
+fn only_one_set_waits() {
+    let mut bench = running(&SPRING, 500);
+    bench.requests.submit(set(&SPRING, &[])).unwrap();
+    assert!(bench.requests.submit(set(&SPRING, &[])).is_err());
+    bench.stand(500, 300);
+    assert_eq!(bench.notices(), [Notice::Applied]);
+    bench.requests.submit(set(&SPRING, &[])).unwrap();
+}
+
+#[test]
+fn a_set_for_a_servo_without_torque_is_swapped_at_once() {
+    let mut bench = running(&SPRING, 500);
+    bench.requests.disarm();
+    bench.stand(500, 102);
+    assert_eq!(bench.notices(), [Notice::Disarmed]);
+    assert!(!bench.board.is_on());
+    bench.requests.submit(set(&SPRING, &[])).unwrap();
+    bench.tick(500);
+    assert_eq!(bench.notices(), [Notice::Applied]);
+}
+
+#[test]
+fn disarming_closes_from_the_torque_that_is_held() {
+    let mut bench = running(&SPRING, 100);
+    let held = i32::from(bench.tick(100).code.offset());
+    assert!((-100..-80).contains(&held));
+    bench.requests.disarm();
+    bench.tick(100);
+    // No dead time: it does not close from the limit, which is a thousand codes away.
+    bench.stand(100, 3);
+    assert!(bench.board.codes().last().unwrap() - 2048 >= held + 15);
+    bench.stand(100, 10);
+    assert_eq!(bench.cycle.state(), State::Disarmed);
+}
+
+#[test]
+fn disarming_wins_over_arming_and_a_second_thought_over_both() {
+    let mut bench = running(&SPRING, 500);
+    bench.requests.arm();
+    bench.requests.disarm();
+    bench.stand(500, 10);
+    assert_eq!(bench.cycle.state(), State::FadingOut);
+    bench.requests.arm();
+    bench.stand(500, 102);
+    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.notices(), [Notice::Armed]);
+}

@@ -1,0 +1,136 @@
+//! The energy that goes into the hand, observed from counts and codes, and a damper against it.
+//!
+//! Over a period the converter holds a code and the device moves by some counts: their product is
+//! the work that the motor did, in the unit of [`Transducers::energy_unit`], exactly and without
+//! drift. A passive environment gives back what was put in and no more; what it has given beyond
+//! that is a *deficit*.
+//!
+//! [`Transducers::energy_unit`]: crate::servo::Transducers::energy_unit
+
+use core::hint::cold_path;
+
+use crate::coupling::Offer;
+use crate::dac::DacCode;
+use crate::number::Number;
+use crate::servo::{BuildError, OutputMode, OutputTiming};
+
+/// Observes passivity, one tick at a time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EnergyMonitor {
+    /// Codes above mid-scale that the converter holds until the next count is read.
+    held: i32,
+    /// Those that it holds after that, where it is latched.
+    next: i32,
+    net: i64,
+    worst: i64,
+}
+
+impl EnergyMonitor {
+    /// Ends a tick: the encoder moved by `step` counts since the last one, and `code` was written.
+    #[inline(always)]
+    pub fn observe<M: OutputMode>(&mut self, step: i32, code: DacCode) {
+        // At most 2^11 times 2^31 a tick: years until 2^63.
+        self.net = self.net.wrapping_add(i64::from(self.held) * i64::from(step));
+        if self.net > self.worst {
+            cold_path();
+            self.worst = self.net;
+        }
+        let offset = i32::from(code.offset());
+        match M::TIMING {
+            OutputTiming::Latched => self.held = core::mem::replace(&mut self.next, offset),
+            OutputTiming::Simultaneous | OutputTiming::Immediate { .. } => self.held = offset,
+        }
+    }
+
+    /// To be called before [`EnergyMonitor::observe`] when updates were missed since the last
+    /// tick: where in the encoder's `step` the code changed is not known, and the worse is taken.
+    pub fn missed<M: OutputMode>(&mut self, step: i32) {
+        if M::TIMING == OutputTiming::Latched {
+            let more = i64::from(self.next - self.held) * i64::from(step);
+            self.net = self.net.wrapping_add(more.max(0));
+        }
+    }
+
+    /// Starts from nothing, with the converter at mid-scale.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Net energy that the motor has put into the hand and the device, in counts times codes;
+    /// negative where they have put in more.
+    pub const fn net(&self) -> i64 {
+        self.net
+    }
+
+    /// The largest that [`EnergyMonitor::net`] has been: the worst deficit. Never negative.
+    pub const fn worst(&self) -> i64 {
+        self.worst
+    }
+
+    /// Whether there is a deficit now.
+    #[inline(always)]
+    pub const fn is_deficit(&self) -> bool {
+        self.net > 0
+    }
+}
+
+/// Something that adds a torque beside the environment, within the limit.
+pub(crate) trait Action<N: Number> {
+    /// The environment's offer with this tick's torque added.
+    fn add_to(&self, offer: Offer<N>) -> Offer<N>;
+    /// Ends the tick with the environment at `x_e` (rad).
+    fn advance(&mut self, x_e: N);
+}
+
+/// No action: costs nothing.
+pub(crate) struct NoAction;
+
+impl<N: Number> Action<N> for NoAction {
+    #[inline(always)]
+    fn add_to(&self, offer: Offer<N>) -> Offer<N> {
+        offer
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, _: N) {}
+}
+
+/// A damper on the environment's velocity of the previous two samples, switched on and off at
+/// will: whatever the switching, it adds at most its damping to the index (theory, section 5).
+#[derive(Clone, Debug)]
+pub(crate) struct Injector<N: Number> {
+    /// Damping over the period, in N m/rad.
+    gain: N::Coefficient,
+    /// The environment's last position in rad.
+    last: N,
+    /// Its movement in the last period in rad.
+    movement: N,
+    on: bool,
+}
+
+impl<N: Number> Injector<N> {
+    /// From the damping in N m s/rad and the period in s, at rest at zero and off.
+    pub(crate) fn new(damping: f64, period: f64) -> Result<Self, BuildError> {
+        BuildError::unless_positive("injected damping", damping)?;
+        let gain = BuildError::coefficient::<N>("injected damping / period", damping / period)?;
+        Ok(Self { gain, last: N::ZERO, movement: N::ZERO, on: false })
+    }
+
+    /// Switches the damper.
+    pub(crate) fn switch(&mut self, on: bool) {
+        self.on = on;
+    }
+}
+
+impl<N: Number> Action<N> for Injector<N> {
+    #[inline(always)]
+    fn add_to(&self, offer: Offer<N>) -> Offer<N> {
+        if self.on { offer.plus(self.movement.times(self.gain)) } else { offer }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, x_e: N) {
+        self.movement = x_e.minus(self.last);
+        self.last = x_e;
+    }
+}

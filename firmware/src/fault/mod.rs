@@ -1,0 +1,152 @@
+//! What stops a servo: torque to zero, amplifier off, and a record of why.
+//!
+//! A fault is not a [limit reason](crate::torque::LimitReason), which only says why an output is
+//! less than was asked for. After a fault the motor stays off until somebody arms it again.
+
+mod retained;
+
+pub use retained::Retained;
+
+use core::fmt;
+
+/// What stopped the servo, with the numbers to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Updates were missed beyond what the certificate tolerates: a tick came late, or ended after
+    /// the update that it was for.
+    MissedTick {
+        /// Updates that were missed in a row.
+        missed: u32,
+        /// Updates in a row that the certificate's worst period allows to miss.
+        tolerated: u32,
+    },
+    /// The encoder moved further than the device can.
+    EncoderJump {
+        /// Counts that it moved, without their sign.
+        counts: u32,
+        /// The most that the device's largest speed allows in the time.
+        largest: u32,
+    },
+    /// The torque was not a number.
+    NotANumber,
+    /// The converter wanted a code when there was none.
+    Underrun,
+    /// The host has not been heard for too long.
+    LinkLost {
+        /// Ticks without a message.
+        silent: u32,
+        /// Ticks that are allowed.
+        allowed: u32,
+    },
+    /// The servo's interrupt stopped coming, and the watchdog reset the chip.
+    Watchdog,
+    /// The program panicked.
+    Panic {
+        /// Line of the source.
+        line: u32,
+        /// Column of the source.
+        column: u32,
+    },
+    /// The processor met what it cannot execute.
+    HardFault {
+        /// Program counter.
+        address: u32,
+        /// The processor's configurable fault status.
+        status: u32,
+    },
+}
+
+impl Fault {
+    /// The fault in one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::MissedTick { .. } => "missed-tick",
+            Self::EncoderJump { .. } => "encoder-jump",
+            Self::NotANumber => "not-a-number",
+            Self::Underrun => "underrun",
+            Self::LinkLost { .. } => "link-lost",
+            Self::Watchdog => "watchdog",
+            Self::Panic { .. } => "panic",
+            Self::HardFault { .. } => "hard-fault",
+        }
+    }
+
+    /// The fault as a code, never zero, and its two numbers.
+    pub const fn encode(self) -> (u32, [u32; 2]) {
+        match self {
+            Self::MissedTick { missed, tolerated } => (1, [missed, tolerated]),
+            Self::EncoderJump { counts, largest } => (2, [counts, largest]),
+            Self::NotANumber => (3, [0; 2]),
+            Self::Underrun => (4, [0; 2]),
+            Self::LinkLost { silent, allowed } => (5, [silent, allowed]),
+            Self::Watchdog => (6, [0; 2]),
+            Self::Panic { line, column } => (7, [line, column]),
+            Self::HardFault { address, status } => (8, [address, status]),
+        }
+    }
+
+    /// The fault of a code and its numbers; `None` if there is no such fault.
+    pub const fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
+        let [a, b] = numbers;
+        Some(match code {
+            1 => Self::MissedTick { missed: a, tolerated: b },
+            2 => Self::EncoderJump { counts: a, largest: b },
+            3 => Self::NotANumber,
+            4 => Self::Underrun,
+            5 => Self::LinkLost { silent: a, allowed: b },
+            6 => Self::Watchdog,
+            7 => Self::Panic { line: a, column: b },
+            8 => Self::HardFault { address: a, status: b },
+            _ => return None,
+        })
+    }
+}
+
+/// What happened, the value, the bound, and how it is cleared.
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MissedTick { missed, tolerated } => write!(
+                f,
+                "{missed} update(s) in a row were missed, and the certificate tolerates \
+                 {tolerated}: lengthen the scene's period or its worst period, then arm again"
+            ),
+            Self::EncoderJump { counts, largest } => write!(
+                f,
+                "the encoder jumped by {counts} counts, and the device's largest speed allows \
+                 {largest} in that time: check its cable and the largest speed, then reset with \
+                 the device at its zero"
+            ),
+            Self::NotANumber => f.write_str(
+                "the torque was not a number: send another set of parameters, then arm again",
+            ),
+            Self::Underrun => f.write_str(
+                "the converter wanted a code before there was one: lengthen the scene's period, \
+                 then arm again",
+            ),
+            Self::LinkLost { silent, allowed } => write!(
+                f,
+                "the host was silent for {silent} ticks, and {allowed} are allowed: connect \
+                 again, then arm again"
+            ),
+            Self::Watchdog => f.write_str(
+                "the servo's interrupt stopped coming, and the watchdog reset the board: arm again",
+            ),
+            Self::Panic { line, column } => write!(
+                f,
+                "the program panicked at line {line}, column {column} of its source: this is a \
+                 mistake in the program; arm again"
+            ),
+            Self::HardFault { address, status } => write!(
+                f,
+                "the processor faulted at {address:#010x} with the status {status:#010x}: this is \
+                 a mistake in the program; arm again"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Fault {}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,56 @@
+//! The record of a fault in memory that outlives a reset.
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+
+use super::Fault;
+
+/// Says that the words are such a record, and of this layout.
+const MAGIC: u32 = 0x4841_5031;
+
+/// Without a table: a record is written once, and a table would take a kilobyte.
+const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// A fault, and when and where it happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Retained {
+    /// What happened.
+    pub fault: Fault,
+    /// The tick in which it happened; 0 where that is not known.
+    pub tick: u32,
+    /// The position's low 32 bits in counts; 0 where that is not known.
+    pub count: i32,
+}
+
+impl Retained {
+    /// Length of a record in words.
+    pub const WORDS: usize = 7;
+    /// Words that are no record.
+    pub const NOTHING: [u32; Self::WORDS] = [0; Self::WORDS];
+
+    /// The record as words.
+    pub fn encode(&self) -> [u32; Self::WORDS] {
+        let (code, [a, b]) = self.fault.encode();
+        let words = [MAGIC, code, a, b, self.tick, self.count.cast_unsigned(), 0];
+        sealed(words)
+    }
+
+    /// The record in these words; `None` for anything that [`Retained::encode`] did not write.
+    pub fn decode(words: &[u32; Self::WORDS]) -> Option<Self> {
+        let [magic, code, a, b, tick, count, _] = *words;
+        if magic != MAGIC || sealed(*words) != *words {
+            return None;
+        }
+        let fault = Fault::decode(code, [a, b])?;
+        Some(Self { fault, tick, count: count.cast_signed() })
+    }
+}
+
+/// The words with their check sum in the last place.
+fn sealed(words: [u32; Retained::WORDS]) -> [u32; Retained::WORDS] {
+    let [magic, code, a, b, tick, count, _] = words;
+    let mut digest = CRC.digest();
+    for word in [magic, code, a, b, tick, count] {
+        digest.update(&word.to_le_bytes());
+    }
+    [magic, code, a, b, tick, count, digest.finalize()]
+}

@@ -1,0 +1,74 @@
+use proptest::prelude::*;
+
+use super::*;
+
+const ALL: [Fault; 8] = [
+    Fault::MissedTick { missed: 3, tolerated: 1 },
+    Fault::EncoderJump { counts: 5000, largest: 979 },
+    Fault::NotANumber,
+    Fault::Underrun,
+    Fault::LinkLost { silent: 2001, allowed: 2000 },
+    Fault::Watchdog,
+    Fault::Panic { line: 7, column: 13 },
+    Fault::HardFault { address: 0x0800_1234, status: 0x0001_0000 },
+];
+
+#[test]
+fn every_fault_has_a_code_and_a_word_of_its_own() {
+    for (i, fault) in ALL.into_iter().enumerate() {
+        let (code, numbers) = fault.encode();
+        assert_ne!(code, 0);
+        assert_eq!(Fault::decode(code, numbers), Some(fault));
+        for other in &ALL[..i] {
+            assert_ne!(other.encode().0, code);
+            assert_ne!(other.as_str(), fault.as_str());
+        }
+    }
+    assert_eq!(Fault::decode(0, [0; 2]), None);
+    assert_eq!(Fault::decode(9, [0; 2]), None);
+}
+
+#[test]
+fn sentences_have_the_value_the_bound_and_the_way_out() {
+    for (fault, parts) in [
+        (ALL[0], ["3 update(s)", "tolerates 1", "arm again"]),
+        (ALL[1], ["5000 counts", "allows 979", "reset"]),
+        (ALL[4], ["2001 ticks", "2000 are allowed", "arm again"]),
+        (ALL[6], ["line 7", "column 13", "arm again"]),
+        (ALL[7], ["0x08001234", "0x00010000", "arm again"]),
+    ] {
+        let sentence = fault.to_string();
+        for part in parts {
+            assert!(sentence.contains(part), "{part:?} is not in {sentence:?}");
+        }
+    }
+}
+
+#[test]
+fn a_check_sum_of_zeros_is_no_record() {
+    assert_eq!(Retained::decode(&Retained::NOTHING), None);
+    assert_eq!(Retained::decode(&[u32::MAX; Retained::WORDS]), None);
+}
+
+proptest! {
+    #[test]
+    fn a_record_comes_back_and_a_changed_one_does_not(
+        which in 0..ALL.len(),
+        tick: u32,
+        count: i32,
+        word in 0..Retained::WORDS,
+        flipped in 1..=u32::MAX,
+    ) {
+        let record = Retained { fault: ALL[which], tick, count };
+        let mut words = record.encode();
+        prop_assert_eq!(Retained::decode(&words), Some(record));
+        // Up to 32 flipped bits in a row are always noticed.
+        words[word] ^= flipped;
+        prop_assert_eq!(Retained::decode(&words), None);
+    }
+
+    #[test]
+    fn what_the_memory_held_before_is_no_record(words: [u32; Retained::WORDS]) {
+        prop_assert_eq!(Retained::decode(&words), None);
+    }
+}

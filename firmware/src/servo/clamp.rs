@@ -1,0 +1,48 @@
+//! The servo's clamp from outside the tick: shut, opened and closed a step a tick.
+
+use super::{BuildError, Servo};
+use crate::environment::Renderable;
+use crate::number::Number;
+
+impl<E: Renderable<N>, N: Number> Servo<E, N> {
+    /// The same servo, whose clamp opens and closes within `ticks`.
+    ///
+    /// # Errors
+    /// Where the step of a tick is nothing in the servo's number format.
+    pub(crate) fn fading(self, bound: f64, ticks: f64) -> Result<Self, BuildError> {
+        let name = "clamp's step in the servo's number format";
+        let step = BuildError::number::<N>(name, bound / ticks)?;
+        BuildError::unless_positive(name, step.to_f64())?;
+        Ok(Self { limiter: self.limiter.stepping(step), ..self })
+    }
+
+    /// Lets no torque through from the next tick on.
+    pub(crate) fn shut(&mut self) {
+        self.limiter.shut();
+    }
+
+    /// Whether no torque gets through.
+    pub(crate) fn is_shut(&self) -> bool {
+        self.limiter.is_shut()
+    }
+
+    /// Opens the clamp by a step; gives whether it is now open.
+    pub(crate) fn open(&mut self) -> bool {
+        self.limiter.open()
+    }
+
+    /// Closes the clamp by a step; gives whether it is now shut.
+    pub(crate) fn close(&mut self) -> bool {
+        self.limiter.close()
+    }
+
+    /// Closes the clamp to the torque that is held, so that closing it further acts at once.
+    pub(crate) fn meet(&mut self) {
+        self.limiter.meet(self.torque);
+    }
+
+    /// Goes on from another servo's position.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.position = other.position;
+    }
+}

@@ -1,0 +1,131 @@
+//! A servo together with the mode that it was timed for, and what a cycle needs besides.
+
+use core::hint::cold_path;
+use core::marker::PhantomData;
+
+use super::{BuildError, Output, OutputMode, Servo, Transducers};
+use crate::certificate::Timed;
+use crate::encoder::RawCount;
+use crate::energy::{Injector, NoAction};
+use crate::environment::Renderable;
+use crate::number::Number;
+use crate::scene::{Scene, Timing};
+
+/// What is not of the scene, but of how it is rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderingOptions {
+    /// Time in s in which the clamp opens from nothing to the torque limit, and closes.
+    pub fade: f64,
+    /// Damping in N m s/rad that is injected while more energy has gone into the hand than came
+    /// out of it; `None`: the energy is only watched.
+    pub injection: Option<f64>,
+}
+
+impl RenderingOptions {
+    /// Fades within a tenth of a second: slow for a step to be felt, quick for whoever waits.
+    /// Injects nothing.
+    pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
+}
+
+impl Default for RenderingOptions {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// The servo of a scene that was timed for the mode `M`, ready to be swapped in.
+#[derive(Clone, Debug)]
+pub struct Rendering<E: Renderable<N>, N: Number, M> {
+    servo: Servo<E, N>,
+    injector: Option<Injector<N>>,
+    pace: Pace,
+    mode: PhantomData<M>,
+}
+
+/// What the time between two updates may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// The period in s.
+    pub period: f64,
+    /// Updates in a row that may be missed before the certificate is void.
+    pub tolerated: u32,
+    /// The most counts that the encoder can move within a period.
+    pub largest_step: u32,
+}
+
+impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
+    /// The servo of a timed scene, at rest at zero and with its clamp shut.
+    ///
+    /// # Errors
+    /// Where the scene, the transducers or the options cannot be had in this number format.
+    pub fn new(
+        timed: &Timed<Scene<E>, M>,
+        transducers: &Transducers,
+        options: &RenderingOptions,
+    ) -> Result<Self, BuildError> {
+        let scene = timed.scene();
+        let period = scene.timing.period;
+        let bound = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
+        BuildError::unless_positive("time of fading", options.fade)?;
+        let ticks = (options.fade / period).max(1.0);
+        let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
+        servo.shut();
+        let injector = match options.injection {
+            None => None,
+            Some(damping) if timed.room().is_some_and(|room| damping < room) => {
+                Some(Injector::new(damping, period)?)
+            }
+            Some(damping) => {
+                return Err(BuildError::Injection { damping, room: timed.room().unwrap_or(0.0) });
+            }
+        };
+        let pace = Pace::new(scene.timing, transducers)?;
+        Ok(Self { servo, injector, pace, mode: PhantomData })
+    }
+
+    /// One tick: the code to be written now. Where there is a `deficit` of energy, damping is
+    /// injected, if that is asked for.
+    #[inline(always)]
+    pub fn tick(&mut self, raw: RawCount, deficit: bool) -> Output {
+        let Some(injector) = &mut self.injector else {
+            return self.servo.timed_tick::<M>(raw, &mut NoAction);
+        };
+        cold_path();
+        injector.switch(deficit);
+        self.servo.timed_tick::<M>(raw, injector)
+    }
+
+    /// The servo.
+    pub const fn servo(&self) -> &Servo<E, N> {
+        &self.servo
+    }
+
+    /// The servo, for its clamp.
+    pub(crate) const fn servo_mut(&mut self) -> &mut Servo<E, N> {
+        &mut self.servo
+    }
+
+    /// What the time between two updates may be.
+    pub const fn pace(&self) -> Pace {
+        self.pace
+    }
+}
+
+impl Pace {
+    /// Whole periods in `time` s, at least one and at most as many as a counter of ticks holds.
+    pub(crate) fn ticks(&self, time: f64) -> u32 {
+        // The cast gives the nearest of what does not fit.
+        ((time / self.period) as u32).max(1)
+    }
+
+    fn new(timing: Timing, transducers: &Transducers) -> Result<Self, BuildError> {
+        let worst = timing.worst_period.unwrap_or(timing.period);
+        // A worst period of two periods, to the digits that were written, is two.
+        let periods = worst / timing.period + 1e-9;
+        let tolerated = (periods as u32).saturating_sub(1);
+        // The counter must not wrap unseen before the missed ticks become a fault.
+        transducers.largest_step(worst)?;
+        let largest_step = transducers.largest_step(timing.period)?;
+        Ok(Self { period: timing.period, tolerated, largest_step })
+    }
+}

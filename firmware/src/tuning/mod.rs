@@ -1,0 +1,154 @@
+//! From a change of parameters to a set that is ready to run, or to the reason why not.
+//!
+//! The way is the same as for a scene that is compiled in: certificate, timing, servo. A set is
+//! built as a whole and away from the servo's interrupt; what is refused changes nothing.
+
+mod error;
+mod tunable;
+mod values;
+
+pub use error::TuningError;
+pub use tunable::Tunable;
+pub use values::Values;
+
+use core::fmt;
+
+use crate::certificate::Parameter;
+use crate::number::Number;
+use crate::scene::{Coupling, Scene};
+use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+
+/// The parameters that may be changed while the servo runs, with the names that people type.
+///
+/// The device is what it is and changes by no message; period and delay are those that the
+/// program was compiled and its board was set up for.
+pub const TUNABLE: [(&str, Parameter); 7] = [
+    ("stiffness", Parameter::Stiffness),
+    ("damping", Parameter::Damping),
+    ("filter", Parameter::Filter),
+    ("face", Parameter::Face),
+    ("residual", Parameter::Residual),
+    ("coupling.stiffness", Parameter::CouplingStiffness),
+    ("torque_limit", Parameter::TorqueLimit),
+];
+
+/// The tunable parameter of this name.
+pub fn parameter(name: &str) -> Option<Parameter> {
+    TUNABLE.iter().find(|(known, _)| *known == name).map(|(_, parameter)| *parameter)
+}
+
+/// The name of a tunable parameter.
+pub fn name(parameter: Parameter) -> Option<&'static str> {
+    TUNABLE.iter().find(|(_, known)| *known == parameter).map(|(name, _)| *name)
+}
+
+/// Some of the [`TUNABLE`] parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Parameters {
+    /// One bit each, in the table's order.
+    bits: u8,
+}
+
+impl Parameters {
+    /// The parameters in the table's order.
+    pub fn iter(self) -> impl Iterator<Item = Parameter> {
+        TUNABLE
+            .iter()
+            .enumerate()
+            .filter(move |(i, _)| self.bits >> i & 1 != 0)
+            .map(|(_, (_, parameter))| *parameter)
+    }
+}
+
+/// The names, with commas between them.
+impl fmt::Display for Parameters {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, name) in self.iter().filter_map(name).enumerate() {
+            if i > 0 {
+                f.write_str(", ")?;
+            }
+            f.write_str(name)?;
+        }
+        Ok(())
+    }
+}
+
+/// A scene's tunable parameter; `None` where the scene has no such number.
+fn value<E: Values>(scene: &mut Scene<E>, parameter: Parameter) -> Option<&mut f64> {
+    match parameter {
+        Parameter::CouplingStiffness => match &mut scene.coupling {
+            Coupling::Rigid => None,
+            Coupling::Spring { stiffness } => Some(stiffness),
+        },
+        Parameter::TorqueLimit => scene.torque_limit.as_mut(),
+        _ => scene.environment.value(parameter),
+    }
+}
+
+/// The parameters that a scene has.
+pub fn parameters<E: Values + Copy>(scene: &Scene<E>) -> Parameters {
+    let mut scene = *scene;
+    let mut bits = 0;
+    for (i, (_, parameter)) in TUNABLE.iter().enumerate() {
+        bits |= u8::from(value(&mut scene, *parameter).is_some()) << i;
+    }
+    Parameters { bits }
+}
+
+/// The value of a scene's parameter; `None` where the scene has no such number.
+pub fn get<E: Values + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f64> {
+    let mut scene = *scene;
+    value(&mut scene, parameter).copied()
+}
+
+/// The scene with some parameters changed. Whether the values make sense is for the certificate
+/// to judge.
+///
+/// # Errors
+/// Where the scene has no such parameter, or a change is given twice.
+pub fn apply<E: Values + Copy>(
+    scene: &Scene<E>,
+    changes: &[(Parameter, f64)],
+) -> Result<Scene<E>, TuningError> {
+    let mut changed = *scene;
+    for (i, &(parameter, to)) in changes.iter().enumerate() {
+        if name(parameter).is_none() {
+            return Err(TuningError::Fixed { parameter });
+        }
+        if changes.iter().take(i).any(|(earlier, _)| *earlier == parameter) {
+            return Err(TuningError::Twice { parameter });
+        }
+        let absent = TuningError::Absent { parameter, has: parameters(scene) };
+        *value(&mut changed, parameter).ok_or(absent)? = to;
+    }
+    Ok(changed)
+}
+
+/// A set that is ready to run: its scene and the rendering to be swapped in.
+pub type Prepared<E, N, M> = (Scene<E>, Rendering<E, N, M>);
+
+/// A set that is ready to run: the scene, judged and timed, and its servo.
+///
+/// In a frame of its own: judging takes most of the stack that a small board has.
+///
+/// # Errors
+/// Whatever is wrong with the set, as a sentence that says what would not be.
+#[inline(never)]
+pub fn prepare<E, N, M>(
+    scene: &Scene<E>,
+    changes: &[(Parameter, f64)],
+    transducers: &Transducers,
+    options: &RenderingOptions,
+) -> Result<Prepared<E, N, M>, RenderError>
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let scene = apply(scene, changes)?;
+    let timed = E::time(E::certify(scene)?)?;
+    Ok((scene, Rendering::new(&timed, transducers, options)?))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,119 @@
+use super::*;
+use crate::encoder::CounterWidth;
+use crate::environment::{
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
+};
+use crate::scene::{Device, Timing};
+use crate::servo::Latched;
+
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 4096.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 2.0,
+    largest_speed: 100.0,
+};
+
+const fn scene<E>(environment: E) -> Scene<E> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        torque_limit: Some(1.0),
+    }
+}
+
+const WALL: Scene<OneSided<DamperWall<1>>> =
+    scene(OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } });
+
+fn refusal(changes: &[(Parameter, f64)]) -> String {
+    let options = RenderingOptions::DEFAULT;
+    let refused = prepare::<_, f32, Latched>(&WALL, changes, &TRANSDUCERS, &options);
+    refused.map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn every_scene_has_the_parameters_that_its_type_has() {
+    let damper = DamperWall::<1> { stiffness: 2.0, damping: 0.01 };
+    let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
+    let names = |parameters: Parameters| parameters.to_string();
+    assert_eq!(
+        names(parameters(&scene(DelayedSpring::<1> { stiffness: 2.0 }))),
+        "stiffness, coupling.stiffness, torque_limit"
+    );
+    assert_eq!(
+        names(parameters(&scene(Placed { face: 0.1, wall: filtered }))),
+        "stiffness, damping, filter, face, coupling.stiffness, torque_limit"
+    );
+    let free = Scene { torque_limit: None, ..scene(FreeMode::<1> { residual: 0.01 }) };
+    assert_eq!(names(parameters(&free)), "residual, coupling.stiffness");
+    let both = FreeModeWall { residual: 0.01, wall: OneSided { face: 0.0, wall: damper } };
+    let both = Scene { coupling: Coupling::Rigid, ..scene(both) };
+    assert_eq!(names(parameters(&both)), "stiffness, damping, face, residual, torque_limit");
+    assert_eq!(parameters(&both.as_data()), parameters(&both));
+    let spring: Environment = DelayedSpring::<1> { stiffness: 2.0 }.as_data();
+    assert_eq!(
+        names(parameters(&scene(spring))),
+        "stiffness, face, coupling.stiffness, torque_limit"
+    );
+}
+
+#[test]
+fn a_change_is_made_where_it_belongs_and_nowhere_else() {
+    for (i, (name, wanted)) in TUNABLE.into_iter().enumerate() {
+        assert_eq!(parameter(name), Some(wanted));
+        assert_eq!(super::name(wanted), Some(name));
+        let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
+        let before =
+            scene(FreeModeWall { residual: 0.02, wall: OneSided { face: 0.1, wall: filtered } });
+        let after = apply(&before, &[(wanted, 0.125 + i as f64)]).unwrap();
+        for (_, parameter) in TUNABLE {
+            let expected =
+                if parameter == wanted { Some(0.125 + i as f64) } else { get(&before, parameter) };
+            assert_eq!(get(&after, parameter), expected, "{name}");
+        }
+        assert_eq!((after.device, after.timing), (before.device, before.timing));
+    }
+    assert_eq!(parameter("period"), None);
+}
+
+#[test]
+fn what_cannot_be_changed_is_refused_in_a_sentence() {
+    assert_eq!(
+        refusal(&[(Parameter::Residual, 0.001)]),
+        "this scene has no residual; it has stiffness, damping, face, coupling.stiffness, \
+         torque_limit"
+    );
+    assert_eq!(
+        refusal(&[(Parameter::Period, 0.002)]),
+        "the period is fixed while the program runs; what can be changed is stiffness, damping, \
+         filter, face, residual, coupling.stiffness, torque_limit"
+    );
+    assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
+    let twice = [(Parameter::Face, 0.1), (Parameter::Stiffness, 1.0), (Parameter::Face, 0.1)];
+    assert_eq!(refusal(&twice), "face is given twice");
+}
+
+#[test]
+fn a_set_is_judged_as_a_whole_and_by_the_compilers_own_sentence() {
+    let stiff = Scene {
+        environment: OneSided {
+            face: 0.0,
+            wall: DamperWall::<1> { stiffness: 30.0, damping: 0.01 },
+        },
+        ..WALL
+    };
+    let sentence = stiff.certify().unwrap_err().sentence();
+    assert_eq!(refusal(&[(Parameter::Stiffness, 30.0)]), sentence.as_str());
+    // Each alone would not pass, or would; together they do.
+    let softer = [(Parameter::Stiffness, 30.0), (Parameter::Damping, 0.005)];
+    let options = RenderingOptions::DEFAULT;
+    let (scene, _) = prepare::<_, f32, Latched>(&WALL, &softer, &TRANSDUCERS, &options).unwrap();
+    assert_eq!(scene.environment.wall, DamperWall { stiffness: 30.0, damping: 0.005 });
+    assert_eq!(
+        refusal(&[(Parameter::TorqueLimit, 2.5)]),
+        "the torque limit of 2.5 N m is above the converter's full scale of 2 N m: lower it to \
+         that, or scale the amplifier up"
+    );
+    assert!(refusal(&[(Parameter::Stiffness, f64::NAN)]).contains("the stiffness is NaN"));
+}

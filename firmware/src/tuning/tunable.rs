@@ -1,0 +1,75 @@
+//! The way of every environment's scene from numbers to a timed certificate, for code that is
+//! generic over the environment.
+
+use super::Values;
+use crate::certificate::{Certified, Rejection, Timed, TimingError};
+use crate::environment::*;
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::servo::{OutputMode, Renders};
+
+/// An environment whose scenes can be judged, timed and rendered in the number format `N`.
+pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
+    /// [`Scene::certify`].
+    ///
+    /// # Errors
+    /// Why the scene is not certified.
+    fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection>;
+
+    /// [`Certified::time`].
+    ///
+    /// # Errors
+    /// Where scene and mode do not agree.
+    fn time<M: OutputMode>(
+        certified: Certified<Scene<Self>>,
+    ) -> Result<Timed<Scene<Self>, M>, TimingError>
+    where
+        Self: Renders<M>;
+
+    /// [`Scene::as_data`].
+    fn as_data(scene: &Scene<Self>) -> Scene;
+}
+
+macro_rules! tunable {
+    ($([$($generics:tt)*] $environment:ty;)*) => {$(
+        impl<F: Number, $($generics)*> Tunable<F> for $environment {
+            fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
+                scene.certify()
+            }
+
+            fn time<M: OutputMode>(
+                certified: Certified<Scene<Self>>,
+            ) -> Result<Timed<Scene<Self>, M>, TimingError>
+            where
+                Self: Renders<M>,
+            {
+                certified.time()
+            }
+
+            fn as_data(scene: &Scene<Self>) -> Scene {
+                scene.as_data()
+            }
+        }
+    )*};
+}
+
+tunable! {
+    [const N: usize] DelayedSpring<N>;
+    [const N: usize] Placed<DelayedSpring<N>>;
+    [const N: usize] OneSided<DelayedSpring<N>>;
+    [const N: usize] DamperWall<N>;
+    [const N: usize] Placed<DamperWall<N>>;
+    [const N: usize] OneSided<DamperWall<N>>;
+    [const N: usize] FilteredWall<N>;
+    [const N: usize] Placed<FilteredWall<N>>;
+    [const N: usize] OneSided<FilteredWall<N>>;
+    [const N: usize] FreeMode<N>;
+    [const N: usize] FreeModeWall<DelayedSpring<N>>;
+    [const N: usize] FreeModeWall<DamperWall<N>>;
+    [const N: usize] FreeModeWall<FilteredWall<N>>;
+    [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>;
+    [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>;
+    [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>;
+    [] Rational;
+    [] Environment;
+}
