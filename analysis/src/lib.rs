@@ -25,6 +25,7 @@ pub mod recorded;
 pub mod replay;
 pub mod rig;
 pub mod scenario;
+pub mod table;
 
 // The board, emulated, and what builds for it.
 pub mod emulator;

@@ -1,59 +1,20 @@
 //! Runs in CSV files, as `haptic run --csv` and `haptic simulate --csv` write them.
 
+use std::io::Read;
 use std::path::Path;
 
 use thiserror::Error;
 
 use crate::chart::trace::{Clock, Trace};
-use crate::file::excerpt;
-use crate::replay::row_message;
 use crate::simulation::served::Served;
+use crate::table::{Column, Place, Row, Table, TableError};
 
-/// Why a recorded run cannot be read. Lines are counted from 1, the header being the first.
+/// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
 pub enum RecordedError {
-    /// The file cannot be opened.
-    #[error("{file}: cannot be read: {source}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// Why.
-        source: csv::Error,
-    },
-    /// A column is missing.
-    #[error("{file}:1: there is no column {wanted}; the columns are {columns}")]
-    NoColumn {
-        /// The file.
-        file: String,
-        /// The names that it could have.
-        wanted: String,
-        /// The columns that there are.
-        columns: String,
-    },
-    /// A row is not valid CSV, or has another number of fields than the header.
-    #[error("{file}:{line}: {message}")]
-    BadRow {
-        /// The file.
-        file: String,
-        /// The line.
-        line: u64,
-        /// What is wrong with it.
-        message: String,
-    },
-    /// A field is not what its column holds.
-    #[error("{file}:{line}: column `{column}`: `{value}` must be {bound}")]
-    BadValue {
-        /// The file.
-        file: String,
-        /// The line.
-        line: u64,
-        /// The column.
-        column: String,
-        /// What stands there.
-        value: String,
-        /// What may stand there.
-        bound: String,
-    },
+    /// It is not the table that it has to be.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// A period was given for samples that have times of their own.
     #[error("{file}: its times are in seconds; a period is for runs that are counted in ticks")]
     PeriodKnown {
@@ -61,6 +22,14 @@ pub enum RecordedError {
         file: String,
     },
 }
+
+const FINITE: &str = "a finite number";
+/// In seconds by its first name, in ticks by its second.
+const TIME: Column = Column { names: &[SECONDS, "tick"], bound: FINITE };
+const SECONDS: &str = "time";
+const ANGLE: Column = Column { names: &["angle", "position"], bound: FINITE };
+const TORQUE: Column = Column { names: &["torque"], bound: FINITE };
+const LIMIT: Column = Column { names: &["limit"], bound: "a reason" };
 
 /// Whether a file is a recorded run by its name.
 pub fn is_recorded(path: &Path) -> bool {
@@ -73,119 +42,39 @@ pub fn is_recorded(path: &Path) -> bool {
 /// # Errors
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
 pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RecordedError> {
-    let file = path.display().to_string();
     let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    match csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path) {
-        Ok(mut reader) => Ok(Trace { title, ..read(&file, &mut reader, period)? }),
-        Err(source) => Err(RecordedError::Unreadable { file, source }),
-    }
+    Ok(Trace { title, ..read(Table::open(path)?, period)? })
 }
 
-fn read<R: std::io::Read>(
-    file: &str,
-    reader: &mut csv::Reader<R>,
-    period: Option<f64>,
-) -> Result<Trace, RecordedError> {
-    let bad_row = |line: u64, error: &csv::Error| RecordedError::BadRow {
-        file: file.to_owned(),
-        line: error.position().map_or(line, csv::Position::line),
-        message: row_message(error),
-    };
-    let header = reader.headers().map_err(|error| bad_row(1, &error))?.clone();
-    let layout = Layout::of(file, &header)?;
-    let seconds = match (layout.clock, period) {
-        (Clock::Seconds, Some(_)) => {
-            return Err(RecordedError::PeriodKnown { file: file.to_owned() });
-        }
-        (_, period) => period.unwrap_or(1.0),
-    };
-    let clock = if period.is_some() { Clock::Seconds } else { layout.clock };
+fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RecordedError> {
+    let time = table.column(TIME)?;
+    let (angle, torque) = (table.column(ANGLE)?, table.column(TORQUE)?);
+    let limit = table.find(LIMIT);
+    let own = if time.name == SECONDS { Clock::Seconds } else { Clock::Ticks };
+    if own == Clock::Seconds && period.is_some() {
+        return Err(RecordedError::PeriodKnown { file: table.file().to_owned() });
+    }
+    let clock = if period.is_some() { Clock::Seconds } else { own };
     let mut trace = Trace { clock, ..Trace::default() };
-    let mut fields = csv::StringRecord::new();
-    loop {
-        let line = reader.position().line();
-        match reader.read_record(&mut fields) {
-            Ok(false) => return Ok(trace),
-            Ok(true) => {}
-            Err(error) => return Err(bad_row(line, &error)),
+    let finite = |value: &f64| value.is_finite();
+    while let Some(row) = table.row()? {
+        let at = period.unwrap_or(1.0) * row.number(time, finite)?;
+        if trace.time.last().is_some_and(|last| at <= *last) {
+            return Err(row.bad(time, "more than in the row before").into());
         }
-        let line = fields.position().map_or(line, csv::Position::line);
-        let row = Row { file, line, header: &header, fields: &fields };
-        let time = seconds * row.number(layout.time)?;
-        if trace.time.last().is_some_and(|last| time <= *last) {
-            return Err(row.bad(layout.time, "more than in the row before"));
-        }
-        trace.time.push(time);
-        trace.position.push(row.number(layout.angle)?);
-        trace.torque.push(row.number(layout.torque)?);
-        trace.limit.push(layout.limit.map_or(Ok(Served::IN_FULL), |column| row.served(column))?);
+        trace.time.push(at);
+        trace.position.push(row.number(angle, finite)?);
+        trace.torque.push(row.number(torque, finite)?);
+        trace.limit.push(limit.map_or(Ok(Served::IN_FULL), |limit| served(&row, limit))?);
     }
+    Ok(trace)
 }
 
-/// Which columns hold what.
-struct Layout {
-    clock: Clock,
-    time: usize,
-    angle: usize,
-    torque: usize,
-    limit: Option<usize>,
-}
-
-impl Layout {
-    fn of(file: &str, header: &csv::StringRecord) -> Result<Self, RecordedError> {
-        let column = |name: &str| header.iter().position(|is| is == name);
-        let one_of = |names: &[&str]| {
-            names.iter().find_map(|name| column(name)).ok_or_else(|| RecordedError::NoColumn {
-                file: file.to_owned(),
-                wanted: names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or "),
-                columns: excerpt(&header.iter().map(excerpt).collect::<Vec<_>>().join(", ")),
-            })
-        };
-        let time = one_of(&["time", "tick"])?;
-        Ok(Self {
-            clock: if header.get(time) == Some("time") { Clock::Seconds } else { Clock::Ticks },
-            time,
-            angle: one_of(&["angle", "position"])?,
-            torque: one_of(&["torque"])?,
-            limit: column("limit"),
-        })
-    }
-}
-
-/// A row, with its place for messages.
-struct Row<'r> {
-    file: &'r str,
-    line: u64,
-    header: &'r csv::StringRecord,
-    fields: &'r csv::StringRecord,
-}
-
-impl Row<'_> {
-    fn field(&self, column: usize) -> &str {
-        self.fields.get(column).unwrap_or_default()
-    }
-
-    fn number(&self, column: usize) -> Result<f64, RecordedError> {
-        let value = self.field(column).parse().ok().filter(|value: &f64| value.is_finite());
-        value.ok_or_else(|| self.bad(column, "a finite number"))
-    }
-
-    fn served(&self, column: usize) -> Result<Served, RecordedError> {
-        Served::parse(self.field(column)).ok_or_else(|| {
-            let words: Vec<_> = Served::all().map(Served::as_str).collect();
-            self.bad(column, &format!("one of {}", words.join(", ")))
-        })
-    }
-
-    fn bad(&self, column: usize, bound: &str) -> RecordedError {
-        RecordedError::BadValue {
-            file: self.file.to_owned(),
-            line: self.line,
-            column: excerpt(self.header.get(column).unwrap_or_default()),
-            value: excerpt(self.field(column)),
-            bound: bound.to_owned(),
-        }
-    }
+fn served(row: &Row<'_>, limit: Place) -> Result<Served, TableError> {
+    Served::parse(row.text(limit)).ok_or_else(|| {
+        let words: Vec<_> = Served::all().map(Served::as_str).collect();
+        row.bad(limit, &format!("one of {}", words.join(", ")))
+    })
 }
 
 #[cfg(test)]
@@ -195,9 +84,8 @@ mod tests {
     use super::*;
 
     fn trace(text: &str, period: Option<f64>) -> Result<Trace, String> {
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        read("x.csv", &mut reader, period).map_err(|error| error.to_string())
+        let table = Table::new("x.csv", text.as_bytes()).map_err(|error| error.to_string())?;
+        read(table, period).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -222,11 +110,12 @@ mod tests {
             |rows: &str| trace(&format!("tick,angle,torque,limit\n{rows}"), None).unwrap_err();
         assert_eq!(
             bad("0,0,0,none\n1,x,0,none\n"),
-            "x.csv:3: column `angle`: `x` must be a finite number"
+            "x.csv:3: column 2, `angle`: `x` is out of bounds; it must be a finite number"
         );
-        assert!(bad("0,0,inf,none\n").contains("column `torque`: `inf`"));
+        assert!(bad("0,0,inf,none\n").contains("column 3, `torque`: `inf`"));
         assert!(
-            bad("3,0,0,none\n3,0,0,none\n").contains("x.csv:3: column `tick`: `3` must be more")
+            bad("3,0,0,none\n3,0,0,none\n")
+                .contains("x.csv:3: column 1, `tick`: `3` is out of bounds; it must be more")
         );
         assert!(bad("0,0,0,slewed\n").ends_with("angle, not-a-number, ramp, missed"));
         assert!(bad("0,0,0\n").starts_with("x.csv:2: 3 fields"));

@@ -5,8 +5,9 @@ use firmware::scene::Device;
 use firmware::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
-use crate::device::{Energy, Hand, HeldDevice, Motion, SimulatedEncoder};
+use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
 use crate::hand::Script;
+use crate::simulation::held::HeldDevice;
 
 /// Where counts come from, and where the converter's codes go to.
 pub trait Plant {

@@ -1,37 +1,21 @@
 //! `haptic chart` as somebody runs it.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod common;
 
-const WALL: &str = "name = \"wall\"
-[device]
-inertia = 2.2e-5
-damping = 0.022
-[servo]
-period = 0.001
-[coupling]
-stiffness = 44.0
-[environment]
-type = \"damper-wall\"
-stiffness = 22.0
-damping = 0.01
-delay = 1
-";
+use std::path::Path;
+use std::process::Output;
+
+use common::{WALL, program};
 
 fn chart(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .arg("chart")
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+    program(&["chart"]).args(arguments).current_dir(folder).output().unwrap()
 }
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
     write("wall.toml", WALL.to_owned());
-    write("late.toml", WALL.replace("delay = 1", "delay = 3").replace("\"wall\"", "\"late\""));
+    write("late.toml", WALL.replace("delay = 1", "delay = 3").replace("delayed wall", "late"));
     let limited = "[simulation]\nsamples = 50\nvelocity = 20.0\n[limits]\ntorque = 0.1\n";
     write("moving.toml", format!("{WALL}{limited}"));
     let head = WALL.split_once("type").unwrap().0;
@@ -46,7 +30,10 @@ fn every_picture_as_svg_and_as_png() {
     let folder = folder();
     let pictures: [(&[&str], &[&str]); 5] = [
         (&["nyquist", "wall.toml"], &["critical line", "-delta = -0.022", "-alpha = -0.021"]),
-        (&["nyquist", "wall.toml", "late.toml", "free.toml"], &["1: wall", "2: late", "real part"]),
+        (
+            &["nyquist", "wall.toml", "late.toml", "free.toml"],
+            &["1: delayed wall", "2: late", "real part"],
+        ),
         (
             &["map", "wall.toml", "--points", "2500"],
             &["stiffness (N m/rad)", "closed form", "scene"],

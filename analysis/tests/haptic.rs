@@ -1,28 +1,14 @@
 //! The program as somebody runs it: exit status, standard output, standard error.
 
-use std::io::{Read, Write};
-use std::process::{Command, Output, Stdio};
+mod common;
 
+use std::io::{Read, Write};
+use std::process::{Output, Stdio};
+
+use common::{complaint, haptic_reading as haptic, program};
 use serde_json::Value;
 
 const WALL: &str = r#"{"name": "wall", "device": {"inertia": 2.2e-5, "damping": 0.022}, "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type": "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
-
-fn haptic(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    let input = input.to_vec();
-    // A program that has seen enough may close its input.
-    let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
-    let output = child.wait_with_output().unwrap();
-    writer.join().unwrap();
-    output
-}
 
 fn lines(output: &Output) -> Vec<Value> {
     let text = String::from_utf8(output.stdout.clone()).unwrap();
@@ -115,8 +101,7 @@ fn a_batch_answers_line_for_line_in_order() {
 
 #[test]
 fn a_batch_answers_before_its_input_ends() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .args(["certify", "--batch", "-"])
+    let mut child = program(&["certify", "--batch", "-"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
@@ -157,10 +142,8 @@ fn a_recording_runs_on_the_host_tick_by_tick() {
     // Deeper into the wall the motor pushes harder back.
     assert!(rows[199][4].parse::<u16>().unwrap() < rows[100][4].parse().unwrap());
     std::fs::write(&recording, "time,count\n0,1\n1,many\n").unwrap();
-    let bad = haptic(&["run", "damper_wall", "--replay", path], b"");
-    assert_eq!(bad.status.code(), Some(2));
-    let said = String::from_utf8(bad.stderr).unwrap();
-    assert!(said.contains(":3: column `count`: `many`"), "{said}");
+    let said = complaint(haptic(&["run", "damper_wall", "--replay", path], b""));
+    assert!(said.contains(":3: column 2, `count`: `many`"), "{said}");
 }
 
 #[test]

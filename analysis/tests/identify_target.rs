@@ -1,9 +1,11 @@
 //! A simulated device, measured end to end: the program `identify` on the emulated board, and the
 //! same sweep on this machine.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod common;
 
+use std::path::Path;
+
+use common::haptic;
 use serde_json::Value;
 
 /// What the scenes' programs are certified for.
@@ -11,14 +13,10 @@ const DAMPING: f64 = 0.022;
 const INERTIA: f64 = 2.2e-5;
 const TICKS: u64 = 52_500;
 
-fn haptic(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_haptic")).args(arguments).output().unwrap()
-}
-
 fn answer(arguments: &[&str]) -> Value {
     let output = haptic(&[arguments, &["--json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    serde_json::from_slice(&output.stdout).unwrap()
+    common::answer(&output)
 }
 
 fn number(found: &Value, path: &str) -> f64 {

@@ -1,7 +1,10 @@
 //! What the README shows is what the program prints, and what the repository holds.
 
+mod common;
+
 use std::path::{Path, PathBuf};
-use std::process::Command;
+
+use common::{answer, haptic, program};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
@@ -29,11 +32,7 @@ fn without_instructions(text: &str) -> Vec<&str> {
 fn the_demo_prints_what_the_readme_shows() {
     let out = tempfile::tempdir().unwrap();
     let pictures = out.path().to_str().unwrap();
-    let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .args(["demo", "--out", pictures])
-        .current_dir(root())
-        .output()
-        .unwrap();
+    let run = program(&["demo", "--out", pictures]).current_dir(root()).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let printed = String::from_utf8(run.stdout).unwrap().replace(pictures, "target/demo");
     let shown = block(&read(root().join("README.md")), "demo");
@@ -61,12 +60,7 @@ fn the_scene_of_the_readme_is_the_program_and_its_refusal_the_compilers() {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), scene).unwrap();
     let judge = |path: &Path| {
-        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
-            .args(["certify", "--json"])
-            .arg(path)
-            .output()
-            .unwrap();
-        serde_json::from_slice::<serde_json::Value>(&run.stdout).unwrap()["message"].to_string()
+        answer(&haptic(&["certify", "--json", path.to_str().unwrap()]))["message"].to_string()
     };
     let sentence = judge(file.path());
     let refusal = block(&readme, "refusal");

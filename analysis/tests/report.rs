@@ -2,29 +2,15 @@
 
 #[path = "page/chromium.rs"]
 mod chromium;
+mod common;
 
 use std::path::Path;
-use std::process::Command;
 
 use base64::Engine;
+use common::{WALL, complaint, haptic};
 use serde_json::Value;
 
 const MEASURE: &str = include_str!("page/measure.js");
-
-const WALL: &str = r#"
-[device]
-inertia = 2.2e-5
-damping = 0.022
-[servo]
-period = 0.001
-[coupling]
-stiffness = 44.0
-[environment]
-type = "damper-wall"
-stiffness = 22.0
-damping = 0.01
-delay = 1
-"#;
 
 const MOTION: &str = r#"
 [simulation]
@@ -42,10 +28,7 @@ torque = 0.5
 fn report(folder: &Path, scene: &str) -> (String, Option<i32>) {
     let (file, page) = (folder.join("scene.toml"), folder.join("report.html"));
     std::fs::write(&file, scene).unwrap();
-    let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .args(["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()])
-        .output()
-        .unwrap();
+    let run = haptic(&["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()]);
     assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
     (std::fs::read_to_string(page).unwrap(), run.status.code())
 }
@@ -67,23 +50,24 @@ fn nothing_is_missing_cut_off_or_in_the_way() {
     let folder = tempfile::tempdir().unwrap();
     let long = "a name so long that no picture has room for all of it, as people write them";
     let cases = [
-        (format!("name = \"delayed wall\"\n{WALL}{MOTION}"), 0, 3),
+        (format!("{WALL}{MOTION}"), 0, 3),
         (
             format!(
-                "name = \"<b>&amp; {long}\"\n{}{MOTION}",
-                WALL.replace("delay = 1", "delay = 2")
+                "{}{MOTION}",
+                WALL.replace("delayed wall", &format!("<b>&amp; {long}"))
+                    .replace("delay = 1", "delay = 2")
             ),
             1,
             3,
         ),
         (
-            format!("name = \"still\"\n{}", WALL.replace("stiffness = 44.0", "stiffness = 30.0")),
+            WALL.replace("delayed wall", "still").replace("stiffness = 44.0", "stiffness = 30.0"),
             1,
             2,
         ),
         (
             format!(
-                "name = \"free\"\n{}\ntype = \"free-mode\"\nresidual = 0.001\n",
+                "{}\ntype = \"free-mode\"\nresidual = 0.001\n",
                 WALL.split_once("type").unwrap().0
             ),
             0,
@@ -137,7 +121,7 @@ fn the_measurement_finds_what_it_looks_for() {
 #[test]
 fn the_page_stands_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let (page, _) = report(folder.path(), &format!("name = \"wall\"\n{WALL}{MOTION}"));
+    let (page, _) = report(folder.path(), &format!("{WALL}{MOTION}"));
     let links = page.replace("http://www.w3.org/2000/svg", "");
     for outside in ["http:", "https:", "src=", "href=", "@import", "url(", "<script"] {
         assert!(!links.contains(outside), "{outside}");
@@ -148,16 +132,12 @@ fn the_page_stands_alone() {
 fn a_page_that_cannot_be_is_a_bad_question() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scene.toml");
-    std::fs::write(&file, format!("name = \"wall\"\n{WALL}")).unwrap();
+    std::fs::write(&file, WALL).unwrap();
     for (page, words) in [("page.pdf", "must end in .html"), ("no/such/page.html", "No such file")]
     {
-        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
-            .args(["report", file.to_str().unwrap(), "-o"])
-            .arg(folder.path().join(page))
-            .output()
-            .unwrap();
-        assert_eq!(run.status.code(), Some(2));
-        let said = String::from_utf8(run.stderr).unwrap();
+        let page_path = folder.path().join(page);
+        let question = ["report", file.to_str().unwrap(), "-o", page_path.to_str().unwrap()];
+        let said = complaint(haptic(&question));
         assert!(said.contains(page) && said.contains(words), "{said}");
     }
 }

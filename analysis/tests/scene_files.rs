@@ -1,24 +1,12 @@
 //! Scene files: what is read, what is refused and with which words, and that nothing panics.
 
+mod common;
+
 use analysis::file::{self, FileError, Format, SceneFile};
+use common::WALL;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Coupling;
 use proptest::prelude::*;
-
-const WALL: &str = r#"name = "delayed wall"
-[device]
-inertia = 2.2e-5
-damping = 0.022
-[servo]
-period = 0.001
-[coupling]
-stiffness = 44.0
-[environment]
-type = "damper-wall"
-stiffness = 22.0
-damping = 0.01
-delay = 1
-"#;
 
 const FULL: &str = r#"{
   "name": "everything",

@@ -1,45 +1,16 @@
 //! The commands that say what a scene would do, as programs call them.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use std::path::{Path, PathBuf};
+
+use common::{WALL, answer, complaint, haptic};
 use serde_json::Value;
 use tempfile::TempDir;
 
-const WALL: &str = r#"
-name = "wall"
-[device]
-inertia = 2.2e-5
-damping = 0.022
-[servo]
-period = 0.001
-[coupling]
-stiffness = 44.0
-[environment]
-type = "damper-wall"
-stiffness = 22.0
-damping = 0.01
-delay = 1
-"#;
-
-fn haptic(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_haptic")).args(arguments).output().unwrap()
-}
-
 fn json(arguments: &[&str]) -> (i32, Value) {
     let output = haptic(arguments);
-    let text = String::from_utf8(output.stdout).unwrap();
-    let value = serde_json::from_str(&text).unwrap_or_else(|error| {
-        panic!("{error}: {text:?} {}", String::from_utf8_lossy(&output.stderr))
-    });
-    (output.status.code().unwrap(), value)
-}
-
-fn complaint(arguments: &[&str]) -> String {
-    let output = haptic(arguments);
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(output.stdout.is_empty());
-    String::from_utf8(output.stderr).unwrap()
+    (output.status.code().unwrap(), answer(&output))
 }
 
 /// A scene file with something behind the wall above.
@@ -107,7 +78,7 @@ fn hand_torques_come_from_a_file_beside_the_scene() {
     assert_eq!(from_file, json(&["simulate", name(&inside), "--json"]).1);
     std::fs::write(folder.path().join("push.csv"), "0.1\nnan\n").unwrap();
     let beside = scene(&folder, "[simulation]\nsamples = 9\ntorque_file = \"push.csv\"\n");
-    let message = complaint(&["simulate", name(&beside)]);
+    let message = complaint(haptic(&["simulate", name(&beside)]));
     assert!(message.contains("push.csv:2"), "{message}");
 }
 
@@ -122,7 +93,7 @@ fn bad_questions_are_named() {
         ("[simulation]\nsamples = 5\nmissed = { every = 2, seed = 1 }\n", "one or the other"),
     ] {
         let scene = scene(&folder, more);
-        let message = complaint(&["simulate", name(&scene)]);
+        let message = complaint(haptic(&["simulate", name(&scene)]));
         assert!(message.contains(expected), "{message}");
     }
 }
@@ -171,7 +142,7 @@ fn a_design_is_a_scene_that_certifies() {
         let (status, answer) = json(&["certify", name(&designed), "--json"]);
         assert_eq!((status, answer["verdict"].as_str()), (0, Some("certified")), "{question:?}");
     }
-    let message = complaint(&["design", "largest", "cancellation", name(&wall)]);
+    let message = complaint(haptic(&["design", "largest", "cancellation", name(&wall)]));
     assert!(message.contains("no cancellation"), "{message}");
 }
 

@@ -26,9 +26,9 @@ use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
 use crate::recorded::RecordedError;
-use crate::replay::ReplayError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
+use crate::table::TableError;
 use crate::toolchain::{BuildError, SetupError};
 
 /// Certifies haptic scenes, runs them, and shows what they do.
@@ -129,7 +129,7 @@ pub enum CommandError {
     Servo(#[from] firmware::servo::BuildError),
     /// A bad recording.
     #[error(transparent)]
-    Replay(#[from] ReplayError),
+    Replay(#[from] TableError),
     /// A bad record of a run.
     #[error(transparent)]
     Recorded(#[from] RecordedError),

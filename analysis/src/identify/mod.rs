@@ -18,8 +18,10 @@ pub mod step;
 
 use thiserror::Error;
 
+use crate::table::TableError;
+
 pub use fit::{Disk, Estimate, Identification};
-pub use record::{Record, RecordError};
+pub use record::Record;
 pub use response::{Correction, Response};
 
 /// Why a record identifies nothing.
@@ -27,7 +29,7 @@ pub use response::{Correction, Response};
 pub enum IdentifyError {
     /// The file.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Record(#[from] TableError),
     /// No stretch of steady sine.
     #[error(
         "there is no stretch of at least {} periods of a steady sine in the torque",

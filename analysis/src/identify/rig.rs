@@ -2,12 +2,12 @@
 //! counts, torque noise that nobody records, records that are skewed in time.
 
 use firmware::scene::Device;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::record::Record;
 use crate::device::SimulatedEncoder;
-use crate::simulation::method::{Method, step};
-use crate::simulation::plant::{Input, POSITION, Plant};
+use crate::simulation::plant::{POSITION, Plant};
+use crate::simulation::tick::{Stepping, Tick};
 
 /// One sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,9 +39,9 @@ pub struct Sensing {
 #[derive(Clone, Debug)]
 pub struct MeasuredDevice {
     /// From a tick to the time at which the next row's counts are taken.
-    until: Held,
+    until: Tick,
     /// From there to the next tick; none without skew.
-    after: Option<Held>,
+    after: Option<Tick>,
     state: DVector<f64>,
     /// Angle in rad that the encoder sees.
     seen: f64,
@@ -50,32 +50,14 @@ pub struct MeasuredDevice {
     noise: fastrand::Rng,
 }
 
-/// The exact motion over some time with the motor's torque held.
-#[derive(Clone, Debug)]
-struct Held {
-    states: DMatrix<f64>,
-    motor: DVector<f64>,
-}
-
-impl Held {
-    fn new(plant: &Plant, time: f64) -> Self {
-        let (n, step) = (plant.order(), step(plant, Method::Exact, 0.0, time));
-        let motor = step.view((0, n + Input::Motor as usize), (n, 1)).column(0).into_owned();
-        Self { states: step.view((0, 0), (n, n)).into_owned(), motor }
-    }
-
-    fn step(&self, state: &DVector<f64>, torque: f64) -> DVector<f64> {
-        &self.states * state + &self.motor * torque
-    }
-}
-
 impl MeasuredDevice {
     /// A device that is driven and seen so.
     pub fn new(plant: &Plant, sensing: &Sensing) -> Self {
         let Sensing { period, counts_per_turn, torque_noise, skew, seed } = *sensing;
+        let over = |time| Tick::new(plant, &Stepping::exact(time), 0.0);
         Self {
-            until: Held::new(plant, period - skew),
-            after: (skew > 0.0).then(|| Held::new(plant, skew)),
+            until: over(period - skew),
+            after: (skew > 0.0).then(|| over(skew)),
             state: plant.moving(0.0, 0.0),
             seen: 0.0,
             encoder: SimulatedEncoder::new(counts_per_turn),
@@ -92,10 +74,10 @@ impl MeasuredDevice {
     /// Holds a torque in N m until the next tick.
     pub fn hold(&mut self, torque: f64) {
         let motor = torque + self.torque_noise * normal(&mut self.noise);
-        self.state = self.until.step(&self.state, motor);
+        self.state = self.until.end(&self.state, motor, 0.0);
         self.seen = self.state[POSITION];
         if let Some(after) = &self.after {
-            self.state = after.step(&self.state, motor);
+            self.state = after.end(&self.state, motor, 0.0);
         }
     }
 }

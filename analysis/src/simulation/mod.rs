@@ -26,6 +26,7 @@
 pub mod closed;
 pub mod drive;
 pub mod friction;
+pub mod held;
 pub mod kernel;
 pub mod method;
 pub mod missed;

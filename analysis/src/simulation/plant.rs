@@ -22,7 +22,9 @@ use crate::device::Hand;
 pub enum Input {
     /// Torque that the amplifier is told to give, on the motor's mass.
     Motor = 0,
-    /// Torque of the hand, on the mass that it holds.
+    /// Torque of the hand, on the mass that it holds; the speed of its grip where that [moves].
+    ///
+    /// [moves]: Plant::led
     Hand = 1,
     /// Torque of dry friction, on the motor's mass.
     Friction = 2,
@@ -126,6 +128,21 @@ impl Plant {
         self
     }
 
+    /// The same in a hand whose grip moves: its spring and damper go to a point of its own, whose
+    /// angle is one more state and whose velocity in rad/s takes the place of the hand's torque.
+    pub fn led(self, hand: Hand) -> Self {
+        let (n, input) = (self.order(), Input::Hand as usize);
+        let held = self.held(hand);
+        let (velocity, inertia) = (2 * held.hand + 1, held.masses[held.hand].inertia);
+        let mut rates = held.rates.resize(n + 1, n + 1, 0.0);
+        let mut inputs = held.inputs.resize(n + 1, INPUTS, 0.0);
+        rates[(velocity, n)] = hand.stiffness / inertia;
+        inputs.column_mut(input).fill(0.0);
+        inputs[(velocity, input)] = hand.damping / inertia;
+        inputs[(n, input)] = 1.0;
+        Self { rates, inputs, ..held }
+    }
+
     /// The same with an amplifier whose torque follows the command with the time constant `lag`
     /// in s, greater than zero.
     pub fn lagging(self, lag: f64) -> Self {
@@ -180,7 +197,7 @@ impl Plant {
     }
 
     /// The state with all masses at `position` (rad) and `velocity` (rad/s): the device moves as
-    /// one, so that no link is stretched. The amplifier gives no torque.
+    /// one, so that no link is stretched. The amplifier gives no torque, a grip that moves is at 0.
     pub fn moving(&self, position: f64, velocity: f64) -> DVector<f64> {
         DVector::from_fn(self.order(), |row, _| match (row < 2 * self.masses.len(), row % 2) {
             (true, 0) => position,

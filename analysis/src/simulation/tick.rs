@@ -19,6 +19,11 @@ pub struct Stepping {
 }
 
 impl Stepping {
+    /// The exact method without latency, over a period in s.
+    pub fn exact(period: f64) -> Self {
+        Self { method: Method::Exact, substeps: 1, period, latency: 0.0 }
+    }
+
     /// The two parts of a tick, before and after the new torque: length in s and steps.
     pub(super) fn parts(&self) -> [(f64, u32); 2] {
         let share = self.latency / self.period;
@@ -70,6 +75,12 @@ impl Tick {
             hand: &late * column(&before, hand) + column(&after, hand),
             sine: [oscillator(0), oscillator(1)],
         }
+    }
+
+    /// The state after a tick from `state` with these torques in N m held over it; nothing is left
+    /// of the torque of the tick before, and the hand plays no sine.
+    pub fn end(&self, state: &DVector<f64>, motor: f64, hand: f64) -> DVector<f64> {
+        &self.transition * state + &self.motor * motor + &self.hand * hand
     }
 
     /// Whether the tick depends on the torque of the one before.

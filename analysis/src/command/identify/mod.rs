@@ -164,7 +164,7 @@ pub fn of_file(
 /// A record from a file or, as `-`, from standard input.
 fn load(file: &Path) -> Result<Record, CommandError> {
     let record = match file == Path::new("-") {
-        true => identify::record::parse("standard input", io::stdin().lock()),
+        true => identify::record::parse("<stdin>", io::stdin().lock()),
         false => identify::record::load(file),
     };
     Ok(record.map_err(identify::IdentifyError::from)?)

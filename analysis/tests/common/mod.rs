@@ -1,0 +1,66 @@
+//! What the tests of the program share: a scene, and the program as somebody runs it.
+
+// Each test is a program of its own and has a part of this in use.
+#![allow(dead_code)]
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// The paper's delayed wall, which certifies.
+pub const WALL: &str = r#"name = "delayed wall"
+[device]
+inertia = 2.2e-5
+damping = 0.022
+[servo]
+period = 0.001
+[coupling]
+stiffness = 44.0
+[environment]
+type = "damper-wall"
+stiffness = 22.0
+damping = 0.01
+delay = 1
+"#;
+
+/// The program, to be started.
+pub fn program(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_haptic"));
+    command.args(arguments);
+    command
+}
+
+/// Runs the program with nothing to read.
+pub fn haptic(arguments: &[&str]) -> Output {
+    program(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+/// Runs the program with something on its standard input.
+pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = program(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let input = input.to_vec();
+    // A program that has seen enough may close its input.
+    let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    output
+}
+
+/// The one JSON object that is an answer.
+pub fn answer(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
+}
+
+/// What is said to a bad question, which has exit status 2 and no answer.
+pub fn complaint(output: Output) -> String {
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(output.stdout.is_empty(), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
