@@ -6,6 +6,7 @@ use firmware::passivity::transfer::Transfer;
 use nalgebra::{Complex, DMatrix};
 
 use crate::response::Response;
+use crate::stability::eigenvalues;
 
 /// Distance from the unit circle below which a pole is drawn as lying on it: a picture cannot show
 /// the difference. The certificate, which decides, knows better.
@@ -100,10 +101,7 @@ fn roots(g: &Transfer) -> Vec<Complex<f64>> {
             f64::from(u8::from(row == column + 1))
         }
     });
-    if !companion.iter().all(|entry| entry.is_finite()) {
-        return Vec::new();
-    }
-    companion.complex_eigenvalues().iter().copied().collect()
+    eigenvalues(&companion).unwrap_or_default()
 }
 
 #[cfg(test)]

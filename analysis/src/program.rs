@@ -56,6 +56,7 @@ impl Program {
             self.scene.timing.period,
             &self.transducers,
         )
+        .expect("a device that is written there moves")
     }
 
     /// The program of that name.

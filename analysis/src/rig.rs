@@ -7,6 +7,7 @@ use firmware::servo::Transducers;
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
 use crate::hand::Script;
+use crate::simulation::SimulationError;
 use crate::simulation::held::HeldDevice;
 
 /// Where counts come from, and where the converter's codes go to.
@@ -53,11 +54,19 @@ pub struct SimulatedDevice {
 impl SimulatedDevice {
     /// A device at rest at zero, stepped by `period` s, with the encoder and the motor that the
     /// servo is told of.
-    pub fn new(device: Device, script: Script, period: f64, transducers: &Transducers) -> Self {
+    ///
+    /// # Errors
+    /// Where device and hand are too fast for their motion over a period to be computed.
+    pub fn new(
+        device: Device,
+        script: Script,
+        period: f64,
+        transducers: &Transducers,
+    ) -> Result<Self, SimulationError> {
         let full_scale = transducers.full_scale_torque;
-        Self {
-            held: HeldDevice::new(device, script.hand, period),
-            free: HeldDevice::new(device, Hand::default(), period),
+        Ok(Self {
+            held: HeldDevice::new(device, script.hand, period)?,
+            free: HeldDevice::new(device, Hand::default(), period)?,
             script,
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             period,
@@ -65,7 +74,7 @@ impl SimulatedDevice {
             ticks: 0,
             motion: Motion::default(),
             energy: Energy::default(),
-        }
+        })
     }
 
     /// How the device moves now.

@@ -157,17 +157,11 @@ impl<R: Read> Table<R> {
     /// Where it is missing.
     pub fn column(&self, column: Column) -> Result<Place, TableError> {
         self.find(column).ok_or_else(|| {
+            let names: Vec<_> = column.names.iter().map(|name| format!("`{name}`")).collect();
             let columns = self.header.iter().map(excerpt).collect::<Vec<_>>().join(", ");
-            TableError::NoColumn {
-                file: self.file.clone(),
-                wanted: column
-                    .names
-                    .iter()
-                    .map(|name| format!("`{name}`"))
-                    .collect::<Vec<_>>()
-                    .join(" or "),
-                columns: excerpt(&columns),
-            }
+            let columns = if columns.is_empty() { "none".to_owned() } else { excerpt(&columns) };
+            let (file, wanted) = (self.file.clone(), names.join(" or "));
+            TableError::NoColumn { file, wanted, columns }
         })
     }
 

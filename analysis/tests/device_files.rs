@@ -184,7 +184,7 @@ fn a_measured_device_is_identified_and_its_table_is_a_device_file() {
         let amplitude = 0.02 * omega * device.damping.hypot(device.inertia * omega);
         Excitation { frequency, amplitude, duration: (20.0 / frequency).max(2.0) }
     };
-    let record = rig.measure(&[1.0, 4.0, 10.0, 30.0, 60.0, 100.0].map(sine));
+    let record = rig.measure(&[1.0, 4.0, 10.0, 30.0, 60.0, 100.0].map(sine)).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let rows = record.torque.iter().zip(&record.counts).enumerate();

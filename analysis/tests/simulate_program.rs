@@ -98,6 +98,31 @@ fn bad_questions_are_named() {
     }
 }
 
+/// Each of these would otherwise be computed with infinities, without an answer or without an end.
+#[test]
+fn numbers_out_of_range_are_said_to_be_so() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    for (from, to) in [
+        ("inertia = 2.2e-5", "inertia = 1e-300"),
+        ("period = 0.001", "period = 1e300"),
+        ("period = 0.001", "period = 1e-300"),
+        ("stiffness = 22.0", "stiffness = 1e300"),
+    ] {
+        let scene = format!("{WALL}[simulation]\nsamples = 5\n").replace(from, to);
+        std::fs::write(&path, scene).unwrap();
+        for command in ["simulate", "stability", "worst-hand"] {
+            let message = complaint(haptic(&[command, name(&path)]));
+            let said = ["range", "too far apart", "does not fit"];
+            assert!(said.iter().any(|words| message.contains(words)), "{to} {command}: {message}");
+            assert!(message.len() < 400, "{message}");
+        }
+    }
+    // What a servo is given no chance to run either.
+    std::fs::write(&path, WALL.replace("inertia = 2.2e-5", "inertia = 1e-300")).unwrap();
+    assert!(complaint(haptic(&["run", name(&path)])).contains("rates of up to"));
+}
+
 #[test]
 fn stability_and_its_status() {
     let folder = TempDir::new().unwrap();

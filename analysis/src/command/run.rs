@@ -151,7 +151,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             question.script.clone(),
             question.scene.timing.period,
             &question.transducers,
-        ))),
+        )?)),
     };
     let bar = progress::bar(ticks as u64, &question.name);
     let stepper = progress::stepper(&bar);

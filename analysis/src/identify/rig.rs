@@ -6,6 +6,7 @@ use nalgebra::DVector;
 
 use super::record::Record;
 use crate::device::SimulatedEncoder;
+use crate::simulation::SimulationError;
 use crate::simulation::plant::{POSITION, Plant};
 use crate::simulation::tick::{Stepping, Tick};
 
@@ -52,18 +53,21 @@ pub struct MeasuredDevice {
 
 impl MeasuredDevice {
     /// A device that is driven and seen so.
-    pub fn new(plant: &Plant, sensing: &Sensing) -> Self {
+    ///
+    /// # Errors
+    /// Where the device is too fast for its motion over a period to be computed.
+    pub fn new(plant: &Plant, sensing: &Sensing) -> Result<Self, SimulationError> {
         let Sensing { period, counts_per_turn, torque_noise, skew, seed } = *sensing;
-        let over = |time| Tick::new(plant, &Stepping::exact(time), 0.0);
-        Self {
-            until: over(period - skew),
-            after: (skew > 0.0).then(|| over(skew)),
+        let over = |time| Tick::checked(plant, &Stepping::exact(time), 0.0);
+        Ok(Self {
+            until: over(period - skew)?,
+            after: (skew > 0.0).then(|| over(skew)).transpose()?,
             state: plant.moving(0.0, 0.0),
             seen: 0.0,
             encoder: SimulatedEncoder::new(counts_per_turn),
             torque_noise,
             noise: fastrand::Rng::with_seed(seed),
-        }
+        })
     }
 
     /// The counter's content of this tick.
@@ -93,9 +97,12 @@ pub struct Rig {
 
 impl Rig {
     /// Applies one sine after the other, from rest, and records.
-    pub fn measure(&self, sines: &[Excitation]) -> Record {
+    ///
+    /// # Errors
+    /// Where the device is too fast for its motion over a period to be computed.
+    pub fn measure(&self, sines: &[Excitation]) -> Result<Record, SimulationError> {
         let period = self.sensing.period;
-        let mut device = MeasuredDevice::new(&Plant::rigid(self.device), &self.sensing);
+        let mut device = MeasuredDevice::new(&Plant::rigid(self.device), &self.sensing)?;
         let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
         for sine in sines {
             let ticks = (sine.duration / period).round() as usize;
@@ -109,7 +116,7 @@ impl Rig {
                 device.hold(command);
             }
         }
-        Record { period, torque, counts, frequency: Some(frequency) }
+        Ok(Record { period, torque, counts, frequency: Some(frequency) })
     }
 }
 

@@ -26,7 +26,7 @@ fn sines(device: Device, frequencies: &[f64], amplitude: f64) -> Vec<Excitation>
 const LOW_TO_HIGH: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 fn identified(rig: &Rig, frequencies: &[f64], amplitude: f64) -> Identification {
-    let record = rig.measure(&sines(rig.device, frequencies, amplitude));
+    let record = rig.measure(&sines(rig.device, frequencies, amplitude)).unwrap();
     identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap()
 }
 
@@ -64,7 +64,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
     assert!((found.disk.delta - 0.30).abs() < 0.01, "{:?}", found.disk);
     assert!((found.bias + 0.20).abs() < 0.01, "{}", found.bias);
     // A delay that is declared is no skew.
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
     let correction =
         Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.sensing.counts_per_turn) };
     let declared = identify(&record, &correction).unwrap();
@@ -98,7 +98,7 @@ fn without_noise_only_the_counts_are_left() {
 #[test]
 fn steps_are_found_without_labels() {
     let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.02, ..SENSING } };
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02));
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
     let blind = Record { frequency: None, ..record.clone() };
     let (labelled, found) = (step::steps(&record), step::steps(&blind));
     assert_eq!(found.len(), labelled.len());
@@ -112,7 +112,7 @@ fn steps_are_found_without_labels() {
 #[test]
 fn too_little_motion_is_said_to_be_so() {
     let rig = Rig { device: PADDLE, sensing: SENSING };
-    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5));
+    let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5)).unwrap();
     let error =
         identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap_err();
     assert!(error.to_string().contains("use a larger torque"), "{error}");

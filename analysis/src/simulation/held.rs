@@ -10,6 +10,7 @@
 use firmware::scene::Device;
 use nalgebra::{DMatrix, DVector};
 
+use super::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
 use super::tick::{Stepping, Tick};
@@ -27,10 +28,13 @@ pub struct HeldDevice {
 
 impl HeldDevice {
     /// Solves the motion over one period of `period` s.
-    pub fn new(device: Device, hand: Hand, period: f64) -> Self {
+    ///
+    /// # Errors
+    /// Where device and hand are too fast for their motion over a period to be computed.
+    pub fn new(device: Device, hand: Hand, period: f64) -> Result<Self, SimulationError> {
         let plant = Plant::rigid(device).led(hand);
-        let tick = Tick::new(&plant, &Stepping::exact(period), 0.0);
-        Self { device, period, tick, velocity_energy: velocity_energy(&plant, period) }
+        let tick = Tick::checked(&plant, &Stepping::exact(period), 0.0)?;
+        Ok(Self { device, period, tick, velocity_energy: velocity_energy(&plant, period) })
     }
 
     /// One tick with the motor torque `motor` in N m held over it: the motion at its end, and the
@@ -98,7 +102,7 @@ mod tests {
 
     #[test]
     fn free_device_follows_its_closed_form() {
-        let held = HeldDevice::new(DEVICE, Hand::default(), 1e-3);
+        let held = HeldDevice::new(DEVICE, Hand::default(), 1e-3).unwrap();
         let start = Motion { position: 0.1, velocity: 2.0 };
         let torque = 0.05;
         let (end, work) = held.step(start, torque, Grip::default());
@@ -117,7 +121,7 @@ mod tests {
     fn undamped_hand_and_spring_keep_their_energy() {
         let device = Device { damping: 0.0, ..DEVICE };
         let hand = Hand { inertia: 1e-4, damping: 0.0, stiffness: 5.0 };
-        let held = HeldDevice::new(device, hand, 1e-3);
+        let held = HeldDevice::new(device, hand, 1e-3).unwrap();
         let mut motion = Motion { position: 0.1, velocity: 0.0 };
         let energy = |m: Motion| {
             0.5 * (device.inertia + hand.inertia) * m.velocity.powi(2)
@@ -135,8 +139,10 @@ mod tests {
         let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
         for inertia in [1e-3, 2.2e-5, 1e-9, 1e-13] {
             let device = Device { inertia, ..DEVICE };
-            let (whole, half) =
-                (HeldDevice::new(device, hand, 1e-3), HeldDevice::new(device, hand, 5e-4));
+            let (whole, half) = (
+                HeldDevice::new(device, hand, 1e-3).unwrap(),
+                HeldDevice::new(device, hand, 5e-4).unwrap(),
+            );
             let start = Motion { position: 0.02, velocity: -1.0 };
             let (end, work) = whole.step(start, 0.3, Grip { from: 0.1, to: 0.2 });
             let (middle, first) = half.step(start, 0.3, Grip { from: 0.1, to: 0.15 });
@@ -150,7 +156,7 @@ mod tests {
     #[test]
     fn a_light_device_over_a_long_period_stays_finite() {
         let device = Device { inertia: 1e-12, ..DEVICE };
-        let held = HeldDevice::new(device, Hand::default(), 0.1);
+        let held = HeldDevice::new(device, Hand::default(), 0.1).unwrap();
         let (end, work) = held.step(Motion::default(), 0.022, Grip::default());
         assert!((end.velocity - 1.0).abs() < 1e-9 && (end.position - 0.1).abs() < 1e-9);
         assert!(work.abs() < 1e-9);

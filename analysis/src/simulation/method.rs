@@ -4,7 +4,7 @@
 //! What stands beside the plant's states in the matrix: the held inputs, and the sine torque of the
 //! hand with its cosine, whose values within a step all methods are given exactly.
 
-use nalgebra::{DMatrix, Matrix2, linalg::balancing};
+use nalgebra::{DMatrix, DVector, Matrix2, linalg::balancing};
 
 use super::plant::{INPUTS, Input, Plant};
 
@@ -139,12 +139,28 @@ fn trapezoidal(plant: &Plant, omega: f64, h: f64) -> DMatrix<f64> {
     implicit.lu().solve(&explicit).unwrap_or_else(|| explicit * f64::NAN)
 }
 
+/// Balances a matrix in place for its exponential or its eigenvalues; the scales of its rows.
+/// `None` where the squares of its numbers overflow: there is no telling which is larger.
+pub(crate) fn balance(matrix: &mut DMatrix<f64>) -> Option<DVector<f64>> {
+    const LARGEST: f64 = 1e150;
+    let in_range = matrix.iter().all(|entry| entry.abs() <= LARGEST);
+    in_range.then(|| balancing::balance_parlett_reinsch(matrix))
+}
+
+/// Largest rate in a step, as a multiple of its inverse, of which the exponential can be taken: it
+/// needs tenth powers.
+const FASTEST: f64 = 1e25;
+
 /// The exponential of the whole generator, after it is brought to entries of similar size: a
-/// common factor 1/m of the inputs would cost as many digits as it has.
+/// common factor 1/m of the inputs would cost as many digits as it has. It is NaN where the machine
+/// is too fast for its numbers.
 fn exponential(plant: &Plant, omega: f64, h: f64) -> DMatrix<f64> {
     let n = plant.order();
     let mut states = plant.rates() * h;
-    let balance = balancing::balance_parlett_reinsch(&mut states);
+    let scales = balance(&mut states);
+    let Some(balance) = scales.filter(|_| states.amax() <= FASTEST) else {
+        return DMatrix::from_element(n + DRIVE, n + DRIVE, f64::NAN);
+    };
     let mut inputs = rates(plant).columns(n, DRIVE) * h;
     for (mut row, scale) in inputs.row_iter_mut().zip(balance.iter()) {
         row.scale_mut(1.0 / scale);

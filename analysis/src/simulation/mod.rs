@@ -92,6 +92,18 @@ pub enum SimulationError {
         /// What stands there.
         value: String,
     },
+    /// The motion over a period is out of range.
+    #[error(
+        "the motion over a period of {period:e} s of a machine with rates of up to {rate:.1e} per \
+         second is beyond the range of numbers; look at that period, and at the inertia, damping \
+         and stiffness of device and hand"
+    )]
+    TooFast {
+        /// Largest of the machine's rates in 1/s, or of their squares in 1/s^2.
+        rate: f64,
+        /// The period in s.
+        period: f64,
+    },
     /// No eigenvalues were found.
     #[error("the eigenvalues of the closed loop were not found; its numbers are too far apart")]
     Eigenvalues,
@@ -191,6 +203,14 @@ impl Experiment {
         centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
     }
 
+    /// The plant over a tick.
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over a period to be computed.
+    pub fn tick(&self, stride: Stride) -> Result<Tick, SimulationError> {
+        Tick::checked(&self.plant, &self.stepping(stride), self.drive.omega())
+    }
+
     /// How the plant is taken through a tick.
     pub fn stepping(&self, stride: Stride) -> Stepping {
         Stepping {
@@ -285,10 +305,11 @@ impl Simulator {
     /// Where the scene has no law that could run.
     pub fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
         let drive = experiment.drive.clone();
-        // Refuses what has no law, whichever way it would be run.
+        // Refuses what has no law or no motion, whichever way it would be run.
         let general = General::new(experiment, stride)?;
+        let tick = experiment.tick(stride)?;
         if experiment.is_linear()
-            && let Some(linear) = linear(experiment, stride)
+            && let Some(linear) = linear(experiment, &tick)
         {
             return Ok(Self { drive, engine: Engine::Linear(linear) });
         }
@@ -309,12 +330,10 @@ impl Simulator {
     }
 }
 
-fn linear(experiment: &Experiment, stride: Stride) -> Option<Box<dyn Linear>> {
-    let stepping = experiment.stepping(stride);
-    let tick = Tick::new(&experiment.plant, &stepping, experiment.drive.omega());
-    let closed = ClosedLoop::new(&tick, &experiment.scene).ok()?;
+fn linear(experiment: &Experiment, tick: &Tick) -> Option<Box<dyn Linear>> {
+    let closed = ClosedLoop::new(tick, &experiment.scene).ok()?;
     let start = experiment.plant.moving(experiment.start.position, experiment.start.velocity);
-    kernel::kernel(&closed, &tick, stepping.period, &start)
+    kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 
 /// Runs an experiment from its start to its end.

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::SimulationError;
 use super::method::{Method, repeated, rotation, step};
 use super::plant::{Input, Plant};
 
@@ -74,6 +75,26 @@ impl Tick {
             motor: column(&after, motor),
             hand: &late * column(&before, hand) + column(&after, hand),
             sine: [oscillator(0), oscillator(1)],
+        }
+    }
+
+    /// The same, where its numbers are finite.
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over a period to be computed.
+    pub fn checked(
+        plant: &Plant,
+        stepping: &Stepping,
+        omega: f64,
+    ) -> Result<Self, SimulationError> {
+        let tick = Self::new(plant, stepping, omega);
+        let inputs = [&tick.previous, &tick.motor, &tick.hand, &tick.sine[0], &tick.sine[1]];
+        let mut entries = inputs.iter().flat_map(|input| input.iter()).chain(&tick.transition);
+        if entries.all(|entry| entry.is_finite()) {
+            Ok(tick)
+        } else {
+            let rate = plant.rates().amax();
+            Err(SimulationError::TooFast { rate, period: stepping.period })
         }
     }
 

@@ -33,7 +33,7 @@ impl Borders {
             Ok(Response::new(transfers(&changed)?.environment))
         };
         Ok(Self {
-            tick: Tick::new(&experiment.plant, &experiment.stepping(stride), 0.0),
+            tick: experiment.tick(stride)?,
             compliance: match scene.coupling {
                 Coupling::Rigid => 0.0,
                 Coupling::Spring { stiffness } => 1.0 / stiffness,

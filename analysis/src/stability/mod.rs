@@ -9,12 +9,12 @@ mod borders;
 
 use firmware::environment::Environment;
 use firmware::scene::Scene;
-use nalgebra::linalg::{Schur, balancing};
+use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use crate::simulation::closed::ClosedLoop;
-use crate::simulation::tick::Tick;
+use crate::simulation::method::balance;
 use crate::simulation::{Experiment, SimulationError, Stride};
 
 use borders::Borders;
@@ -67,8 +67,7 @@ pub fn judge(experiment: &Experiment, stride: Stride) -> Result<Stability, Simul
 /// # Errors
 /// Where the scene has none.
 pub fn closed_loop(experiment: &Experiment, stride: Stride) -> Result<ClosedLoop, SimulationError> {
-    let tick = Tick::new(&experiment.plant, &experiment.stepping(stride), 0.0);
-    Ok(ClosedLoop::new(&tick, &experiment.scene)?)
+    Ok(ClosedLoop::new(&experiment.tick(stride)?, &experiment.scene)?)
 }
 
 /// Eigenvalues of a matrix.
@@ -78,11 +77,8 @@ pub fn closed_loop(experiment: &Experiment, stride: Stride) -> Result<ClosedLoop
 pub fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, SimulationError> {
     /// More than the iteration has ever been seen to take, and bounded.
     const ITERATIONS: usize = 10_000;
-    if !matrix.iter().all(|entry| entry.is_finite()) {
-        return Err(SimulationError::Eigenvalues);
-    }
     let mut balanced = matrix.clone();
-    balancing::balance_parlett_reinsch(&mut balanced);
+    balance(&mut balanced).ok_or(SimulationError::Eigenvalues)?;
     let schur = Schur::try_new(balanced, f64::EPSILON, ITERATIONS);
     let schur = schur.ok_or(SimulationError::Eigenvalues)?;
     Ok(schur.complex_eigenvalues().iter().copied().collect())

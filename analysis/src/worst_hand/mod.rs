@@ -135,7 +135,7 @@ impl<'d> Trial<'d> {
     fn new(scene: &Scene, device: &'d Chain, lighter: f64) -> Result<Self, SimulationError> {
         let experiment = Experiment::still(scene);
         // Says what is wrong before anything is searched for.
-        closed_loop(&experiment, Stride::default())?;
+        eigenvalues(&closed_loop(&experiment, Stride::default())?.matrix)?;
         Ok(Self { device, lighter, experiment, tried: 0 })
     }
 

@@ -104,8 +104,9 @@ pub struct OutOfRange {
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} does not fit {}: its magnitude may be at most ", self.value, self.format)?;
-        write!(f, "{}", self.bound)
+        // As debugging prints them, long numbers have exponents.
+        write!(f, "{:?} does not fit {}: its magnitude may be at most ", self.value, self.format)?;
+        write!(f, "{:?}", self.bound)
     }
 }
 

@@ -96,7 +96,7 @@ pub fn measure(
         Target::Host => None,
         Target::Qemu => Some(build()?),
     };
-    let mut device = MeasuredDevice::new(&plant, &sensing);
+    let mut device = MeasuredDevice::new(&plant, &sensing)?;
     let bar = progress::bar(SWEEP.ticks(), "identify");
     let stepper = progress::stepper(&bar);
     let measured = measurement::measure(&SWEEP, &mut device, elf.as_deref(), stepper)?;
