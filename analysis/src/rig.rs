@@ -1,5 +1,7 @@
 //! A device with encoder, motor and hand around a servo: one tick after the other.
 
+use std::fmt;
+
 use firmware::dac::DacCode;
 use firmware::scene::Device;
 use firmware::servo::Transducers;
@@ -128,6 +130,17 @@ pub struct Difference {
     pub host: u16,
     /// The other's code.
     pub target: u16,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tick, count, host, target } = self;
+        write!(
+            f,
+            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
+             the target"
+        )
+    }
 }
 
 /// What a run gave.

@@ -108,8 +108,7 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
         assert!(svg.contains(other), "{arguments:?}: {other}");
     }
     // What the program writes it also draws.
-    let simulated = Command::new(env!("CARGO_BIN_EXE_haptic"))
-        .args(["simulate", "missing.toml", "--csv"])
+    let simulated = program(&["simulate", "missing.toml", "--csv"])
         .current_dir(folder.path())
         .output()
         .unwrap();

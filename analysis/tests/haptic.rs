@@ -147,6 +147,15 @@ fn a_recording_runs_on_the_host_tick_by_tick() {
 }
 
 #[test]
+fn a_bad_option_is_named_with_its_value_and_bound() {
+    for number in ["-5", "0", "nan", "1e400"] {
+        let question = ["run", "free_mode", "--counts-per-rev", number];
+        let said = complaint(haptic(&question, b""));
+        assert!(said.contains(number) && said.contains("greater than 0"), "{said}");
+    }
+}
+
+#[test]
 fn scene_files_and_programs_run_on_the_host() {
     for arguments in [&["run", "-"][..], &["run", "free_mode", "--format", "fixed"]] {
         let output = haptic(arguments, WALL.as_bytes());

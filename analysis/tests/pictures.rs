@@ -1,16 +1,10 @@
 //! The pictures of the README are what its commands draw. With `PICTURES=overwrite` they become it.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod common;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
-}
+use std::path::PathBuf;
 
-fn read(path: impl AsRef<Path>) -> String {
-    let path = path.as_ref();
-    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
+use common::{program, read, root};
 
 /// The commands of the README that draw, each as its arguments.
 fn commands(readme: &str) -> Vec<Vec<String>> {
@@ -39,11 +33,7 @@ fn the_pictures_of_the_readme_are_what_its_commands_draw() {
         let kept = PathBuf::from(&command[output]);
         let picture = folder.path().join(kept.file_name().unwrap());
         command[output] = picture.to_str().unwrap().to_owned();
-        let run = Command::new(env!("CARGO_BIN_EXE_haptic"))
-            .args(&command)
-            .current_dir(root())
-            .output()
-            .unwrap();
+        let run = program(&[]).args(&command).current_dir(root()).output().unwrap();
         assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
         if overwrite {
             std::fs::copy(&picture, root().join(&kept)).unwrap();

@@ -18,7 +18,8 @@ pub struct Arguments {
     #[command(subcommand)]
     pub question: Question,
     /// Part of the device's passivity to count on, above 0 and up to 1
-    #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part)]
+    #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part,
+          allow_negative_numbers = true)]
     pub safety: f64,
     /// Keep the coupling of the scene instead of the standard one, 2 delta / T
     #[arg(long, global = true)]

@@ -9,6 +9,7 @@ use firmware::scene::Scene;
 use firmware::servo::Transducers;
 use serde::Serialize;
 
+use super::identify::positive;
 use super::{Answer, CommandError};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
@@ -62,10 +63,12 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.csv")]
     pub replay: Option<PathBuf>,
     /// Encoder counts a turn; the program's own if left out
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", value_parser = positive,
+          allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
     /// Motor torque in N m at the converter's largest code; the program's own if left out
-    #[arg(long, value_name = "TORQUE", value_parser = positive)]
+    #[arg(long, value_name = "TORQUE", value_parser = positive,
+          allow_negative_numbers = true)]
     pub full_scale: Option<f64>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
@@ -89,13 +92,6 @@ const FULL_SCALE: f64 = 5.0;
 
 /// Counts a turn for a scene file that does not say its encoder's step.
 const COUNTS_PER_TURN: f64 = 65_536.0;
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err(format!("`{text}` must be a finite number greater than 0")),
-    }
-}
 
 /// What is to be run, whatever it came from.
 struct Question {
@@ -242,11 +238,7 @@ fn print(arguments: &Arguments, name: &str, outcome: &Outcome) -> Result<(), Com
     }
     out.flush()?;
     if let Some(difference) = &outcome.run.difference {
-        let rig::Difference { tick, count, host, target } = difference;
-        eprintln!(
-            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
-             the target"
-        );
+        eprintln!("{difference}");
     }
     Ok(())
 }

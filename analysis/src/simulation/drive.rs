@@ -93,8 +93,12 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 /// Numbers apart by commas, spaces or lines; `#` begins a comment.
 fn read(path: &Path) -> Result<Vec<f64>, SimulationError> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path)
+    let bytes = std::fs::read(path)
         .map_err(|error| SimulationError::TorqueFile { file: file.clone(), error })?;
+    let text = crate::file::text_of(&file, 1, &bytes)
+        .map_err(|error| SimulationError::TorqueText(Box::new(error)))?;
+    // As spreadsheets begin their files.
+    let text = text.trim_start_matches('\u{feff}');
     let mut torque = Vec::new();
     for (index, line) in text.lines().enumerate() {
         let data = line.split('#').next().unwrap_or_default();
@@ -153,5 +157,10 @@ mod tests {
         std::fs::write(&bad, "0.1\nten\n").unwrap();
         let message = read(&bad).unwrap_err().to_string();
         assert!(message.contains("bad.csv:2") && message.contains("ten"), "{message}");
+        std::fs::write(&bad, b"\xef\xbb\xbf0.1\r\n0.2").unwrap();
+        assert_eq!(read(&bad).unwrap(), [0.1, 0.2]);
+        std::fs::write(&bad, b"0.1\n\xff\n").unwrap();
+        let message = read(&bad).unwrap_err().to_string();
+        assert!(message.contains("bad.csv:2:1") && message.contains("UTF-8"), "{message}");
     }
 }

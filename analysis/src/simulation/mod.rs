@@ -47,7 +47,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::device::Motion;
-use crate::file::SceneFile;
+use crate::file::{FileError, SceneFile};
 
 use closed::ClosedLoop;
 use drive::Drive;
@@ -82,8 +82,11 @@ pub enum SimulationError {
         /// Why.
         error: std::io::Error,
     },
+    /// The torque file is not text.
+    #[error(transparent)]
+    TorqueText(Box<FileError>),
     /// Something in the torque file is not a finite number.
-    #[error("{file}:{line}: {value} must be a finite number in N m")]
+    #[error("{file}:{line}: `{value}` is out of bounds; it must be a finite number in N m")]
     TorqueValue {
         /// The file.
         file: String,

@@ -228,11 +228,15 @@ impl<'d> Trial<'d> {
                 );
             all.extend(links.map(|link| Grip { link: Some(link), ..*hand }));
         }
+        // A mass behind nothing is in no hand, and its rest anywhere a double eigenvalue 1, which
+        // rounding moves to either side.
+        let holds = |link: Compliance| link.stiffness > 0.0 || link.damping > 0.0;
         // Springs that resonate far above the sample rate are as good as rigid.
         let stiffest = |mass: f64| (inertia + mass) * (4.0 * PI / period).powi(2);
         all.retain(|hand| {
             let linked = hand.link.map_or(0.0, |link| link.stiffness);
-            hand.inertia <= HEAVIEST * inertia
+            hand.link.is_none_or(holds)
+                && hand.inertia <= HEAVIEST * inertia
                 && hand.stiffness <= stiffest(hand.inertia)
                 && linked <= stiffest(hand.inertia)
         });

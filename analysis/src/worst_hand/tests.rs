@@ -41,6 +41,30 @@ fn what_is_rejected_oscillates_in_some_hand_and_what_is_certified_in_none() {
     }
 }
 
+/// The climb from a soft link must not end at a mass that nothing holds.
+#[test]
+fn a_mass_behind_nothing_is_no_hand() {
+    let wall = Wall {
+        stiffness: 8.3155701205929,
+        damping: 0.009421656226762594,
+        filter: None,
+        delay: 1,
+        face: 0.0,
+        one_sided: false,
+    };
+    let (inertia, damping) = (2.912708129978716e-5, 0.03430654821215887);
+    let scene = Scene {
+        device: Device { inertia, damping, passivity: None },
+        timing: Timing { period: 0.003042550575872087, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 15.785823866956035 },
+        environment: Environment::DamperWall(wall),
+        torque_limit: None,
+    };
+    assert!(certify(&scene).is_ok());
+    let found = search(&scene, &Chain::rigid(inertia, damping).unwrap()).unwrap();
+    assert!(!found.oscillates && found.lighter.is_none(), "{found:?}");
+}
+
 /// What the search says must come true tick by tick.
 #[test]
 fn the_hand_that_was_found_makes_a_simulation_grow() {

@@ -11,7 +11,6 @@ use serde::Serialize;
 use super::{Answer, CommandError};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::quantity::significant;
-use crate::rig::Difference;
 use target::Origin;
 
 /// Arguments of `haptic identify`.
@@ -23,7 +22,8 @@ pub struct Arguments {
     #[arg(value_name = "FILE", required_unless_present = "target")]
     pub file: Option<PathBuf>,
     /// Counts of the encoder in one turn; 61440 with --target
-    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target")]
+    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target",
+          allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
     #[command(flatten)]
     #[allow(missing_docs)]
@@ -43,14 +43,16 @@ pub struct Arguments {
 #[derive(Debug, Args)]
 pub struct Reading {
     /// Time from a row's time until its torque is applied, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+          allow_negative_numbers = true)]
     pub torque_delay: f64,
     /// Time by which the counts of a row are older than its time, in s
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
+          allow_negative_numbers = true)]
     pub count_delay: f64,
     /// Part of each sine that is left out until the device has settled, 0 to 0.9; otherwise 0.25,
     /// or none with --target, where the settling is not part of the sine
-    #[arg(long, value_name = "PART", value_parser = part)]
+    #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true)]
     pub settle: Option<f64>,
 }
 
@@ -127,11 +129,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     }
     out.flush()?;
     let differs = origin.and_then(|origin| origin.difference);
-    if let Some(Difference { tick, count, host, target }) = differs {
-        eprintln!(
-            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
-             the target"
-        );
+    if let Some(difference) = differs {
+        eprintln!("{difference}");
     }
     Ok(if found.passivity().is_some() && differs.is_none() { Answer::Yes } else { Answer::No })
 }

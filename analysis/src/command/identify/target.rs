@@ -39,11 +39,12 @@ pub struct Simulated {
     #[arg(long, value_enum)]
     pub target: Option<Target>,
     /// Standard deviation of the torque that is there and not recorded, new in every tick, in N m
-    #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative,
+    #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative, allow_negative_numbers = true,
           requires = "target")]
     pub torque_noise: f64,
     /// Time by which the simulated counts are late, whatever is declared, in s; less than a period
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew, requires = "target")]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew,
+          allow_negative_numbers = true, requires = "target")]
     pub skew: f64,
     /// The noise's seed
     #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]
