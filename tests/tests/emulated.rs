@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report};
-use analysis::toolchain::{NumberFormat, Toolchain, prepare};
+use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
 use firmware::board::question::{Ends, Reply};
 use firmware::certificate::{Certified, assess};
 use firmware::encoder::RawCount;
@@ -33,8 +33,10 @@ mod free_mode;
 /// Ticks of each run.
 const TICKS: usize = 5_000;
 
-static TOOLCHAIN: LazyLock<Toolchain> =
-    LazyLock::new(|| prepare(|step| eprintln!("{step}")).unwrap_or_else(|error| panic!("{error}")));
+static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
+    prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
+        .unwrap_or_else(|error| panic!("{error}"))
+});
 
 /// Counts of a hand that wanders, jumps, stands still, turns through the counter's wrap, and flings
 /// the device so far that the torque is limited.

@@ -16,7 +16,7 @@ use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Input, play};
-use crate::toolchain::{self, NumberFormat, Toolchain};
+use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
@@ -57,7 +57,8 @@ const TICKS: usize = 5000;
 
 /// Measures and prints.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host();
     for program in program::ALL {
         on_target(&toolchain, program, &mut figures)?;

@@ -22,7 +22,7 @@ use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{self, Input, Outcome, play};
 use crate::simulation::{Experiment, Stride, simulate};
-use crate::toolchain::{self, Toolchain};
+use crate::toolchain::{self, Toolchain, Tools};
 use crate::verdict::{self, Report, Verdict};
 use crate::worst_hand::{self, Held};
 
@@ -82,7 +82,8 @@ const PAST_THE_LINE: Scene = Scene {
 /// a code of the emulated board differs from the host's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let mut out = io::stdout().lock();
-    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let folder = &arguments.out;
     std::fs::create_dir_all(folder)
         .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;

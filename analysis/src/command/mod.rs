@@ -6,6 +6,7 @@ pub mod chart;
 pub mod demo;
 pub mod design;
 pub mod device;
+pub mod flash;
 pub mod identify;
 pub mod report;
 pub mod run;
@@ -53,6 +54,8 @@ pub enum Command {
     Device(device::Arguments),
     /// What are inertia, damping and passivity of a device that was measured?
     Identify(identify::Arguments),
+    /// Build a scene's program for a board and flash it.
+    Flash(flash::Arguments),
     /// Run a scene tick by tick, on this machine or on the emulated board.
     Run(run::Arguments),
     /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
@@ -139,6 +142,9 @@ pub enum CommandError {
     /// A program does not build.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// A program could not be flashed.
+    #[error(transparent)]
+    Probe(#[from] crate::toolchain::probe::ProbeError),
     /// A run failed.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
@@ -196,6 +202,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Certify(arguments) => certify::run(&arguments),
         Command::Device(arguments) => device::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::Flash(arguments) => flash::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

@@ -20,7 +20,7 @@ use crate::progress;
 use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
 use crate::scenario::{Input, Outcome, play};
-use crate::toolchain::{self, NumberFormat};
+use crate::toolchain::{self, NumberFormat, Tools};
 use crate::{replay, rig};
 
 /// Where a scene runs.
@@ -218,7 +218,8 @@ fn build(question: &Question, arguments: &Arguments) -> Result<PathBuf, CommandE
     let Some(program) = question.program else {
         return Err(CommandError::FileOnBoard { scene: question.name.clone() });
     };
-    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner(&format!("building {}", program.name));
     let elf = toolchain.build_scene(program.name, arguments.format.into())?;
     spinner.finish_and_clear();

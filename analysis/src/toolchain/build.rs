@@ -7,10 +7,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::TARGET;
+use super::memory::{Memory, NoLength};
 use super::plan::Compiler;
 use super::prepare::last_lines;
 use super::size::{SizeError, Sizes};
+use super::{Board, TARGET};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,6 +74,14 @@ pub enum BuildError {
         /// What the compiler said.
         output: String,
     },
+    /// The linker's map could not be read.
+    #[error("{path}: {source}")]
+    Map {
+        /// The map.
+        path: PathBuf,
+        /// Why.
+        source: NoLength,
+    },
     /// The program's size could not be read.
     #[error("{path}: {source}")]
     Size {
@@ -88,6 +97,15 @@ pub enum BuildError {
 pub struct Toolchain {
     compiler: Compiler,
     workspace: Workspace,
+}
+
+/// A program that was built.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Its file.
+    pub path: PathBuf,
+    /// What it takes of a board's memory.
+    pub sizes: Sizes,
 }
 
 /// Where the source is, and where what is built from it goes.
@@ -148,9 +166,32 @@ impl Toolchain {
     /// # Errors
     /// Where there is no such scene, or it does not compile.
     pub fn size(&self, name: &str) -> Result<Sizes, BuildError> {
-        let path = self.scene(name, NumberFormat::F32, "board-qemu", "-bare")?;
-        let elf = fs::read(&path).map_err(|source| BuildError::File { path: path.clone(), source });
-        Sizes::of_elf(&elf?).map_err(|source| BuildError::Size { path, source })
+        Ok(Program::at(self.scene(name, NumberFormat::F32, "board-qemu", "-bare")?)?.sizes)
+    }
+
+    /// Builds a program for a board that can be flashed.
+    ///
+    /// # Errors
+    /// Where there is no such program, or it does not compile or does not fit.
+    pub fn build_for(
+        &self,
+        board: Board,
+        name: &str,
+        format: NumberFormat,
+    ) -> Result<Program, BuildError> {
+        Program::at(self.scene(name, format, board.name(), &format!("-{board}"))?)
+    }
+
+    /// What a board's program may take of its memory.
+    ///
+    /// # Errors
+    /// Where the linker's map cannot be read.
+    pub fn memory(&self) -> Result<Memory, BuildError> {
+        let path = self.workspace.root.join("memory.x");
+        match fs::read_to_string(&path) {
+            Ok(map) => Memory::of_map(&map).map_err(|source| BuildError::Map { path, source }),
+            Err(source) => Err(BuildError::File { path, source }),
+        }
     }
 
     /// Builds the program that judges scenes for [`Judge`](crate::emulator::Judge).
@@ -239,6 +280,17 @@ const INHERITED: [&str; 9] = [
     "RUSTC_WORKSPACE_WRAPPER",
     "DEFMT_LOG",
 ];
+
+impl Program {
+    /// The program in a file.
+    fn at(path: PathBuf) -> Result<Self, BuildError> {
+        let elf = fs::read(&path).map_err(|source| BuildError::File { path: path.clone(), source });
+        match Sizes::of_elf(&elf?) {
+            Ok(sizes) => Ok(Self { path, sizes }),
+            Err(source) => Err(BuildError::Size { path, source }),
+        }
+    }
+}
 
 impl Job<'_> {
     fn arguments(&self) -> [&str; 10] {

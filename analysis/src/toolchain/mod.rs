@@ -3,14 +3,20 @@
 //! [`prepare`] looks at the machine ([`facts`]), chooses a route ([`plan`], a pure function), takes
 //! it, and gives a [`Toolchain`]; everything else asks that.
 
+mod board;
 mod build;
 pub mod facts;
+mod memory;
 pub mod plan;
 mod prepare;
+pub mod probe;
 mod size;
 mod version;
 
-pub use build::{BuildError, NumberFormat, Toolchain};
+pub use board::{Board, NoBoard};
+pub use build::{BuildError, NumberFormat, Program, Toolchain};
+pub use memory::Memory;
+pub use plan::Tools;
 pub use prepare::{SetupError, prepare};
 pub use size::Sizes;
 pub use version::Version;

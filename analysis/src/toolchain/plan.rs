@@ -11,6 +11,15 @@ use std::fmt;
 use super::{TARGET, Version};
 use crate::emulator::QEMU;
 
+/// What is wanted of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tools {
+    /// To build programs for a board.
+    Compiler,
+    /// To build them and to run them on the emulated board.
+    CompilerAndEmulator,
+}
+
 /// What was seen on the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facts {
@@ -163,9 +172,13 @@ enum Need {
 }
 
 /// Chooses the route.
-pub fn plan(facts: &Facts) -> Plan {
+pub fn plan(facts: &Facts, tools: Tools) -> Plan {
     let (compiler, compiler_need) = compiler(facts);
-    let needs = [compiler_need, emulator(facts)];
+    let emulator = match tools {
+        Tools::Compiler => Need::Nothing,
+        Tools::CompilerAndEmulator => emulator(facts),
+    };
+    let needs = [compiler_need, emulator];
     let requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
     let packages: Vec<_> = needs.iter().flat_map(Need::packages).copied().collect();
     let lists_may_help =

@@ -47,7 +47,7 @@ fn bare_container() -> Facts {
 }
 
 fn check(facts: &Facts, expected: Plan) {
-    assert_eq!(plan(facts), expected, "{facts:?}");
+    assert_eq!(plan(facts, Tools::CompilerAndEmulator), expected, "{facts:?}");
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn following_the_plan_ends() {
                 facts.debian.map(|d| Debian { packages: [PackageState::Unknown; 5], ..d });
         }
         let mut steps = 0;
-        while let Plan::Do(step) = plan(&facts) {
+        while let Plan::Do(step) = plan(&facts, Tools::CompilerAndEmulator) {
             assert!(step != Step::AddTarget || !facts.fetching_forbidden);
             take(&mut facts, step);
             steps += 1;
@@ -203,4 +203,11 @@ fn take(facts: &mut Facts, step: Step) {
         }
         (step, None) => panic!("{step} without Debian"),
     }
+}
+
+#[test]
+fn whoever_only_flashes_needs_no_emulator() {
+    let facts = Facts { qemu: None, ..complete() };
+    assert_eq!(plan(&facts, Tools::Compiler), Plan::Ready(Compiler::Own));
+    assert!(matches!(plan(&facts, Tools::CompilerAndEmulator), Plan::Ask(_)));
 }

@@ -5,7 +5,7 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use super::build::{Toolchain, Workspace};
 use super::facts::observe;
-use super::plan::{Plan, Request, Step, plan};
+use super::plan::{Plan, Request, Step, Tools, plan};
 use super::{BuildError, TARGET};
 
 /// Why programs for the board cannot be built here.
@@ -44,20 +44,21 @@ fn bullets(requests: &[Request]) -> String {
     requests.iter().map(|request| format!("\n  - {request}")).collect()
 }
 
-/// Makes sure that programs for the board can be built and run, and gives what builds them.
+/// Makes sure that programs for the board can be built, and run where that is wanted; gives what
+/// builds them.
 ///
 /// As root on Debian it installs what is missing; with rustup it adds the target, unless the
 /// machine's owner forbids that. `progress` is told each step before it is taken.
 ///
 /// # Errors
 /// Elsewhere, [`SetupError::Missing`] says exactly what to install.
-pub fn prepare(progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
+pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
     let workspace = Workspace::find()?;
     // Two programs that install at the same time would find each other's half-done work.
     let _alone = workspace.lock("setup")?;
     let mut taken = Vec::new();
     loop {
-        let step = match plan(&observe(taken.contains(&Step::FetchLists))) {
+        let step = match plan(&observe(taken.contains(&Step::FetchLists)), tools) {
             Plan::Ready(compiler) => return Ok(Toolchain::new(compiler, workspace)),
             Plan::Ask(requests) => return Err(SetupError::Missing(requests)),
             Plan::Do(step) => step,

@@ -18,7 +18,7 @@ use crate::program::identify::{SWEEP, TRANSDUCERS};
 use crate::progress;
 use crate::rig::Difference;
 use crate::simulation::plant::Plant;
-use crate::toolchain::{self, NumberFormat};
+use crate::toolchain::{self, NumberFormat, Tools};
 
 /// What drives the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -117,7 +117,8 @@ pub fn measure(
 }
 
 fn build() -> Result<PathBuf, CommandError> {
-    let toolchain = toolchain::prepare(|step| eprintln!("set-up: {step}"))?;
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner("building identify");
     // The program computes its codes in `f32` whatever format the scenes have.
     let elf = toolchain.build_scene("identify", NumberFormat::F32)?;

@@ -1,0 +1,63 @@
+//! `haptic flash`: a scene's program onto a board.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::run::FormatArgument;
+use super::{Answer, CommandError};
+use crate::progress;
+use crate::toolchain::{self, Board, NoBoard, Tools, probe};
+
+/// Arguments of `haptic flash`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of a program (delayed_spring, damper_wall, free_mode, identify)
+    #[arg(value_name = "PROGRAM")]
+    pub program: String,
+    /// The board: nucleo-g474re, b-g431b-esc1 or stm32f405
+    #[arg(long, value_parser = board)]
+    pub board: Board,
+    /// Number format that it computes in
+    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
+    pub format: FormatArgument,
+    /// Build, print the sizes and the program's file, and stop
+    #[arg(long)]
+    pub build_only: bool,
+    /// The debug probe to use where there are several: VID:PID or VID:PID:SERIAL
+    #[arg(long, value_name = "PROBE")]
+    pub probe: Option<String>,
+}
+
+fn board(name: &str) -> Result<Board, NoBoard> {
+    Board::find(name)
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Where the program cannot be built, or probe-rs or the probe is missing or fails.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
+    let (board, name) = (arguments.board, arguments.program.as_str());
+    let spinner = progress::spinner(&format!("building {name} for {board}"));
+    let program = toolchain.build_for(board, name, arguments.format.into())?;
+    spinner.finish_and_clear();
+    let chip = probe::chip(&read(&program.path)?)?;
+    let (sizes, memory) = (program.sizes, toolchain.memory()?);
+    println!("program: {}", program.path.display());
+    println!("chip: {chip}");
+    println!("flash: {} of {} bytes", sizes.flash(), memory.flash);
+    println!("variables: {} of {} bytes of RAM", sizes.ram(), memory.ram);
+    println!("stack: {} bytes of RAM", memory.stack);
+    if !arguments.build_only {
+        probe::run(&program.path, &chip, arguments.probe.as_deref())?;
+    }
+    Ok(Answer::Yes)
+}
+
+fn read(path: &PathBuf) -> Result<Vec<u8>, CommandError> {
+    std::fs::read(path).map_err(|source| {
+        CommandError::Build(toolchain::BuildError::File { path: path.clone(), source })
+    })
+}

@@ -1,0 +1,67 @@
+//! The boards that programs can be flashed to.
+
+use std::fmt;
+
+/// A board; each is a feature of the firmware's package and a file in its `board` folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Board {
+    /// NUCLEO-G474RE.
+    NucleoG474re,
+    /// B-G431B-ESC1 and boards like it.
+    BG431bEsc1,
+    /// The VESC class, with an STM32F405.
+    Stm32f405,
+}
+
+/// There is no such board.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
+pub struct NoBoard {
+    /// What was asked for.
+    pub name: String,
+}
+
+impl Board {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::Stm32f405];
+
+    /// Its name, which is also the feature's.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NucleoG474re => "nucleo-g474re",
+            Self::BG431bEsc1 => "b-g431b-esc1",
+            Self::Stm32f405 => "stm32f405",
+        }
+    }
+
+    /// The board of that name.
+    ///
+    /// # Errors
+    /// Where there is none; the error names those that there are.
+    pub fn find(name: &str) -> Result<Self, NoBoard> {
+        let found = Self::ALL.into_iter().find(|board| board.name() == name);
+        found.ok_or_else(|| NoBoard { name: name.into() })
+    }
+}
+
+impl fmt::Display for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_boards_and_names_them_where_it_does_not() {
+        for board in Board::ALL {
+            assert_eq!(Board::find(board.name()), Ok(board));
+        }
+        assert_eq!(
+            Board::find("arduino").unwrap_err().to_string(),
+            "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, stm32f405"
+        );
+    }
+}

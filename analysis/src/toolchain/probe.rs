@@ -1,0 +1,87 @@
+//! Handing a program over to probe-rs, which flashes it through a debug probe and shows its log.
+
+use std::io;
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+
+use object::{Object, ObjectSection};
+
+/// The program that speaks to debug probes.
+pub const PROBE_RS: &str = "probe-rs";
+
+/// Section in which a program says which chip it is for.
+const CHIP: &str = ".probe-rs.chip";
+
+/// Why a program could not be flashed.
+#[derive(Debug, thiserror::Error)]
+pub enum ProbeError {
+    /// probe-rs is not there.
+    #[error(
+        "{PROBE_RS} is not installed: cargo install --locked probe-rs-tools, or see \
+         https://probe.rs/docs/getting-started/installation"
+    )]
+    NotInstalled,
+    /// probe-rs could not be started.
+    #[error("{PROBE_RS} could not be started: {0}")]
+    Start(#[source] io::Error),
+    /// There is no debug probe.
+    #[error(
+        "no debug probe is connected, or it may not be used: plug the board's USB port in (on \
+         Linux, with the rules of https://probe.rs/docs/getting-started/probe-setup)"
+    )]
+    NoProbe,
+    /// The program does not say which chip it is for.
+    #[error("the program does not say which chip it is for: {0}")]
+    NoChip(String),
+    /// probe-rs failed; it has said why.
+    #[error("{PROBE_RS} ended with {0}")]
+    Failed(ExitStatus),
+}
+
+/// The chip that a program says it is for.
+///
+/// # Errors
+/// Where it says nothing.
+pub fn chip(elf: &[u8]) -> Result<String, ProbeError> {
+    let file = object::File::parse(elf).map_err(|error| ProbeError::NoChip(error.to_string()))?;
+    let section = file.section_by_name(CHIP);
+    let data = section.and_then(|section| section.data().ok()).unwrap_or_default();
+    match std::str::from_utf8(data) {
+        Ok(name) if !name.is_empty() => Ok(name.into()),
+        _ => Err(ProbeError::NoChip(format!("it has no section {CHIP}"))),
+    }
+}
+
+/// Flashes a program and shows its log until it or the person ends that.
+///
+/// `probe` is the one to use where there are several, as probe-rs takes it.
+///
+/// # Errors
+/// Where probe-rs or the probe is missing, or probe-rs fails.
+pub fn run(elf: &Path, chip: &str, probe: Option<&str>) -> Result<(), ProbeError> {
+    if !any_probe()? {
+        return Err(ProbeError::NoProbe);
+    }
+    let mut command = Command::new(PROBE_RS);
+    command.args(["run", "--chip", chip]);
+    if let Some(probe) = probe {
+        command.args(["--probe", probe]);
+    }
+    let status = command.arg(elf).status().map_err(unstarted)?;
+    if status.success() { Ok(()) } else { Err(ProbeError::Failed(status)) }
+}
+
+/// Whether probe-rs sees any probe. Where it cannot say, it is left to say so when it flashes.
+fn any_probe() -> Result<bool, ProbeError> {
+    let listing = Command::new(PROBE_RS).arg("list").stdin(Stdio::null()).output();
+    let listing = listing.map_err(unstarted)?;
+    let said = [listing.stdout, listing.stderr].concat();
+    Ok(!String::from_utf8_lossy(&said).contains("No debug probes"))
+}
+
+fn unstarted(error: io::Error) -> ProbeError {
+    match error.kind() {
+        io::ErrorKind::NotFound => ProbeError::NotInstalled,
+        _ => ProbeError::Start(error),
+    }
+}
