@@ -25,6 +25,14 @@ pub mod nucleo_g474re;
 pub mod place;
 #[cfg(all(target_os = "none", feature = "stm32"))]
 #[allow(unsafe_code)]
+pub mod retained;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+pub mod seat;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+#[allow(unsafe_code)]
+pub mod stack;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+#[allow(unsafe_code)]
 pub mod stm32;
 #[cfg(all(target_os = "none", feature = "stm32f405"))]
 #[allow(unsafe_code)]

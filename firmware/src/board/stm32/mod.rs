@@ -9,6 +9,7 @@ mod fast;
 pub mod line;
 pub mod pace;
 pub mod quadrature;
+mod registers;
 pub mod serial;
 mod start;
 mod stop;
@@ -22,14 +23,17 @@ pub use super::stm32f405 as wiring;
 
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
-use embassy_stm32::{Peri, peripherals};
+pub use start::{ServoPlace, run};
 
-pub use start::{SceneProgram, Seat, run};
+/// When a torque reaches the motor.
+#[cfg(not(feature = "immediate"))]
+pub type Mode = crate::servo::Latched;
+/// When a torque reaches the motor.
+#[cfg(feature = "immediate")]
+pub type Mode = crate::servo::Immediate<{ wiring::LATENCY }>;
 
 /// What a board gives besides its registers.
 pub struct Connected {
     /// The port to the host.
     pub serial: serial::Serial,
-    /// The watchdog, not yet running.
-    pub watchdog: Peri<'static, peripherals::IWDG>,
 }

@@ -5,12 +5,14 @@
 //! cannot drift apart.
 
 use core::hint::cold_path;
+use core::num::NonZeroU32;
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::vals::{Mms, Urs};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
+use super::registers::LONGEST_PERIOD;
 use super::wiring::CLOCK;
 use crate::board::StartError;
 
@@ -37,10 +39,9 @@ impl Period {
     pub fn of(seconds: f64) -> Result<Self, StartError> {
         let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
         let wanted = seconds * clock;
-        let longest = MOST * MOST;
         // Written so that NaN is refused. A hundred counts are not time enough for any tick.
-        if !(wanted >= 100.0 && wanted <= longest) {
-            return Err(StartError::Period { period: seconds, longest: longest / clock });
+        if !(wanted >= 100.0 && seconds <= LONGEST_PERIOD) {
+            return Err(StartError::Period { period: seconds, longest: LONGEST_PERIOD });
         }
         // The smallest prescaler with which the period fits: the finest steps. Both casts round
         // down what is positive and small enough.
@@ -50,13 +51,14 @@ impl Period {
     }
 
     /// Clock counts in a period.
-    pub const fn clock_counts(&self) -> u32 {
-        self.prescale * self.counts
+    pub fn clock_counts(&self) -> NonZeroU32 {
+        // Neither factor is below one.
+        NonZeroU32::new(self.prescale * self.counts).unwrap_or(NonZeroU32::MIN)
     }
 
     /// Seconds in a period, as it is paced.
     pub fn seconds(&self) -> f64 {
-        f64::from(self.clock_counts()) / self.clock
+        f64::from(self.clock_counts().get()) / self.clock
     }
 }
 
@@ -67,7 +69,7 @@ const MOST: f64 = 65_536.0;
 #[derive(Debug)]
 pub struct Pace {
     /// Clock counts in a period.
-    period: u32,
+    period: NonZeroU32,
     /// The clock when the present period began.
     began: u32,
 }
@@ -103,13 +105,13 @@ impl Pace {
     pub fn passed(&mut self) -> u32 {
         TIMER.sr().write(|w| w.set_uif(false));
         let since = now().wrapping_sub(self.began);
-        if since < 2 * self.period {
-            self.began = self.began.wrapping_add(self.period);
+        if since < 2 * self.period.get() {
+            self.began = self.began.wrapping_add(self.period.get());
             return 1;
         }
         cold_path();
         let passed = since / self.period;
-        self.began = self.began.wrapping_add(passed * self.period);
+        self.began = self.began.wrapping_add(passed * self.period.get());
         passed
     }
 

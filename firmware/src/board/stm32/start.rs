@@ -1,61 +1,69 @@
 //! From reset to a running servo.
 
-use core::hint::black_box;
+use core::fmt::Display;
 
 use embassy_executor::Executor;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use static_cell::StaticCell;
 
-use super::pace::{Pace, Period};
+use super::pace::Period;
 use super::quadrature::Counter;
-use super::serial::Serial;
+use super::registers::Registers;
 use super::stop::stop;
 use super::wiring::{self, CONVERTER, ENCODER};
-use crate::board::StartError;
-use crate::board::critical;
+use super::{Connected, Mode};
 use crate::board::place::Place;
-use crate::certificate::{Certified, Rejection};
-use crate::environment::Renderable;
+use crate::board::seat::{Ends, Meeting, Seat, ends};
+use crate::board::{critical, stack};
+use crate::boot::{Program, boot};
 use crate::number::Number;
-use crate::scene::Scene;
-use crate::servo::{Servo, Transducers};
+use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
+use crate::tuning::Tunable;
 
-/// What `certify` gives.
-pub type Judgement<E> = Result<Certified<Scene<E>>, Rejection>;
-
-/// What a program brings.
-pub struct SceneProgram<E: 'static> {
-    /// The certificate from the compiler.
-    pub certified: &'static Certified<Scene<E>>,
-    /// The same judgement, for the board to repeat.
-    pub certify: fn(Scene<E>) -> Judgement<E>,
-    /// Sensor and motor.
-    pub transducers: &'static Transducers,
-}
-
-/// What drives the motor, with its place between encoder and converter.
-pub struct Seat<E: Renderable<N>, N: Number> {
-    servo: Servo<E, N>,
-    pace: Pace,
-}
-
-impl<E: Renderable<N>, N: Number> Seat<E, N> {
-    /// One tick.
-    #[inline(always)]
-    pub fn tick(&mut self) {
-        self.pace.passed();
-        let output = self.servo.tick(ENCODER.count());
-        CONVERTER.write(output.code);
-    }
-}
+/// Where the servo's interrupt finds its seat.
+pub type ServoPlace<E, N> = Place<Seat<Registers, E, N, Mode>>;
 
 /// Runs a scene.
-pub fn run<E, N>(program: SceneProgram<E>, place: &'static Place<Seat<E, N>>) -> !
+pub fn run<E, N>(
+    program: Program<E>,
+    place: &'static ServoPlace<E, N>,
+    meeting: &'static Meeting<E, N, Mode>,
+) -> !
 where
-    E: Copy + Renderable<N>,
+    E: Tunable<N> + Renders<Mode>,
     N: Number,
 {
+    let connected = connect();
+    let period = program.scene.timing.period;
+    let period = Period::of(period).unwrap_or_else(|error| refuse(&error));
+    // The counter's width is the board's, whatever the program was first written for.
+    let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
+    let program = Program { transducers, ..program };
+    let mut registers = Registers::new(period);
+    let Ends { requests, inbox, frames, told } = ends(meeting);
+    let (cycle, left) =
+        boot(&program, &mut registers, &requests).unwrap_or_else(|error| refuse(&error));
+    if let Some(left) = left {
+        defmt::warn!("left from before the reset: {}", defmt::Display2Format(&left.fault));
+    }
+    if Mode::TIMING == OutputTiming::Latched {
+        CONVERTER.latch();
+    }
+    registers.start();
+    // SAFETY: the interrupt that uses the place is not enabled yet.
+    unsafe { place.fill(Seat { cycle, hardware: registers, inbox, frames }) };
+    // SAFETY: its handler finds its place filled.
+    unsafe { interrupt::TIM6_DAC.enable() };
+    defmt::info!("{}: stack left {} of {}", wiring::NAME, stack::left(), stack::size());
+    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
+    EXECUTOR.init(Executor::new()).run(|spawner| {
+        let _ = (&spawner, &connected, &requests, &told);
+    })
+}
+
+/// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
+fn connect() -> Connected {
     let chip = embassy_stm32::init(wiring::clocks());
     #[cfg(feature = "fast-memory")]
     super::fast::load();
@@ -65,59 +73,16 @@ where
     let connected = wiring::connect(chip);
     CONVERTER.stop();
     ENCODER.complete();
-    let (servo, period) = prepare(&program);
-    let mut pace = Pace::prepare(period);
-    CONVERTER.latch();
-    ENCODER.zero();
-    pace.start();
-    // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.fill(Seat { servo, pace }) };
-    // SAFETY: its handler finds its place filled.
-    unsafe { interrupt::TIM6_DAC.enable() };
-    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
-    EXECUTOR.init(Executor::new()).run(|spawner| {
-        spawner.spawn(link(connected.serial).unwrap());
-    })
+    connected
 }
 
-#[embassy_executor::task]
-async fn link(mut serial: Serial) {
-    loop {
-        let mut bytes = [0; 16];
-        let count = serial.read(&mut bytes);
-        serial.write(&bytes[..count]);
-        cortex_m::asm::wfi();
-        yield_now().await;
-    }
+/// The width of a counter.
+const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
+    C::WIDTH
 }
 
-/// Certifies on the board, and builds the servo from that certificate.
-///
-/// In a frame of its own: judging takes most of the stack that a small board has, and must not
-/// find the rest of the program below itself.
-#[inline(never)]
-fn prepare<E, N>(program: &SceneProgram<E>) -> (Servo<E, N>, Period)
-where
-    E: Copy + Renderable<N>,
-    N: Number,
-{
-    // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
-    let certified = match (program.certify)(*black_box(program.certified.scene())) {
-        Ok(certified) => certified,
-        Err(rejection) => refuse(&StartError::Rejected(rejection)),
-    };
-    let servo = match Servo::new(&certified, program.transducers) {
-        Ok(servo) => servo,
-        Err(error) => refuse(&StartError::Unbuildable(error)),
-    };
-    match Period::of(certified.scene().timing.period) {
-        Ok(reload) => (servo, reload),
-        Err(error) => refuse(&error),
-    }
-}
-
-/// Ends a program that cannot start.
-fn refuse(reason: &dyn core::fmt::Display) -> ! {
+/// Ends a program that cannot start. The amplifier has never been on.
+fn refuse(reason: &dyn Display) -> ! {
     stop();
     defmt::error!("{}", defmt::Display2Format(reason));
     loop {
@@ -125,28 +90,11 @@ fn refuse(reason: &dyn core::fmt::Display) -> ! {
     }
 }
 
-/// Lets the other tasks run once.
-async fn yield_now() {
-    let mut yielded = false;
-    core::future::poll_fn(|context| {
-        if core::mem::replace(&mut yielded, true) {
-            return core::task::Poll::Ready(());
-        }
-        context.waker().wake_by_ref();
-        core::task::Poll::Pending
-    })
-    .await
-}
-
 /// The program of a scene on this board.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
     ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
-        static SEAT: $crate::board::place::Place<
-            $crate::board::stm32::Seat<$environment, $number>,
-        > = $crate::board::place::Place::empty();
-
         /// The chip that this program is for, where probe-rs looks for it.
         #[used]
         #[unsafe(no_mangle)]
@@ -154,23 +102,38 @@ macro_rules! board_program {
         static PROBE_RS_CHIP: [u8; $crate::board::stm32::wiring::CHIP.len()] =
             *$crate::board::stm32::wiring::CHIP;
 
+        /// The scene, as late as the board's converter: where it is not, this does not compile.
+        const TIMED: $crate::certificate::Timed<
+            $crate::scene::Scene<$environment>,
+            $crate::board::stm32::Mode,
+        > = $certified.timed();
+
+        static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
+            $crate::board::place::Place::empty();
+        static MEETING: $crate::board::seat::Meeting<
+            $environment,
+            $number,
+            $crate::board::stm32::Mode,
+        > = static_cell::StaticCell::new();
+
         /// A tick: the pacing timer's interrupt.
         #[unsafe(no_mangle)]
         #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
         unsafe extern "C" fn TIM6_DAC() {
             // SAFETY: this is the handler of the interrupt that `run` enables once it has filled
             // the place, and no interrupt interrupts itself.
-            unsafe { SEAT.get() }.tick();
+            unsafe { PLACE.get() }.tick();
         }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::board::stm32::SceneProgram {
-                certified: &$certified,
-                certify: $crate::scene::Scene::<$environment>::certify,
-                transducers: &$transducers,
+            let program = $crate::boot::Program {
+                scene: *TIMED.scene(),
+                transducers: $transducers,
+                rendering: $crate::servo::RenderingOptions::DEFAULT,
+                options: $crate::cycle::Options::DEFAULT,
             };
-            $crate::board::stm32::run(program, &SEAT)
+            $crate::board::stm32::run(program, &PLACE, &MEETING)
         }
     };
 }
