@@ -38,6 +38,8 @@ pub mod stm32;
 #[allow(unsafe_code)]
 pub mod stm32f405;
 
+use crate::text::Written;
+
 /// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
 /// boards' clocks divide into within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
@@ -66,7 +68,9 @@ impl core::fmt::Display for StartError {
             Self::Period { period, longest } => write!(
                 f,
                 "the period {period} s is not between 0 and {longest} s, the longest that the \
-                 board's timer can pace"
+                 board's timer can pace",
+                period = Written(*period),
+                longest = Written(*longest),
             ),
         }
     }

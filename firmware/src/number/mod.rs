@@ -13,6 +13,8 @@ pub use fixed_point::Scaled;
 
 use core::fmt;
 
+use crate::text::Written;
+
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// What multiplies a number: a gain, a compliance, a scale.
@@ -104,9 +106,8 @@ pub struct OutOfRange {
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // As debugging prints them, long numbers have exponents.
-        write!(f, "{:?} does not fit {}: its magnitude may be at most ", self.value, self.format)?;
-        write!(f, "{:?}", self.bound)
+        let (value, bound, format) = (Written(self.value), Written(self.bound), self.format);
+        write!(f, "{value} does not fit {format}: its magnitude may be at most {bound}")
     }
 }
 

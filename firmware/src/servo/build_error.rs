@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::number::{Number, OutOfRange};
+use crate::text::Written;
 
 /// Why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,19 +94,24 @@ impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotPositive { name, value } => {
+                let value = Written(*value);
                 write!(f, "the {name} must be positive and finite, and is {value}")
             }
             Self::TorqueLimit { limit, full_scale } => write!(
                 f,
                 "the torque limit of {limit} N m is above the converter's full scale of \
-                 {full_scale} N m: lower it to that, or scale the amplifier up"
+                 {full_scale} N m: lower it to that, or scale the amplifier up",
+                limit = Written(*limit),
+                full_scale = Written(*full_scale),
             ),
             Self::Unrepresentable { name, reason } => write!(f, "the {name}: {reason}"),
             Self::IllPosed { line, contact } => write!(
                 f,
                 "coupling and environment have no unique solution: the loop gain 1 + f / K is \
                  {line} out of contact and {contact} in contact, and must be positive; a stiffer \
-                 coupling or a delayed environment has one"
+                 coupling or a delayed environment has one",
+                line = Written(*line),
+                contact = Written(*contact),
             ),
             Self::Delay { delay, largest } => {
                 write!(f, "a delay of {delay} samples is longer than the {largest} that are stored")
@@ -119,13 +125,17 @@ impl fmt::Display for BuildError {
                 f,
                 "a damping of {damping} N m s/rad that is switched on and off uses up as much of \
                  the device's passivity, of which this scene leaves less than {room} N m s/rad: \
-                 inject less, or make the scene softer"
+                 inject less, or make the scene softer",
+                damping = Written(*damping),
+                room = Written(*room),
             ),
             Self::Speed { counts, half } => write!(
                 f,
                 "at the largest speed the encoder may move by {counts} counts between two \
                  ticks, of which its counter tells only those below {half}: a shorter worst \
-                 period or a wider counter tells them all"
+                 period or a wider counter tells them all",
+                counts = Written(*counts),
+                half = Written(*half),
             ),
         }
     }
