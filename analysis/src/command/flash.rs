@@ -50,6 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     println!("flash: {} of {} bytes", sizes.flash(), memory.flash);
     println!("variables: {} of {} bytes of RAM", sizes.ram(), memory.ram);
     println!("stack: {} bytes of RAM", memory.stack);
+    println!("fast memory: {} of {} bytes", sizes.fast, memory.fast);
     if !arguments.build_only {
         probe::run(&program.path, &chip, arguments.probe.as_deref())?;
     }

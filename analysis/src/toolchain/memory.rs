@@ -9,6 +9,8 @@ pub struct Memory {
     pub ram: u64,
     /// RAM for the stack.
     pub stack: u64,
+    /// Memory beside the RAM, for those chips that have it.
+    pub fast: u64,
 }
 
 /// The map does not say how long a region is.
@@ -29,7 +31,8 @@ impl Memory {
             let mut lengths = map.lines().filter_map(|line| length(line, region));
             lengths.next().ok_or(NoLength { region })
         };
-        Ok(Self { flash: length("FLASH")?, ram: length("RAM")?, stack: length("STACK")? })
+        let (flash, ram) = (length("FLASH")?, length("RAM")?);
+        Ok(Self { flash, ram, stack: length("STACK")?, fast: length("FAST")? })
     }
 }
 
@@ -55,10 +58,11 @@ mod tests {
 
     #[test]
     fn says_what_a_map_lacks() {
-        let map = "FLASH : ORIGIN = 0, LENGTH = 512\nRAM : LENGTH = 1K\nSTACK : LENGTH = many";
+        let map = "FLASH : ORIGIN = 0, LENGTH = 512\nRAM : LENGTH = 1K\nSTACK : LENGTH = many\n\
+                   FAST : LENGTH = 10K";
         let error = Memory::of_map(map).unwrap_err();
         assert_eq!(error.to_string(), "it does not say the length of STACK");
         let memory = Memory::of_map(&map.replace("many", "7")).unwrap();
-        assert_eq!(memory, Memory { flash: 512, ram: 1024, stack: 7 });
+        assert_eq!(memory, Memory { flash: 512, ram: 1024, stack: 7, fast: 10_240 });
     }
 }

@@ -13,7 +13,13 @@ pub struct Sizes {
     pub data: u64,
     /// Variables that begin at zero or at nothing, in RAM.
     pub bss: u64,
+    /// What is in the fast memory of the chips that have one: code, which is in flash too, and
+    /// what a debug probe reads.
+    pub fast: u64,
 }
+
+/// How the names begin of the sections in the fast memory.
+const FAST: &str = ".fast";
 
 /// A file that is no program for the board.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +41,13 @@ impl Sizes {
     pub(super) fn of_elf(bytes: &[u8]) -> Result<Self, SizeError> {
         let mut sizes = Self::default();
         for section in object::File::parse(bytes)?.sections() {
+            if section.name().is_ok_and(|name| name.starts_with(FAST)) {
+                sizes.fast += section.size();
+                if section.kind() == SectionKind::Text {
+                    sizes.text += section.size();
+                }
+                continue;
+            }
             let part = match section.kind() {
                 SectionKind::Text => &mut sizes.text,
                 SectionKind::ReadOnlyData | SectionKind::ReadOnlyString => &mut sizes.rodata,

@@ -75,10 +75,7 @@ fn an_angle_beyond_its_format_stands_still_and_says_so() {
 #[test]
 fn what_does_not_fit_is_named() {
     let error = FixedI32::<U28>::from_f64(9.0).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "9 does not fit Q4.28: its magnitude may be at most 7.999999996"
-    );
+    assert_eq!(error.to_string(), "9 does not fit Q4.28: its magnitude may be at most 7.999999996");
     for value in [f64::NAN, f64::INFINITY, -1e300, 3e9] {
         assert!(Q16::coefficient(value).is_err());
         assert!(Q16::from_f64(value).is_err());
