@@ -21,7 +21,9 @@ pub struct EnergyMonitor {
     held: i32,
     /// Those that it holds after that, where it is latched.
     next: i32,
-    net: i64,
+    /// The worst deficit less the net energy: kept rather than the net energy, since all that a
+    /// tick has to see then is a sign.
+    below: i64,
     worst: i64,
 }
 
@@ -29,11 +31,12 @@ impl EnergyMonitor {
     /// Ends a tick: the encoder moved by `step` counts since the last one, and `code` was written.
     #[inline(always)]
     pub fn observe<M: OutputMode>(&mut self, step: i32, code: DacCode) {
-        // At most 2^11 times 2^31 a tick: years until 2^63.
-        self.net = self.net.wrapping_add(i64::from(self.held) * i64::from(step));
-        if self.net > self.worst {
+        // Below 2^11 times some thousand counts a tick: years until 2^63.
+        self.below = self.below.wrapping_sub(i64::from(self.held) * i64::from(step));
+        if self.below < 0 {
             cold_path();
-            self.worst = self.net;
+            self.worst = self.worst.wrapping_sub(self.below);
+            self.below = 0;
         }
         let offset = i32::from(code.offset());
         match M::TIMING {
@@ -47,7 +50,7 @@ impl EnergyMonitor {
     pub fn missed<M: OutputMode>(&mut self, step: i32) {
         if M::TIMING == OutputTiming::Latched {
             let more = i64::from(self.next - self.held) * i64::from(step);
-            self.net = self.net.wrapping_add(more.max(0));
+            self.below = self.below.wrapping_sub(more.max(0));
         }
     }
 
@@ -59,7 +62,7 @@ impl EnergyMonitor {
     /// Net energy that the motor has put into the hand and the device, in counts times codes;
     /// negative where they have put in more.
     pub const fn net(&self) -> i64 {
-        self.net
+        self.worst.wrapping_sub(self.below)
     }
 
     /// The largest that [`EnergyMonitor::net`] has been: the worst deficit. Never negative.
@@ -70,7 +73,7 @@ impl EnergyMonitor {
     /// Whether there is a deficit now.
     #[inline(always)]
     pub const fn is_deficit(&self) -> bool {
-        self.net > 0
+        self.net() > 0
     }
 }
 

@@ -20,6 +20,10 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         dropped: u32,
     ) {
         let asked = inbox.take();
+        if asked.heard {
+            self.hear();
+        }
+        self.watch_link();
         if asked.arm {
             self.arm(hardware, inbox);
         }
@@ -34,13 +38,13 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             State::Disarmed | State::Faulted => self.rest(inbox),
         }
         if asked.status {
-            inbox.tell(Notice::Status(self.status(inbox.silent(), dropped)));
+            inbox.tell(Notice::Status(self.status(dropped)));
         }
     }
 
     fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
         if !self.state.is_armed() {
-            if let Some(fault) = self.persists(inbox.silent()) {
+            if let Some(fault) = self.persists() {
                 return inbox.tell(Notice::NotArmed(fault));
             }
             self.fault = None;
@@ -138,19 +142,19 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         true
     }
 
-    fn status(&self, silent: u32, dropped: u32) -> Status {
+    fn status(&self, dropped: u32) -> Status {
         Status {
             state: self.state,
             fault: self.fault,
             tick: self.tick,
             count: self.rendering.servo().count(),
             period: self.period,
-            worst_slack: self.worst_slack,
+            worst_slack: if self.was_late { 0 } else { self.period.wrapping_sub(self.longest) },
             missed: self.missed,
             dropped,
             energy: self.energy.net(),
             worst_deficit: self.energy.worst(),
-            link_lost: self.link != LinkPolicy::Ignore && silent >= self.link_timeout,
+            link_lost: self.link_lost,
         }
     }
 }

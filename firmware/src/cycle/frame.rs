@@ -1,6 +1,4 @@
-//! One tick as it is told to the host, and the queue that carries it.
-
-use heapless::spsc::{Consumer, Producer, Queue};
+//! One tick as it is told to the host.
 
 use super::State;
 use crate::dac::DacCode;
@@ -31,45 +29,30 @@ pub trait FrameSink {
     fn dropped(&self) -> u32;
 }
 
-/// The queue of frames from the interrupt to the task that sends them. Holds `LENGTH - 1`.
-#[derive(Debug)]
-pub struct FrameQueue<const LENGTH: usize>(Queue<Frame, LENGTH>);
+/// A frame in the words of the queue.
+pub(super) type Words = [u32; 4];
 
-impl<const LENGTH: usize> FrameQueue<LENGTH> {
-    /// An empty queue.
-    pub const fn new() -> Self {
-        Self(Queue::new())
-    }
-
-    /// The interrupt's end and the task's end.
-    pub fn split(&mut self) -> (Frames<'_>, Consumer<'_, Frame>) {
-        let (producer, consumer) = self.0.split();
-        (Frames { producer, dropped: 0 }, consumer)
-    }
-}
-
-impl<const LENGTH: usize> Default for FrameQueue<LENGTH> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// The interrupt's end of a [`FrameQueue`].
-pub struct Frames<'a> {
-    producer: Producer<'a, Frame>,
-    dropped: u32,
-}
-
-impl FrameSink for Frames<'_> {
+impl Frame {
     #[inline(always)]
-    fn push(&mut self, frame: Frame) {
-        if self.producer.enqueue(frame).is_err() {
-            core::hint::cold_path();
-            self.dropped = self.dropped.wrapping_add(1);
+    pub(super) fn to_words(self) -> Words {
+        let small = u32::from(self.code.get())
+            | (self.limit as u32) << LIMIT
+            | (self.state as u32) << STATE;
+        [self.tick, self.count.cast_unsigned(), small, self.slack]
+    }
+
+    pub(super) fn from_words([tick, count, small, slack]: Words) -> Self {
+        let of = |shift: u32| (small >> shift & 0xff) as usize;
+        Self {
+            tick,
+            count: count.cast_signed(),
+            code: DacCode::from_low_bits((small & 0xffff) as u16),
+            limit: LimitReason::ALL.get(of(LIMIT)).copied().unwrap_or_default(),
+            state: State::ALL.get(of(STATE)).copied().unwrap_or_default(),
+            slack,
         }
     }
-
-    fn dropped(&self) -> u32 {
-        self.dropped
-    }
 }
+
+const LIMIT: u32 = 16;
+const STATE: u32 = 24;

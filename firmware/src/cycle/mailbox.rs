@@ -12,6 +12,7 @@ const ARM: u32 = 1;
 const DISARM: u32 = 2;
 const STATUS: u32 = 4;
 const SET: u32 = 8;
+const HEARD: u32 = 16;
 
 /// Sets that wait: one, and the place that a queue keeps free.
 const SETS: usize = 2;
@@ -23,30 +24,22 @@ const NOTICES: usize = 9;
 pub struct Mailbox<R> {
     sets: Queue<R, SETS>,
     notices: Queue<Notice, NOTICES>,
-    shared: Shared,
-}
-
-#[derive(Debug)]
-struct Shared {
     /// What is asked for; the interrupt looks at nothing else in an ordinary tick.
-    requests: AtomicU32,
-    /// Ticks since the host was last heard.
-    silence: AtomicU32,
+    asked: AtomicU32,
 }
 
 impl<R> Mailbox<R> {
     /// An empty mailbox.
     pub const fn new() -> Self {
-        let shared = Shared { requests: AtomicU32::new(0), silence: AtomicU32::new(0) };
-        Self { sets: Queue::new(), notices: Queue::new(), shared }
+        Self { sets: Queue::new(), notices: Queue::new(), asked: AtomicU32::new(0) }
     }
 
     /// The task's end and the interrupt's end.
     pub fn split(&mut self) -> (Requests<'_, R>, Inbox<'_, R>) {
         let (submit, sets) = self.sets.split();
         let (tell, notices) = self.notices.split();
-        let shared = &self.shared;
-        (Requests { submit, notices, shared }, Inbox { sets, tell, shared })
+        let asked = &self.asked;
+        (Requests { submit, notices, asked }, Inbox { sets, tell, asked })
     }
 }
 
@@ -60,7 +53,7 @@ impl<R> Default for Mailbox<R> {
 pub struct Requests<'a, R> {
     submit: Producer<'a, R>,
     notices: Consumer<'a, Notice>,
-    shared: &'a Shared,
+    asked: &'a AtomicU32,
 }
 
 impl<R> Requests<'_, R> {
@@ -82,7 +75,7 @@ impl<R> Requests<'_, R> {
 
     /// Says that the host was heard.
     pub fn heard(&self) {
-        self.shared.silence.store(0, Ordering::Relaxed);
+        self.ask(HEARD);
     }
 
     /// Gives a set to be swapped in as a whole; [`Notice::Applied`] answers.
@@ -101,7 +94,7 @@ impl<R> Requests<'_, R> {
     }
 
     fn ask(&self, request: u32) {
-        self.shared.requests.fetch_or(request, Ordering::Release);
+        self.asked.fetch_or(request, Ordering::Release);
     }
 }
 
@@ -109,7 +102,7 @@ impl<R> Requests<'_, R> {
 pub struct Inbox<'a, R> {
     sets: Consumer<'a, R>,
     tell: Producer<'a, Notice>,
-    shared: &'a Shared,
+    asked: &'a AtomicU32,
 }
 
 /// What was asked for since the last tick.
@@ -118,38 +111,25 @@ pub(super) struct Asked {
     pub arm: bool,
     pub disarm: bool,
     pub status: bool,
+    pub heard: bool,
 }
 
 impl<R> Inbox<'_, R> {
     /// Whether anything is asked for.
     #[inline(always)]
     pub(super) fn is_asked(&self) -> bool {
-        self.shared.requests.load(Ordering::Relaxed) != 0
+        self.asked.load(Ordering::Relaxed) != 0
     }
 
     /// What is asked for, once.
     pub(super) fn take(&self) -> Asked {
-        let asked = self.shared.requests.swap(0, Ordering::Acquire);
+        let asked = self.asked.swap(0, Ordering::Acquire);
         Asked {
             arm: asked & (ARM | DISARM) == ARM,
             disarm: asked & DISARM != 0,
             status: asked & STATUS != 0,
+            heard: asked & HEARD != 0,
         }
-    }
-
-    /// Counts a tick of silence; gives their number.
-    #[inline(always)]
-    pub(super) fn silence(&self) -> u32 {
-        // Not an atomic addition: nothing that writes here interrupts this, and the loop of an
-        // exclusive store would cost more than the rest.
-        let silence = self.shared.silence.load(Ordering::Relaxed).wrapping_add(1);
-        self.shared.silence.store(silence, Ordering::Relaxed);
-        silence
-    }
-
-    /// Ticks since the host was last heard.
-    pub(super) fn silent(&self) -> u32 {
-        self.shared.silence.load(Ordering::Relaxed)
     }
 
     /// Whether a set waits.

@@ -11,13 +11,15 @@
 
 mod attend;
 mod frame;
+mod frame_queue;
 mod hardware;
 mod mailbox;
 mod options;
 mod state;
 mod trouble;
 
-pub use frame::{Frame, FrameQueue, FrameSink, Frames};
+pub use frame::{Frame, FrameSink};
+pub use frame_queue::{FrameQueue, FrameReader, Frames};
 pub use hardware::Hardware;
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{LinkPolicy, Options};
@@ -57,7 +59,10 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     behind: Behind,
     /// Updates missed since the start.
     missed: u32,
-    worst_slack: u32,
+    /// The longest tick so far that was in time, in timer counts.
+    longest: u32,
+    /// Whether a tick was not in time.
+    was_late: bool,
     /// Ticks until the samples of a new set have filled its memory.
     settling: u32,
     /// What was last found that stops a servo, and the ticks since then without amplifier.
@@ -66,6 +71,9 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     link: LinkPolicy,
     /// Ticks of silence after which the host counts as lost.
     link_timeout: u32,
+    /// The tick in which the host counts as lost.
+    link_deadline: u32,
+    link_lost: bool,
 }
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
@@ -90,12 +98,15 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             period,
             behind: Behind::default(),
             missed: 0,
-            worst_slack: u32::MAX,
+            longest: 0,
+            was_late: false,
             settling: 0,
             trouble: None,
             calm: 0,
             link: options.link,
             link_timeout,
+            link_deadline: link_timeout,
+            link_lost: false,
         }
     }
 
@@ -109,29 +120,32 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     ) {
         let (passed, underrun) = (hardware.passed(), hardware.underrun());
         let before = self.rendering.servo().low_count();
-        let output = self.rendering.tick(hardware.count(), self.energy.is_deficit());
+        let output = self.rendering.tick(hardware.count(), &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         self.tick = self.tick.wrapping_add(passed);
-        let not_a_number = output.limit == LimitReason::NotANumber;
-        let too_far = step.unsigned_abs() > self.rendering.pace().largest_step;
-        if passed != 1 || too_far || not_a_number || underrun {
-            self.examine(Found { passed, step, not_a_number, underrun }, hardware, inbox);
-        }
-        // Whatever the rest of the program thinks: without being armed there is no torque.
-        let code = if self.state.is_armed() { output.code } else { DacCode::MID_SCALE };
+        let trouble = passed != 1
+            || step.unsigned_abs() > self.rendering.pace().largest_step
+            || output.limit == LimitReason::NotANumber
+            || underrun;
+        let usual = !trouble && self.state == State::Running;
+        let code = if usual {
+            output.code
+        } else {
+            let found = Found { passed, step, output, underrun };
+            self.unusual(trouble.then_some(found), output.code, hardware, inbox)
+        };
         hardware.write(code);
         self.energy.observe::<M>(step, code);
-        if self.state != State::Running || inbox.is_asked() {
+        let link_due = self.tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
+        if !usual || inbox.is_asked() || link_due {
             self.attend(hardware, inbox, frames.dropped());
         }
-        if inbox.silence() == self.link_timeout {
-            self.lose_link();
-        }
         hardware.feed();
-        let slack = self.period.saturating_sub(hardware.elapsed());
-        if slack <= self.worst_slack {
-            self.short(slack, hardware, inbox);
+        let elapsed = hardware.elapsed();
+        let mut slack = self.period.wrapping_sub(elapsed);
+        if elapsed > self.longest {
+            slack = self.long(elapsed, hardware, inbox);
         }
         frames.push(Frame {
             tick: self.tick,

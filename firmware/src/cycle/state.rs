@@ -24,6 +24,16 @@ pub enum State {
 }
 
 impl State {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Self; 6] = [
+        Self::Disarmed,
+        Self::FadingIn,
+        Self::Running,
+        Self::FadingOut,
+        Self::Settling,
+        Self::Faulted,
+    ];
+
     /// The state in one word, for tables.
     pub const fn as_str(self) -> &'static str {
         match self {

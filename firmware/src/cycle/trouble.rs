@@ -3,19 +3,20 @@
 use super::*;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
+use crate::servo::Output;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;
 
-/// What a tick may find besides its numbers.
+/// What a tick found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// Whole periods since the last tick.
     pub passed: u32,
     /// Counts that the encoder moved.
     pub step: i32,
-    /// Whether the torque was not a number.
-    pub not_a_number: bool,
+    /// What the servo answered.
+    pub output: Output,
     /// Whether the converter wanted a code before there was one.
     pub underrun: bool,
 }
@@ -51,16 +52,31 @@ impl Behind {
 }
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
-    /// A tick that came late, or moved too far, or whose torque or converter is in trouble.
+    /// The code of a tick that is not simply one of a running servo. Whatever the rest of the
+    /// program thinks: without being armed there is no torque.
     #[cold]
     #[inline(never)]
-    pub(super) fn examine(
+    pub(super) fn unusual(
+        &mut self,
+        trouble: Option<Found>,
+        code: DacCode,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) -> DacCode {
+        if let Some(found) = trouble {
+            self.examine(found, hardware, inbox);
+        }
+        if self.state.is_armed() { code } else { DacCode::MID_SCALE }
+    }
+
+    /// A tick that came late, or moved too far, or whose torque or converter is in trouble.
+    fn examine(
         &mut self,
         found: Found,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
     ) {
-        let Found { passed, step, .. } = found;
+        let Found { passed, step, output, underrun } = found;
         if passed != 1 {
             self.energy.missed::<M>(step);
             let missed = passed.saturating_sub(1);
@@ -73,29 +89,33 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if counts > largest {
             self.fail(Fault::EncoderJump { counts, largest }, hardware, inbox);
         }
-        if found.not_a_number {
+        if output.limit == LimitReason::NotANumber {
             self.fail(Fault::NotANumber, hardware, inbox);
         }
-        if found.underrun {
+        if underrun {
             self.fail(Fault::Underrun, hardware, inbox);
         }
     }
 
-    /// Less slack than ever, or none: then the code was late for the update that it was for.
+    /// A tick that took longer than any before; gives its slack. Without any the code was late
+    /// for the update that it was for.
     #[cold]
     #[inline(never)]
-    pub(super) fn short(
+    pub(super) fn long(
         &mut self,
-        slack: u32,
+        elapsed: u32,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) {
-        self.worst_slack = slack;
-        if slack == 0 {
-            self.missed = self.missed.wrapping_add(1);
-            let missed = self.behind.end(self.tick);
-            self.unless_tolerated(missed, hardware, inbox);
+    ) -> u32 {
+        if elapsed < self.period {
+            self.longest = elapsed;
+            return self.period.wrapping_sub(elapsed);
         }
+        self.was_late = true;
+        self.missed = self.missed.wrapping_add(1);
+        let missed = self.behind.end(self.tick);
+        self.unless_tolerated(missed, hardware, inbox);
+        0
     }
 
     fn unless_tolerated(
@@ -110,14 +130,30 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
     }
 
-    /// The host has just been silent for too long.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn lose_link(&mut self) {
-        let lost = Fault::LinkLost { silent: self.link_timeout, allowed: self.link_timeout };
-        if self.link == LinkPolicy::Release && self.state.is_armed() {
-            self.begin_fading_out(Goal::Stop(lost));
+    /// The host was heard.
+    pub(super) fn hear(&mut self) {
+        self.link_lost = false;
+        self.link_deadline = self.tick.wrapping_add(self.link_timeout);
+    }
+
+    /// Sees to it that the host is not silent for too long.
+    pub(super) fn watch_link(&mut self) {
+        if self.tick.wrapping_sub(self.link_deadline).cast_signed() < 0 {
+            return;
         }
+        // From here on every tick would come here; the next one that does is far away.
+        self.link_deadline = self.tick.wrapping_add(i32::MAX.cast_unsigned());
+        if self.link == LinkPolicy::Ignore {
+            return;
+        }
+        self.link_lost = true;
+        if self.link == LinkPolicy::Release && self.state.is_armed() {
+            self.begin_fading_out(Goal::Stop(self.lost()));
+        }
+    }
+
+    fn lost(&self) -> Fault {
+        Fault::LinkLost { allowed: self.link_timeout }
     }
 
     /// Notes trouble; where there is torque, it stops the servo.
@@ -152,10 +188,9 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// What would stop the servo again at once.
-    pub(super) fn persists(&self, silent: u32) -> Option<Fault> {
-        let allowed = self.link_timeout;
-        if self.link == LinkPolicy::Release && silent >= allowed {
-            return Some(Fault::LinkLost { silent, allowed });
+    pub(super) fn persists(&self) -> Option<Fault> {
+        if self.link == LinkPolicy::Release && self.link_lost {
+            return Some(self.lost());
         }
         self.trouble.filter(|_| self.calm < CALM)
     }

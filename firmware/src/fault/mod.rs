@@ -33,9 +33,7 @@ pub enum Fault {
     Underrun,
     /// The host has not been heard for too long.
     LinkLost {
-        /// Ticks without a message.
-        silent: u32,
-        /// Ticks that are allowed.
+        /// Ticks without a message that are allowed.
         allowed: u32,
     },
     /// The servo's interrupt stopped coming, and the watchdog reset the chip.
@@ -78,7 +76,7 @@ impl Fault {
             Self::EncoderJump { counts, largest } => (2, [counts, largest]),
             Self::NotANumber => (3, [0; 2]),
             Self::Underrun => (4, [0; 2]),
-            Self::LinkLost { silent, allowed } => (5, [silent, allowed]),
+            Self::LinkLost { allowed } => (5, [allowed, 0]),
             Self::Watchdog => (6, [0; 2]),
             Self::Panic { line, column } => (7, [line, column]),
             Self::HardFault { address, status } => (8, [address, status]),
@@ -93,7 +91,7 @@ impl Fault {
             2 => Self::EncoderJump { counts: a, largest: b },
             3 => Self::NotANumber,
             4 => Self::Underrun,
-            5 => Self::LinkLost { silent: a, allowed: b },
+            5 => Self::LinkLost { allowed: a },
             6 => Self::Watchdog,
             7 => Self::Panic { line: a, column: b },
             8 => Self::HardFault { address: a, status: b },
@@ -124,9 +122,9 @@ impl fmt::Display for Fault {
                 "the converter wanted a code before there was one: lengthen the scene's period, \
                  then arm again",
             ),
-            Self::LinkLost { silent, allowed } => write!(
+            Self::LinkLost { allowed } => write!(
                 f,
-                "the host was silent for {silent} ticks, and {allowed} are allowed: connect \
+                "the host was silent for more than the {allowed} ticks that are allowed: connect \
                  again, then arm again"
             ),
             Self::Watchdog => f.write_str(

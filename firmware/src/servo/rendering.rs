@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use super::{BuildError, Output, OutputMode, Servo, Transducers};
 use crate::certificate::Timed;
 use crate::encoder::RawCount;
-use crate::energy::{Injector, NoAction};
+use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::Renderable;
 use crate::number::Number;
 use crate::scene::{Scene, Timing};
@@ -83,15 +83,15 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
         Ok(Self { servo, injector, pace, mode: PhantomData })
     }
 
-    /// One tick: the code to be written now. Where there is a `deficit` of energy, damping is
+    /// One tick: the code to be written now. Where there is a deficit of energy, damping is
     /// injected, if that is asked for.
     #[inline(always)]
-    pub fn tick(&mut self, raw: RawCount, deficit: bool) -> Output {
+    pub fn tick(&mut self, raw: RawCount, energy: &EnergyMonitor) -> Output {
         let Some(injector) = &mut self.injector else {
             return self.servo.timed_tick::<M>(raw, &mut NoAction);
         };
         cold_path();
-        injector.switch(deficit);
+        injector.switch(energy.is_deficit());
         self.servo.timed_tick::<M>(raw, injector)
     }
 
@@ -111,11 +111,15 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
     }
 }
 
+/// Ticks up to which a wrapping counter of them tells the future from the past.
+const LONGEST: u32 = i32::MAX.cast_unsigned();
+
 impl Pace {
-    /// Whole periods in `time` s, at least one and at most as many as a counter of ticks holds.
+    /// Whole periods in `time` s, at least one and at most as many as can be told from a past that
+    /// long ago.
     pub(crate) fn ticks(&self, time: f64) -> u32 {
         // The cast gives the nearest of what does not fit.
-        ((time / self.period) as u32).max(1)
+        ((time / self.period) as u32).clamp(1, LONGEST)
     }
 
     fn new(timing: Timing, transducers: &Transducers) -> Result<Self, BuildError> {

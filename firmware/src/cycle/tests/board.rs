@@ -1,7 +1,5 @@
 //! A board that exists in memory only, and remembers what was done to it.
 
-use heapless::spsc::Consumer;
-
 use super::*;
 use crate::boot::{Program, Startup, boot};
 use crate::encoder::RawCount;
@@ -117,8 +115,8 @@ pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
     pub cycle: Cycle<E, N, M>,
     pub inbox: Inbox<'static, Rendering<E, N, M>>,
     pub requests: Requests<'static, Rendering<E, N, M>>,
-    pub frames: Frames<'static>,
-    pub seen: Consumer<'static, Frame>,
+    pub frames: Frames<'static, 8>,
+    pub seen: FrameReader<'static, 8>,
     pub left: Option<Retained>,
 }
 
@@ -126,7 +124,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     /// Boots the board.
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
-        let (frames, seen) = Box::leak(Box::new(FrameQueue::<9>::new())).split();
+        let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
         let (cycle, left) = boot(program, &mut board, &requests)?;
         Ok(Self { board, cycle, inbox, requests, frames, seen, left })
     }
@@ -135,7 +133,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     pub fn tick(&mut self, count: i32) -> Frame {
         self.board.count = count;
         self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
-        self.seen.dequeue().expect("every tick leaves a frame")
+        self.seen.take().expect("every tick leaves a frame")
     }
 
     /// Ticks with the device standing still.

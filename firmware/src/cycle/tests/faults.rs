@@ -170,6 +170,8 @@ fn a_host_that_falls_silent_lets_the_device_go() {
         assert_eq!(bench.cycle.state(), State::Running);
     }
     bench.tick(500);
+    assert_eq!(bench.cycle.state(), State::Running);
+    bench.tick(500);
     assert_eq!(bench.cycle.state(), State::FadingOut);
     // At once, but step by step: 3 codes at most are the spring's own.
     let before = bench.board.codes();
@@ -177,7 +179,7 @@ fn a_host_that_falls_silent_lets_the_device_go() {
     let codes = bench.board.codes();
     let largest = codes.windows(2).skip(before.len() - 1).map(|pair| (pair[1] - pair[0]).abs());
     assert!(largest.max().unwrap() <= 11 + 3);
-    let lost = Fault::LinkLost { silent: 200, allowed: 200 };
+    let lost = Fault::LinkLost { allowed: 200 };
     assert_stopped(&mut bench, lost);
     // The cause is still there, until the host is heard.
     bench.requests.arm();

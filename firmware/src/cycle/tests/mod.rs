@@ -2,6 +2,7 @@
 
 mod board;
 mod faults;
+mod frames;
 mod swap;
 
 use board::{Bench, Board, Event, PERIOD};

@@ -1,6 +1,7 @@
 //! The servo as a whole: against another computation of the same loops, between its formats, at
 //! its limits.
 
+mod ahead;
 mod reference;
 mod robustness;
 

@@ -1,0 +1,102 @@
+//! The queue that carries frames from the interrupt to the task that sends them.
+
+use core::hint::cold_path;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use super::frame::{Frame, FrameSink, Words};
+
+/// A lock-free queue of `LENGTH` frames, a power of two, with one writer and one reader.
+///
+/// Made of atomic words rather than taken from a crate: with a length that the compiler knows a
+/// push costs half of what it costs where a length is divided by at run time, it cannot panic, and
+/// without slots that two sides may touch at once there is nothing `unsafe` about it.
+#[derive(Debug)]
+pub struct FrameQueue<const LENGTH: usize> {
+    slots: [[AtomicU32; 4]; LENGTH],
+    /// Frames taken since the start, wrapping.
+    taken: AtomicU32,
+    /// Frames pushed since the start, wrapping.
+    pushed: AtomicU32,
+}
+
+impl<const LENGTH: usize> FrameQueue<LENGTH> {
+    /// An empty queue.
+    pub const fn new() -> Self {
+        const { assert!(LENGTH.is_power_of_two(), "a queue's length is a power of two") };
+        Self {
+            slots: [const { [const { AtomicU32::new(0) }; 4] }; LENGTH],
+            taken: AtomicU32::new(0),
+            pushed: AtomicU32::new(0),
+        }
+    }
+
+    /// The interrupt's end and the task's end.
+    pub fn split(&mut self) -> (Frames<'_, LENGTH>, FrameReader<'_, LENGTH>) {
+        let queue = &*self;
+        (Frames { queue, dropped: 0 }, FrameReader { queue })
+    }
+
+    /// The place of a frame by its number; never out of range.
+    #[inline(always)]
+    fn slot(&self, number: u32) -> &[AtomicU32; 4] {
+        &self.slots[number as usize % LENGTH]
+    }
+}
+
+impl<const LENGTH: usize> Default for FrameQueue<LENGTH> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The interrupt's end of a [`FrameQueue`].
+#[derive(Debug)]
+pub struct Frames<'a, const LENGTH: usize> {
+    queue: &'a FrameQueue<LENGTH>,
+    dropped: u32,
+}
+
+impl<const LENGTH: usize> FrameSink for Frames<'_, LENGTH> {
+    #[inline(always)]
+    fn push(&mut self, frame: Frame) {
+        let queue = self.queue;
+        let number = queue.pushed.load(Ordering::Relaxed);
+        let waiting = number.wrapping_sub(queue.taken.load(Ordering::Acquire));
+        if waiting >= LENGTH as u32 {
+            cold_path();
+            self.dropped = self.dropped.wrapping_add(1);
+            return;
+        }
+        for (place, word) in queue.slot(number).iter().zip(frame.to_words()) {
+            place.store(word, Ordering::Relaxed);
+        }
+        queue.pushed.store(number.wrapping_add(1), Ordering::Release);
+    }
+
+    fn dropped(&self) -> u32 {
+        self.dropped
+    }
+}
+
+/// The task's end of a [`FrameQueue`].
+#[derive(Debug)]
+pub struct FrameReader<'a, const LENGTH: usize> {
+    queue: &'a FrameQueue<LENGTH>,
+}
+
+impl<const LENGTH: usize> FrameReader<'_, LENGTH> {
+    /// Takes the oldest frame.
+    pub fn take(&mut self) -> Option<Frame> {
+        let queue = self.queue;
+        let number = queue.taken.load(Ordering::Relaxed);
+        if number == queue.pushed.load(Ordering::Acquire) {
+            return None;
+        }
+        let mut words: Words = [0; 4];
+        for (word, place) in words.iter_mut().zip(queue.slot(number)) {
+            *word = place.load(Ordering::Relaxed);
+        }
+        queue.taken.store(number.wrapping_add(1), Ordering::Release);
+        Some(Frame::from_words(words))
+    }
+}
