@@ -138,7 +138,8 @@ macro_rules! certify_for {
                 }
             }
 
-            /// For constants: the timed scene, or a compile error that says why not.
+            /// For constants: the timed scene, or a compile error that says why not, which is at
+            /// its clearest where the mode is named: `timed::<Latched>()`.
             ///
             /// # Panics
             /// If scene and mode do not agree; in a constant that is the compile error.

@@ -71,13 +71,6 @@ impl OutputMode for Simultaneous {
 ///
 /// Of [`Environment`] and [`Rational`] only the numbers tell; they are looked at when the scene
 /// is [timed](crate::certificate::Timed).
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
-    label = "needs a delay of 1 to 8 samples",
-    note = "give the environment a delay of 1, as in `DamperWall<1>`: that is the sample that \
-            passes until the converter takes the code; a `FreeModeWall` cancels without delay, \
-            and runs in simulation only"
-)]
 pub trait Delayed: sealed::Sealed {}
 
 macro_rules! delayed {
@@ -98,6 +91,13 @@ delayed!(@ Environment, Rational,);
 
 /// An environment that can be rendered in the mode `M`: any of them where count and torque are
 /// simultaneous, one that is [`Delayed`] where a torque takes time.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
+    label = "this environment needs a delay of 1 to 8 samples",
+    note = "give it a delay of 1, as in `DamperWall<1>`: that is the sample which passes until the \
+            motor has the torque; a `FreeModeWall` cancels without delay, and runs in simulation \
+            only"
+)]
 pub trait Renders<M: OutputMode> {}
 
 impl<E> Renders<Simultaneous> for E {}

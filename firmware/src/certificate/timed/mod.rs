@@ -32,7 +32,7 @@ use crate::servo::{OutputMode, OutputTiming};
 /// };
 /// const CERTIFIED: Certified<SpringScene> = SPRING.certified();
 /// // Late by one sample, which is what the latch takes: this compiles.
-/// const TIMED: Timed<SpringScene, Latched> = CERTIFIED.timed();
+/// const TIMED: Timed<SpringScene, Latched> = CERTIFIED.timed::<Latched>();
 /// # let _ = TIMED;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,3 +187,6 @@ const fn one_sample_earlier(environment: &Environment) -> Option<Environment> {
 const fn wall_earlier(wall: &Wall) -> Option<Wall> {
     if wall.delay == 0 { None } else { Some(Wall { delay: wall.delay - 1, ..*wall }) }
 }
+
+#[cfg(test)]
+mod tests;
