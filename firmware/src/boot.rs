@@ -6,11 +6,12 @@ use core::hint::black_box;
 
 use crate::cycle::{Cycle, Hardware, Options, Requests};
 use crate::dac::DacCode;
+use crate::environment::Renderable;
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
-use crate::tuning::{self, Tunable};
+use crate::tuning::{self, Prepared, Tunable};
 
 /// What a board has besides, before its servo runs.
 pub trait Startup: Hardware {
@@ -39,8 +40,16 @@ pub struct Program<E> {
     pub options: Options,
 }
 
-/// A cycle that may run, and what was left from before the reset.
-pub type Booted<E, N, M> = (Cycle<E, N, M>, Option<Retained>);
+/// A board whose servo may run.
+#[derive(Clone, Debug)]
+pub struct Booted<E: Renderable<N>, N: Number, M> {
+    /// What its interrupt runs.
+    pub cycle: Cycle<E, N, M>,
+    /// Damping in N m s/rad that the scene's certificate leaves to spare.
+    pub margin: Option<f64>,
+    /// What was left from before the reset.
+    pub left: Option<Retained>,
+}
 
 /// Everything up to the first tick. Arms the servo, unless something was left from before the
 /// reset: then it stays off until somebody arms it.
@@ -61,7 +70,8 @@ where
     hardware.write(DacCode::MID_SCALE);
     // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
     let scene = black_box(program.scene);
-    let (_, rendering) = tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
+    let Prepared { rendering, margin, .. } =
+        tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
     hardware.zero();
     let left = left(hardware);
     let fault = left.map(|left| left.fault);
@@ -70,7 +80,7 @@ where
     if left.is_none() {
         requests.arm();
     }
-    Ok((cycle, left))
+    Ok(Booted { cycle, margin, left })
 }
 
 /// What was left from before the reset.

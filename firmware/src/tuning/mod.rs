@@ -14,6 +14,7 @@ pub use values::Values;
 use core::fmt;
 
 use crate::certificate::Parameter;
+use crate::environment::Renderable;
 use crate::number::Number;
 use crate::scene::{Coupling, Scene};
 use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
@@ -124,10 +125,20 @@ pub fn apply<E: Values + Copy>(
     Ok(changed)
 }
 
-/// A set that is ready to run: its scene and the rendering to be swapped in.
-pub type Prepared<E, N, M> = (Scene<E>, Rendering<E, N, M>);
+/// A set that is ready to run.
+#[derive(Clone, Debug)]
+pub struct Prepared<E: Renderable<N>, N: Number, M> {
+    /// The scene, which is judged and timed.
+    pub scene: Scene<E>,
+    /// Damping in N m s/rad that its certificate leaves to spare; see [`Assessment::margin`].
+    ///
+    /// [`Assessment::margin`]: crate::certificate::Assessment::margin
+    pub margin: Option<f64>,
+    /// Its servo.
+    pub rendering: Rendering<E, N, M>,
+}
 
-/// A set that is ready to run: the scene, judged and timed, and its servo.
+/// Makes a changed scene ready to run.
 ///
 /// In a frame of its own: judging takes most of the stack that a small board has.
 ///
@@ -147,7 +158,8 @@ where
 {
     let scene = apply(scene, changes)?;
     let timed = E::time(E::certify(scene)?)?;
-    Ok((scene, Rendering::new(&timed, transducers, options)?))
+    let rendering = Rendering::new(&timed, transducers, options)?;
+    Ok(Prepared { scene, margin: timed.assessment().margin(), rendering })
 }
 
 #[cfg(test)]

@@ -108,7 +108,7 @@ fn a_set_is_judged_as_a_whole_and_by_the_compilers_own_sentence() {
     // Each alone would not pass, or would; together they do.
     let softer = [(Parameter::Stiffness, 30.0), (Parameter::Damping, 0.005)];
     let options = RenderingOptions::DEFAULT;
-    let (scene, _) = prepare::<_, f32, Latched>(&WALL, &softer, &TRANSDUCERS, &options).unwrap();
+    let scene = prepare::<_, f32, Latched>(&WALL, &softer, &TRANSDUCERS, &options).unwrap().scene;
     assert_eq!(scene.environment.wall, DamperWall { stiffness: 30.0, damping: 0.005 });
     assert_eq!(
         refusal(&[(Parameter::TorqueLimit, 2.5)]),

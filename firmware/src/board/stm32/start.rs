@@ -16,7 +16,7 @@ use super::{Connected, Mode};
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
 use crate::board::{critical, stack};
-use crate::boot::{Program, boot};
+use crate::boot::{Booted, Program, boot};
 use crate::number::Number;
 use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
 use crate::tuning::Tunable;
@@ -42,7 +42,7 @@ where
     let program = Program { transducers, ..program };
     let mut registers = Registers::new(period);
     let Ends { requests, inbox, frames, told } = ends(meeting);
-    let (cycle, left) =
+    let Booted { cycle, left, .. } =
         boot(&program, &mut registers, &requests).unwrap_or_else(|error| refuse(&error));
     if let Some(left) = left {
         defmt::warn!("left from before the reset: {}", defmt::Display2Format(&left.fault));

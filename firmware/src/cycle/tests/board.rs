@@ -1,7 +1,7 @@
 //! A board that exists in memory only, and remembers what was done to it.
 
 use super::*;
-use crate::boot::{Program, Startup, boot};
+use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
 use crate::fault::Retained;
 use crate::servo::{RenderError, Renders};
@@ -125,7 +125,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
-        let (cycle, left) = boot(program, &mut board, &requests)?;
+        let Booted { cycle, left, .. } = boot(program, &mut board, &requests)?;
         Ok(Self { board, cycle, inbox, requests, frames, seen, left })
     }
 

@@ -16,7 +16,7 @@ fn set<E: Tunable<f32> + Renders<Latched>>(
     changes: &[(Parameter, f64)],
 ) -> Rendering<E, f32, Latched> {
     let Program { scene, transducers, rendering, .. } = program;
-    tuning::prepare(scene, changes, transducers, rendering).unwrap().1
+    tuning::prepare(scene, changes, transducers, rendering).unwrap().rendering
 }
 
 /// Counts of a hand that goes in and out, slowly enough that no scene here changes its torque by
