@@ -20,6 +20,8 @@ pub trait Dac {
 /// );
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "wire", serde(try_from = "u16", into = "u16"))]
 pub struct DacCode(u16);
 
 impl DacCode {
@@ -51,6 +53,20 @@ impl DacCode {
     /// Codes above mid-scale: the sign is that of the motor torque.
     pub const fn offset(self) -> i16 {
         self.0.cast_signed() - Self::MID_SCALE.0.cast_signed()
+    }
+}
+
+impl TryFrom<u16> for DacCode {
+    type Error = CodeOutOfRange;
+
+    fn try_from(code: u16) -> Result<Self, CodeOutOfRange> {
+        Self::new(code)
+    }
+}
+
+impl From<DacCode> for u16 {
+    fn from(code: DacCode) -> Self {
+        code.get()
     }
 }
 

@@ -34,6 +34,10 @@ pub mod servo;
 pub mod number;
 pub mod text;
 
+// What a board says to its host, and what it hears.
+#[cfg(feature = "wire")]
+pub mod wire;
+
 pub mod board;
 
 // Its examples are tests.

@@ -11,6 +11,9 @@ pub struct Text<const N: usize> {
 }
 
 impl<const N: usize> Text<N> {
+    /// Bytes that fit.
+    pub const CAPACITY: usize = N;
+
     /// The empty text.
     pub const fn new() -> Self {
         Self { bytes: [0; N], len: 0 }
@@ -131,6 +134,14 @@ impl fmt::Display for Written {
 impl<const N: usize> Default for Text<N> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Writes what formats itself; what does not fit is cut off, which is no error.
+impl<const N: usize> core::fmt::Write for Text<N> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        self.push(text);
+        Ok(())
     }
 }
 

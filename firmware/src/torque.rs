@@ -8,6 +8,7 @@ use crate::number::Number;
 
 /// Why a tick's output is less than the environment asked for. This is telemetry, not a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum LimitReason {
     /// Nothing was limited.

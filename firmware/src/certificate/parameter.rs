@@ -6,6 +6,7 @@ use crate::text::Text;
 
 /// A number of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Parameter {
     /// `device.inertia`
     Inertia,

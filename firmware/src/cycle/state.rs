@@ -6,6 +6,7 @@ use crate::fault::Fault;
 
 /// What the servo is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum State {
     /// The amplifier is off.

@@ -1,0 +1,212 @@
+//! What can be said.
+//!
+//! Text is `&str` where a message is written and where it is read in place, and `String` on a host
+//! that keeps it: the bytes are the same.
+
+use core::fmt;
+use core::num::NonZeroU32;
+
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+use super::decoder::Discarded;
+use super::telemetry::Batch;
+use crate::certificate::{Parameter, Sentence};
+use crate::cycle::State;
+use crate::fault::{Fault, Retained};
+
+/// Numbers that one set may change: more than any scene has.
+pub const MAX_CHANGES: usize = 8;
+/// Longest message to a board, in bytes: the longest set, nine bytes a number.
+pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
+/// Longest message to the host, in bytes: the longest sentence of a refusal.
+pub const LONGEST_TO_HOST: usize = 8 + Sentence::CAPACITY;
+
+/// Numbers of a scene and what they are, or shall be together or not at all, in the units of a
+/// scene file.
+pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;
+
+/// The host's number for a request, which comes back with the answer.
+pub type Id = u16;
+
+/// What a host asks for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ToBoard {
+    /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::Remembered`] where a fault
+    /// is, and [`ToHost::Board`]. The same in every version of the protocol.
+    Hello,
+    /// Which numbers are running? Answered by [`ToHost::Running`].
+    Get,
+    /// How is it going? Answered by [`ToHost::Status`].
+    Status,
+    /// Change these numbers, all or none. Answered by [`ToHost::Answer`], once they run.
+    Set {
+        /// Comes back with the answer.
+        id: Id,
+        /// What to change; the other numbers stay as they run.
+        changes: Changes,
+    },
+    /// Switch the amplifier on, or clear a fault and do so. Answered by [`ToHost::Answer`].
+    Arm {
+        /// Comes back with the answer.
+        id: Id,
+    },
+    /// Fade the torque out and switch the amplifier off. Answered by [`ToHost::Answer`].
+    Disarm {
+        /// Comes back with the answer.
+        id: Id,
+    },
+    /// Send every so many ticks from now on; `None`: no more. Not answered.
+    Stream(Option<NonZeroU32>),
+}
+
+/// What a board says. `S` is the text.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ToHost<S> {
+    /// Who answers. The same in every version of the protocol, so that a host of another version
+    /// can say so.
+    Welcome {
+        /// [`super::PROTOCOL`] of the board.
+        protocol: u16,
+        /// Name of the program.
+        program: S,
+    },
+    /// What the numbers of the other messages mean on this board.
+    Board(Board),
+    /// The numbers that run.
+    Running(Running),
+    /// How it is going.
+    Status(Status),
+    /// What became of a request.
+    Answer {
+        /// The request's.
+        id: Id,
+        /// What became of it.
+        outcome: Outcome<S>,
+    },
+    /// What stopped this board before it was last started.
+    Remembered(Remembered),
+    /// Ticks that were asked for with [`ToBoard::Stream`].
+    Telemetry(Batch),
+}
+
+/// What the numbers of the other messages mean on this board.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Board {
+    /// Period of the servo in s.
+    pub period: f64,
+    /// Counts of the servo's timer in a period: the unit of a slack.
+    pub timer_counts: u32,
+    /// Encoder counts a turn.
+    pub counts_per_turn: f64,
+    /// Motor torque in N m at the converter's largest code.
+    pub full_scale_torque: f64,
+    /// One step of the energy monitor in J.
+    pub energy_step: f64,
+}
+
+/// The numbers that run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Running {
+    /// Sets that were swapped in since the start; wraps.
+    pub sets: u32,
+    /// Damping in N m s/rad that the certificate leaves to spare; `None`: the rule has none to
+    /// give.
+    pub margin: Option<f64>,
+    /// The numbers that can be changed.
+    pub values: Changes,
+}
+
+/// What became of a request.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Outcome<S> {
+    /// It is done: what was asked for runs.
+    Done,
+    /// It is refused, and nothing has changed. The sentence says why.
+    Refused(S),
+}
+
+/// How it is going.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Status {
+    /// What the servo is doing.
+    pub state: State,
+    /// What stopped it, until it is armed again.
+    pub fault: Option<FaultCode>,
+    /// Whether the host was silent for too long.
+    pub link_lost: bool,
+    /// Periods since the start; wraps.
+    pub tick: u32,
+    /// Position in counts.
+    pub count: i64,
+    /// Sets of parameters that were swapped in since the start; wraps.
+    pub sets: u32,
+    /// Updates that were missed since the start.
+    pub missed: u32,
+    /// The least timer counts that were left of a period since the start.
+    pub worst_slack: u32,
+    /// Net energy that was put into the hand since the servo was armed, in steps.
+    pub energy: i64,
+    /// The most that this has been.
+    pub worst_deficit: i64,
+    /// Ticks that found the queue to the wire full.
+    pub dropped: u32,
+    /// Ticks of the stream that were left out because the wire is slower.
+    pub thinned: u32,
+    /// Frames from the host that were none.
+    pub discarded: Discarded,
+    /// Bytes of the stack that were never used, where the board can tell.
+    pub stack_left: Option<u32>,
+}
+
+/// A [`Fault`] on the wire: a code and two numbers, so that a host that does not know the fault can
+/// still name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FaultCode {
+    /// The code of [`Fault::encode`].
+    pub code: u32,
+    /// Its numbers.
+    pub numbers: [u32; 2],
+}
+
+impl From<Fault> for FaultCode {
+    fn from(fault: Fault) -> Self {
+        let (code, numbers) = fault.encode();
+        Self { code, numbers }
+    }
+}
+
+impl FaultCode {
+    /// The fault; `None` where this version knows none of that code.
+    pub const fn fault(self) -> Option<Fault> {
+        Fault::decode(self.code, self.numbers)
+    }
+}
+
+impl fmt::Display for FaultCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.fault(), self.numbers) {
+            (Some(fault), _) => fault.fmt(f),
+            (None, [a, b]) => {
+                write!(f, "a fault that this program does not know: {} ({a}, {b})", self.code)
+            }
+        }
+    }
+}
+
+/// A fault of before the last reset, and when and where it happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Remembered {
+    /// What happened.
+    pub fault: FaultCode,
+    /// In which tick; 0 where that is not known.
+    pub tick: u32,
+    /// Low 32 bits of the position in counts; 0 where that is not known.
+    pub count: i32,
+}
+
+impl From<Retained> for Remembered {
+    fn from(record: Retained) -> Self {
+        Self { fault: record.fault.into(), tick: record.tick, count: record.count }
+    }
+}

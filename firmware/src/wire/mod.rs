@@ -1,0 +1,26 @@
+//! What a board and its host say to each other, as bytes on a serial line or a socket.
+//!
+//! [`message`] lists what can be said, [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs
+//! ticks, [`session`] answers on the board. The host asks and the board answers; of itself the board sends telemetry only, once it
+//! was asked to.
+
+pub mod decoder;
+pub mod frame;
+pub mod message;
+pub mod session;
+pub mod telemetry;
+
+pub use decoder::{Decoder, Discarded};
+pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
+pub use session::{Facts, Session};
+
+/// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
+/// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
+pub const PROTOCOL: u16 = 1;
+
+/// Speed of a serial line in bit/s, for boards and host: the fastest that the probes on all boards
+/// and the usual adapters carry.
+pub const BAUD: u32 = 921_600;
+
+#[cfg(test)]
+mod tests;

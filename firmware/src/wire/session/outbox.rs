@@ -1,0 +1,39 @@
+//! The frame that is on its way to the host.
+
+use crate::wire::frame::{encode, largest_frame};
+use crate::wire::message::{LONGEST_TO_HOST, ToHost};
+
+/// One frame, and how much of it has gone.
+pub(super) struct Outbox {
+    buffer: [u8; largest_frame(LONGEST_TO_HOST)],
+    gone: usize,
+    end: usize,
+}
+
+impl Outbox {
+    pub(super) const fn new() -> Self {
+        Self { buffer: [0; largest_frame(LONGEST_TO_HOST)], gone: 0, end: 0 }
+    }
+
+    /// Whether there is nothing left to send.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.gone >= self.end
+    }
+
+    /// Takes a message, in place of what is left of the one before.
+    pub(super) fn put(&mut self, message: &ToHost<&str>) {
+        self.gone = 0;
+        // The buffer has room for the longest message; one that were longer would not be sent.
+        self.end = encode(message, &mut self.buffer).map_or(0, <[u8]>::len);
+    }
+
+    /// What is left to send.
+    pub(super) fn rest(&self) -> &[u8] {
+        self.buffer.get(self.gone..self.end).unwrap_or_default()
+    }
+
+    /// So many bytes of it have gone.
+    pub(super) const fn sent(&mut self, bytes: usize) {
+        self.gone = self.gone.saturating_add(bytes);
+    }
+}

@@ -1,0 +1,85 @@
+//! Ticks from the servo's queue into messages, as many as the wire carries.
+
+use core::num::NonZeroU32;
+
+use heapless::spsc::Consumer;
+
+use crate::cycle::Frame;
+use crate::wire::telemetry::Batch;
+
+/// Longest time in s that a tick waits for others to go with it: a picture at 30 Hz.
+const PATIENCE: f64 = 0.03;
+
+/// What of the ticks goes to the host.
+pub(super) struct Stream {
+    every: Option<NonZeroU32>,
+    batch: Batch,
+    /// The first tick in the batch.
+    first: u32,
+    /// The last tick that went into a batch.
+    last: u32,
+    /// Ticks that the first one waits at most.
+    patience: u32,
+    due: bool,
+    thinned: u32,
+}
+
+impl Stream {
+    /// No ticks, until they are asked for. `period` in s.
+    pub(super) fn new(period: f64) -> Self {
+        // A cast of what is out of range gives the nearest.
+        let patience = (PATIENCE / period) as u32;
+        let batch = Batch::new();
+        Self { every: None, batch, first: 0, last: 0, patience, due: false, thinned: 0 }
+    }
+
+    /// Every so many ticks from now on, or none.
+    pub(super) fn set(&mut self, every: Option<NonZeroU32>) {
+        self.every = every;
+        self.batch = Batch::new();
+        self.due = false;
+    }
+
+    /// Takes ticks from the servo's queue until a message is full. While that waits for the wire,
+    /// so do the ticks behind it, up to half of the queue: the rest is left out and counted, so
+    /// that the queue never overflows for a slow wire.
+    pub(super) fn take(&mut self, frames: &mut Consumer<'_, Frame>) {
+        for _ in 0..frames.capacity() {
+            if self.due && frames.len() <= frames.capacity() / 2 {
+                return;
+            }
+            let Some(frame) = frames.dequeue() else { return };
+            if let Some(every) = self.every {
+                self.add(frame, every);
+            }
+        }
+    }
+
+    fn add(&mut self, frame: Frame, every: NonZeroU32) {
+        let is_wanted = frame.tick.wrapping_sub(self.last) >= every.get();
+        if is_wanted {
+            self.last = frame.tick;
+            if self.batch.is_empty() {
+                self.first = frame.tick;
+            }
+            if self.batch.push(frame).is_err() {
+                self.thinned = self.thinned.wrapping_add(1);
+            }
+        }
+        let waited = frame.tick.wrapping_sub(self.first);
+        self.due = self.batch.is_full() || (!self.batch.is_empty() && waited >= self.patience);
+    }
+
+    /// The ticks that should go now.
+    pub(super) fn batch(&mut self) -> Option<Batch> {
+        if !core::mem::take(&mut self.due) {
+            return None;
+        }
+        Some(core::mem::take(&mut self.batch))
+    }
+
+    /// Ticks that were left out because the wire is slower.
+    pub(super) const fn thinned(&self) -> u32 {
+        self.thinned
+    }
+}

@@ -1,0 +1,427 @@
+//! A host's side of a session, with a servo that runs behind it.
+
+use std::boxed::Box;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+use super::*;
+use crate::certificate::Parameter;
+use crate::cycle::{Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, State};
+use crate::dac::DacCode;
+use crate::encoder::{CounterWidth, RawCount};
+use crate::environment::{DamperWall, OneSided};
+use crate::scene::{Coupling, Device, Timing};
+use crate::servo::{Latched, RenderingOptions, Transducers};
+use crate::wire::message::LONGEST_TO_HOST;
+use crate::wire::{encode, largest_frame};
+
+type Wall = OneSided<DamperWall<1>>;
+
+const SCENE: Scene<Wall> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    torque_limit: Some(1.0),
+};
+
+fn program() -> Program<Wall> {
+    Program {
+        scene: SCENE,
+        transducers: Transducers {
+            counts_per_turn: 61_440.0,
+            counter: CounterWidth::Bits16,
+            full_scale_torque: 2.0,
+            largest_speed: Transducers::NO_HAND_IS_FASTER,
+        },
+        rendering: RenderingOptions { fade: 0.02, injection: None },
+        options: cycle::Options::DEFAULT,
+    }
+}
+
+/// A device that is held still, 100 counts inside the wall.
+struct Still {
+    code: DacCode,
+}
+
+impl Hardware for Still {
+    fn count(&mut self) -> RawCount {
+        RawCount::from(100_u16)
+    }
+    fn write(&mut self, code: DacCode) {
+        self.code = code;
+    }
+    fn amplifier(&mut self, _: bool) {}
+    fn passed(&mut self) -> u32 {
+        1
+    }
+    fn elapsed(&mut self) -> u32 {
+        250
+    }
+    fn feed(&mut self) {}
+}
+
+type Said = ToHost<String>;
+
+/// A session, the servo behind it, and the host's ear.
+struct Bench {
+    session: Session<'static, Wall, f32, Latched>,
+    cycle: Cycle<Wall, f32, Latched>,
+    hardware: Still,
+    inbox: Inbox<'static, Rendering<Wall, f32, Latched>>,
+    frames: Frames<'static>,
+    ear: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+}
+
+impl Bench {
+    fn new(left: Option<Retained>) -> Self {
+        let program = program();
+        let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
+        let (frames, queue) = Box::leak(Box::new(FrameQueue::<33>::new())).split();
+        let Program { scene, transducers, rendering, options } = &program;
+        let prepared =
+            tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
+        let cycle = Cycle::new(prepared.rendering, options, 1000, None);
+        let facts = Facts { name: "wall", timer_counts: 1000, left, stack_left: || Some(77) };
+        requests.arm();
+        let session = Session::new(program, prepared.margin, facts, requests, queue);
+        let hardware = Still { code: DacCode::MID_SCALE };
+        Self { session, cycle, hardware, inbox, frames, ear: Decoder::new() }
+    }
+
+    fn tell(&mut self, message: &ToBoard) {
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        self.session.receive(encode(message, &mut buffer).unwrap());
+    }
+
+    fn tick(&mut self) {
+        self.cycle.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
+    }
+
+    /// So many ticks with the wire served after each; gives what the board said.
+    fn run(&mut self, ticks: usize) -> Vec<Said> {
+        let mut said = Vec::new();
+        for _ in 0..ticks {
+            self.tick();
+            self.session.poll();
+            let bytes = self.session.outgoing().to_vec();
+            self.session.sent(bytes.len());
+            said.extend(bytes.iter().filter_map(|&byte| self.ear.push::<Said>(byte)));
+        }
+        said
+    }
+
+    /// The answer to a request, within half a second.
+    fn ask(&mut self, message: &ToBoard) -> Vec<Said> {
+        self.tell(message);
+        self.run(500)
+    }
+
+    fn set(&mut self, id: Id, changes: &[(Parameter, f64)]) -> Outcome<String> {
+        let changes = Changes::from_slice(changes).unwrap();
+        let said = self.ask(&ToBoard::Set { id, changes });
+        match said.as_slice() {
+            [ToHost::Answer { id: answered, outcome }] if *answered == id => outcome.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn running(&mut self) -> Running {
+        match self.ask(&ToBoard::Get).as_slice() {
+            [ToHost::Running(running)] => running.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn status(&mut self) -> Status {
+        let said = self.ask(&ToBoard::Status);
+        let mut statuses = said.iter().filter_map(|said| match said {
+            ToHost::Status(status) => Some(*status),
+            _ => None,
+        });
+        statuses.next().expect("a board says how it is going")
+    }
+}
+
+fn done(id: Id) -> Said {
+    ToHost::Answer { id, outcome: Outcome::Done }
+}
+
+/// Torque in codes of a wall of that stiffness behind the coupling, at rest at [`Still`]'s count.
+fn codes(stiffness: f64) -> f64 {
+    let angle = 100.0 * core::f64::consts::TAU / 61_440.0;
+    -angle * stiffness / (1.0 + stiffness / 44.0) * 2047.0 / 2.0
+}
+
+#[test]
+fn greets_with_what_its_numbers_mean() {
+    let fault = crate::fault::Fault::Watchdog;
+    let record = Retained { fault, tick: 7, count: -8 };
+    let mut bench = Bench::new(Some(record));
+    let said = bench.ask(&ToBoard::Hello);
+    let [
+        ToHost::Welcome { protocol: PROTOCOL, program },
+        ToHost::Remembered(left),
+        ToHost::Board(board),
+    ] = said.as_slice()
+    else {
+        panic!("{said:?}")
+    };
+    assert_eq!(program, "wall");
+    assert_eq!((left.fault.fault(), left.tick, left.count), (Some(fault), 7, -8));
+    assert_eq!((board.period, board.timer_counts), (0.001, 1000));
+    let said = Bench::new(None).ask(&ToBoard::Hello);
+    assert!(matches!(said.as_slice(), [ToHost::Welcome { .. }, ToHost::Board(_)]), "{said:?}");
+}
+
+#[test]
+fn a_certified_set_runs_whole() {
+    let mut bench = Bench::new(None);
+    assert_eq!(bench.running().sets, 0);
+    let margin = SCENE.certified().assessment().margin();
+    assert_eq!(bench.running().margin, margin);
+    let changes = [(Parameter::Stiffness, 12.0), (Parameter::Damping, 0.002)];
+    assert_eq!(bench.set(1, &changes), Outcome::Done);
+    let running = bench.running();
+    assert_eq!(running.sets, 1);
+    assert!(running.margin > margin);
+    for change in changes {
+        assert!(running.values.contains(&change), "{running:?}");
+    }
+    assert!(running.values.contains(&(Parameter::CouplingStiffness, 44.0)));
+    assert_eq!(bench.status().state, State::Running);
+    let offset = f64::from(bench.hardware.code.offset());
+    assert!((offset - codes(12.0)).abs() <= 1.0, "{offset} is not {}", codes(12.0));
+}
+
+#[test]
+fn a_refused_set_changes_nothing_and_comes_back_with_the_compilers_sentence() {
+    let mut bench = Bench::new(None);
+    bench.run(500);
+    let (before, code) = (bench.running(), bench.hardware.code);
+    let mut scene = SCENE;
+    scene.environment.wall.stiffness = 30.0;
+    let sentence = scene.certify().unwrap_err().to_string();
+    assert!(sentence.starts_with("rejected: "));
+    let changes = [(Parameter::Damping, 0.01), (Parameter::Stiffness, 30.0)];
+    assert_eq!(bench.set(2, &changes), Outcome::Refused(sentence));
+    for (changes, part) in [
+        ([(Parameter::Residual, 0.1)], "has no residual"),
+        ([(Parameter::Period, 0.1)], "period is fixed"),
+        ([(Parameter::Stiffness, f64::NAN)], "must be finite"),
+        ([(Parameter::TorqueLimit, 5.0)], "above the converter's full scale"),
+    ] {
+        let Outcome::Refused(sentence) = bench.set(3, &changes) else { panic!("{changes:?}") };
+        assert!(sentence.contains(part), "{sentence}");
+    }
+    assert_eq!((bench.running(), bench.hardware.code), (before, code));
+    assert_eq!(bench.status().sets, 0);
+}
+
+#[test]
+fn one_set_at_a_time() {
+    let mut bench = Bench::new(None);
+    bench.run(500);
+    let set = |id, stiffness| {
+        let changes = Changes::from_slice(&[(Parameter::Stiffness, stiffness)]).unwrap();
+        ToBoard::Set { id, changes }
+    };
+    bench.tell(&set(1, 10.0));
+    // Asked again, which is the same request and not another one.
+    bench.tell(&set(1, 10.0));
+    bench.tell(&set(2, 11.0));
+    let said = bench.run(3);
+    let [ToHost::Answer { id: 2, outcome: Outcome::Refused(sentence) }] = said.as_slice() else {
+        panic!("{said:?}")
+    };
+    assert!(sentence.contains("still being swapped in"), "{sentence}");
+    bench.tell(&set(1, 10.0));
+    assert_eq!(bench.run(500), [done(1)]);
+    assert!(bench.running().values.contains(&(Parameter::Stiffness, 10.0)));
+}
+
+#[test]
+fn disarming_goes_before_arming() {
+    let mut bench = Bench::new(None);
+    bench.run(500);
+    assert_eq!(bench.ask(&ToBoard::Disarm { id: 1 }), [done(1)]);
+    assert_eq!(bench.status().state, State::Disarmed);
+    assert_eq!(bench.hardware.code, DacCode::MID_SCALE);
+    assert_eq!(bench.ask(&ToBoard::Arm { id: 2 }), [done(2)]);
+    assert_eq!(bench.status().state, State::Running);
+    for (first, second) in [
+        (ToBoard::Arm { id: 3 }, ToBoard::Disarm { id: 4 }),
+        (ToBoard::Disarm { id: 4 }, ToBoard::Arm { id: 3 }),
+    ] {
+        bench.tell(&first);
+        bench.tell(&second);
+        let said = bench.run(500);
+        let [ToHost::Answer { id: 3, outcome: Outcome::Refused(sentence) }, last] = said.as_slice()
+        else {
+            panic!("{said:?}")
+        };
+        assert!(sentence.contains("being disarmed"), "{sentence}");
+        assert_eq!(*last, done(4));
+        assert_eq!(bench.status().state, State::Disarmed);
+    }
+}
+
+#[test]
+fn streams_what_it_is_asked_for_and_leaves_out_what_the_wire_does_not_take() {
+    let mut bench = Bench::new(None);
+    let every = core::num::NonZeroU32::new(10);
+    let said = bench.ask(&ToBoard::Stream(every));
+    let ticks: Vec<Frame> = said.iter().flat_map(ticks).collect();
+    assert!(ticks.len() > 40 && ticks.windows(2).all(|two| two[1].tick == two[0].tick + 10));
+    assert!(ticks.iter().all(|tick| tick.count == 100 && tick.slack == 750));
+    assert_eq!(ticks.last().unwrap().code, bench.hardware.code);
+    assert_eq!(bench.status().thinned, 0);
+    bench.tell(&ToBoard::Stream(core::num::NonZeroU32::new(1)));
+    // Nothing is sent for a while: the servo's queue does not overflow for that.
+    for _ in 0..1000 {
+        bench.tick();
+        bench.session.poll();
+    }
+    bench.run(100);
+    bench.tell(&ToBoard::Stream(None));
+    bench.run(10);
+    let status = bench.status();
+    assert_eq!(status.dropped, 0);
+    assert!((900..1000).contains(&status.thinned), "{status:?}");
+    assert_eq!(bench.run(500), []);
+}
+
+fn ticks(said: &Said) -> Vec<Frame> {
+    match said {
+        ToHost::Telemetry(batch) => batch.ticks().collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_frame_may_take_its_time() {
+    let mut bench = Bench::new(None);
+    let changes = Changes::from_slice(&[(Parameter::Stiffness, 9.0)]).unwrap();
+    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    let frame = encode(&ToBoard::Set { id: 5, changes }, &mut buffer).unwrap().to_vec();
+    let (first, second) = frame.split_at(frame.len() / 2);
+    bench.session.receive(first);
+    assert_eq!(bench.run(2000), []);
+    bench.session.receive(second);
+    assert_eq!(bench.run(500), [done(5)]);
+}
+
+#[test]
+fn every_message_fits_its_frame() {
+    let pairs = [(Parameter::UnitZeros, -1.0e-300); super::super::message::MAX_CHANGES];
+    let changes = Changes::from_slice(&pairs).unwrap();
+    let set = ToBoard::Set { id: u16::MAX, changes: changes.clone() };
+    assert!(postcard::to_slice(&set, &mut [0; LONGEST_TO_BOARD]).is_ok());
+    let mut batch = crate::wire::telemetry::Batch::new();
+    let (limit, state) = (crate::torque::LimitReason::None, State::Faulted);
+    for sign in 0..crate::wire::telemetry::BATCH as u32 {
+        let (tick, count) = (sign.wrapping_mul(u32::MAX / 2), i32::MIN * (sign % 2) as i32);
+        let frame = Frame { tick, count, code: DacCode::MAX, limit, state, slack: u32::MAX };
+        batch.push(frame).unwrap();
+    }
+    let sentence = "x".repeat(Sentence::CAPACITY);
+    let outcome = Outcome::Refused(sentence.as_str());
+    for message in [
+        ToHost::Telemetry(batch),
+        ToHost::Answer { id: u16::MAX, outcome },
+        ToHost::Running(Running { sets: u32::MAX, margin: Some(1.0), values: changes }),
+    ] {
+        assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");
+    }
+}
+
+/// Bytes that are noise, and frames in whole or in part.
+fn garbage() -> impl Strategy<Value = Vec<u8>> {
+    let frame = (any::<u8>(), 0_usize..120, any::<u8>()).prop_map(|(kind, cut, flip)| {
+        let set = |value| Changes::from_slice(&[(Parameter::Stiffness, value)]).unwrap();
+        let message = match kind % 6 {
+            0 => ToBoard::Hello,
+            1 => ToBoard::Get,
+            2 => ToBoard::Status,
+            // Never certified, whatever happens to its neighbours.
+            3 => ToBoard::Set { id: 1, changes: set(1000.0) },
+            4 => ToBoard::Stream(core::num::NonZeroU32::new(3)),
+            _ => ToBoard::Arm { id: 9 },
+        };
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        let mut frame = encode(&message, &mut buffer).unwrap().to_vec();
+        frame.truncate(cut);
+        if flip % 4 == 0 && !frame.is_empty() {
+            let place = usize::from(flip) % frame.len();
+            frame[place] ^= flip;
+        }
+        frame
+    });
+    let piece = prop_oneof![frame, vec(any::<u8>(), 0..300), Just(std::vec![0x41; 2000])];
+    vec(piece, 0..30).prop_map(|pieces| pieces.concat())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    /// Beside a servo whose wire is silent: the codes are the same, tick by tick.
+    #[test]
+    fn garbage_and_floods_do_not_reach_the_servo(
+        garbage in garbage(),
+        chunk in 1_usize..500,
+    ) {
+        let (mut bench, mut silent) = (Bench::new(None), Bench::new(None));
+        let mut rest = garbage.as_slice();
+        for _ in 0..300 {
+            let now = rest.split_off(..chunk.min(rest.len())).unwrap();
+            bench.session.receive(now);
+            bench.run(1);
+            silent.run(1);
+            prop_assert_eq!(bench.hardware.code, silent.hardware.code);
+            prop_assert_eq!(bench.cycle.state(), silent.cycle.state());
+        }
+        bench.tell(&ToBoard::Stream(None));
+        bench.run(100);
+        let status = bench.status();
+        prop_assert_eq!((status.missed, status.dropped, status.sets), (0, 0, 0));
+        prop_assert_eq!(bench.set(77, &[(Parameter::Stiffness, 5.0)]), Outcome::Done);
+    }
+
+    /// Beside the judgement of the whole scene, made apart from the wire.
+    #[test]
+    fn what_is_not_certified_never_runs(
+        sets in vec((0.0_f64..44.0, -0.01_f64..0.03, -0.1_f64..0.1), 1..10),
+    ) {
+        let mut bench = Bench::new(None);
+        let mut scene = SCENE;
+        for (id, (stiffness, damping, face)) in sets.into_iter().enumerate() {
+            let mut wanted = scene;
+            wanted.environment =
+                OneSided { face, wall: DamperWall { stiffness, damping } };
+            let changes = [
+                (Parameter::Face, face),
+                (Parameter::Damping, damping),
+                (Parameter::Stiffness, stiffness),
+            ];
+            let outcome = bench.set(id as Id, &changes);
+            match wanted.certify() {
+                Ok(_) => {
+                    scene = wanted;
+                    prop_assert_eq!(outcome, Outcome::Done);
+                }
+                Err(rejection) => {
+                    prop_assert_eq!(outcome, Outcome::Refused(rejection.to_string()));
+                }
+            }
+            bench.run(200);
+            let OneSided { face, wall } = scene.environment;
+            let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - face;
+            let torque = (wall.stiffness * depth / (1.0 + wall.stiffness / 44.0)).clamp(0.0, 1.0);
+            let offset = f64::from(bench.hardware.code.offset());
+            prop_assert!((offset + torque * 2047.0 / 2.0).abs() <= 1.0, "{offset}, {torque}");
+        }
+    }
+}
