@@ -33,6 +33,14 @@ impl Script {
         Self { story: "a hand swings it and lets go", hand: GRIP, path, release: 3.5 }
     }
 
+    /// Pushes in and eases out, over and over for an hour.
+    pub fn push_over_and_over() -> Self {
+        let push = |n: u32| (0.75 * f64::from(n), if n.is_multiple_of(2) { -0.05 } else { 0.12 });
+        let path = (1..=4800).map(push).collect();
+        let story = "a hand pushes in and eases out, over and over";
+        Self { story, hand: GRIP, path, release: f64::INFINITY }
+    }
+
     /// Where the hand wants to be at a time in s: smoothly from point to point.
     pub fn position(&self, time: f64) -> f64 {
         let next = self.path.partition_point(|&(at, _)| at <= time);

@@ -31,6 +31,11 @@ pub mod table;
 pub mod emulator;
 pub mod toolchain;
 
+// A board that runs, at the other end of a wire, and the view of it.
+pub mod link;
+pub mod scope;
+pub mod twin;
+
 // What scenes would do, certified or not, and how far one may go.
 pub mod design;
 pub mod limits;

@@ -10,13 +10,19 @@ pub mod free_mode;
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
 
+use std::io;
+
+use firmware::boot;
+use firmware::cycle::Options;
 use firmware::scene::Scene;
-use firmware::servo::{BuildError, Transducers};
+use firmware::servo::{BuildError, Latched, RenderingOptions, Simultaneous, Transducers};
 
 use crate::controller::{Controller, controller};
 use crate::hand::Script;
-use crate::rig::SimulatedDevice;
+use crate::link::Address;
+use crate::rig::{Plant, SimulatedDevice};
 use crate::toolchain::NumberFormat;
+use crate::twin::{Clock, Twin};
 
 /// A scene with a program of its own.
 #[derive(Debug)]
@@ -30,10 +36,14 @@ pub struct Program {
     /// What a hand does to show it.
     pub script: fn() -> Script,
     build: Build,
+    listen: Listen,
 }
 
 /// Builds a program's servo on the host.
 type Build = fn(NumberFormat, &Transducers) -> Result<Box<dyn Controller>, BuildError>;
+
+/// Starts a program on a board that is a thread.
+type Listen = fn(Box<dyn Plant + Send>, &Address, Clock) -> io::Result<Twin>;
 
 impl Program {
     /// Its servo on the host, with other transducers where a recording comes from another encoder.
@@ -59,6 +69,19 @@ impl Program {
         .expect("a device that is written there moves")
     }
 
+    /// Starts it on a board that is a thread, around this device.
+    ///
+    /// # Errors
+    /// Where the address cannot be listened at.
+    pub fn listen(
+        &self,
+        plant: Box<dyn Plant + Send>,
+        address: &Address,
+        clock: Clock,
+    ) -> io::Result<Twin> {
+        (self.listen)(plant, address, clock)
+    }
+
     /// The program of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         ALL.iter().find(|program| program.name == name)
@@ -66,7 +89,7 @@ impl Program {
 }
 
 macro_rules! programs {
-    ($($module:ident, $script:path;)*) => {
+    ($($module:ident, $script:path, $mode:ty;)*) => {
         /// All programs, in the order in which they are shown.
         pub const ALL: &[Program] = &[$(Program {
             name: stringify!($module),
@@ -79,12 +102,22 @@ macro_rules! programs {
                     controller::<_, $module::Fixed>(&$module::CERTIFIED, transducers)
                 }
             },
+            listen: |plant, address, clock| {
+                let program = boot::Program {
+                    scene: $module::SCENE,
+                    transducers: $module::TRANSDUCERS,
+                    rendering: RenderingOptions::DEFAULT,
+                    options: Options::DEFAULT,
+                };
+                Twin::start::<_, f32, $mode>(stringify!($module), program, plant, address, clock)
+            },
         }),*];
     };
 }
 
 programs! {
-    delayed_spring, Script::push_and_let_go;
-    damper_wall, Script::push_and_let_go;
-    free_mode, Script::swing_and_let_go;
+    delayed_spring, Script::push_and_let_go, Latched;
+    damper_wall, Script::push_and_let_go, Latched;
+    // Its canceller has no delay, which only a simulation can give.
+    free_mode, Script::swing_and_let_go, Simultaneous;
 }

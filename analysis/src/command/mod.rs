@@ -10,8 +10,10 @@ pub mod flash;
 pub mod identify;
 pub mod report;
 pub mod run;
+pub mod scope;
 pub mod simulate;
 pub mod stability;
+pub mod tune;
 pub mod worst_hand;
 
 use std::io;
@@ -26,6 +28,7 @@ use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
+use crate::link::LinkError;
 use crate::recorded::RecordedError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
@@ -66,6 +69,10 @@ pub enum Command {
     Report(report::Arguments),
     /// Measure what a certificate and a tick cost.
     Bench(bench::Arguments),
+    /// Show or change the parameters of a running board; it refuses what it cannot certify.
+    Tune(tune::Arguments),
+    /// Watch a running board, or record it.
+    Scope(scope::Arguments),
     /// What would a scene do, certified or not?
     Simulate(simulate::Arguments),
     /// Does the motion of this device in this hand die away?
@@ -191,6 +198,15 @@ pub enum CommandError {
         /// What was asked for.
         quantity: &'static str,
     },
+    /// A parameter was given two values.
+    #[error("{name} is given twice")]
+    Twice {
+        /// Its name.
+        name: &'static str,
+    },
+    /// A board cannot be talked to.
+    #[error(transparent)]
+    Link(#[from] LinkError),
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
@@ -208,6 +224,8 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Tune(arguments) => tune::run(&arguments),
+        Command::Scope(arguments) => scope::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),

@@ -1,0 +1,168 @@
+//! `haptic scope`: a board as it runs, on a terminal or as a table.
+
+use std::fs::File;
+use std::io::{self, IsTerminal, Write};
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEventKind, KeyModifiers};
+
+use super::{Answer, CommandError};
+use crate::link::{Address, Link};
+use crate::scope::feed::Feed;
+use crate::scope::record::Recorder;
+use crate::scope::{Scope, view};
+
+/// Arguments of `haptic scope`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
+    #[arg(long, value_name = "PORT")]
+    pub port: Address,
+    /// Record every tick that is sent, to a file, or with `-` to standard output
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// End after so many seconds
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    pub duration: Option<Duration>,
+    /// Have only every so many ticks sent; as many as a terminal shows if left out
+    #[arg(long, value_name = "TICKS")]
+    pub every: Option<NonZeroU32>,
+    /// Seconds that the view shows
+    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds)]
+    pub window: Duration,
+}
+
+/// Ticks in a second that are sent where nothing else is asked for: what a serial line carries and
+/// what curves can show.
+const RATE: f64 = 1000.0;
+/// Time between two pictures.
+const PICTURE: Duration = Duration::from_millis(33);
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(duration) if !duration.is_zero() => Ok(duration),
+        _ => Err(format!("`{text}` must be a number of seconds greater than 0")),
+    }
+}
+
+/// Shows or records what a board says, until the time is up or somebody has seen enough.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let to_output = match &arguments.csv {
+        Some(path) => path == Path::new("-"),
+        // Rows are what a pipe or a file can use.
+        None => !io::stdout().is_terminal(),
+    };
+    let mut recorder = match (&arguments.csv, to_output) {
+        (_, true) => Some(Recorder::new(Box::new(io::stdout()))),
+        (Some(path), false) => Some(Recorder::new(Box::new(create(path)?))),
+        (None, false) => None,
+    };
+    let link = Link::open(&arguments.port)?;
+    let every = arguments.every.unwrap_or_else(|| every(link.board().period));
+    let mut session = Session {
+        scope: Scope::new(arguments.port.to_string(), arguments.window.as_secs_f64()),
+        feed: Feed::start(link, every),
+        end: arguments.duration.map(|duration| Instant::now() + duration),
+    };
+    if to_output || !io::stdout().is_terminal() {
+        session.record(recorder.as_mut())?;
+    } else {
+        let mut terminal = ratatui::try_init()?;
+        let shown = session.show(&mut terminal, recorder.as_mut());
+        ratatui::try_restore()?;
+        shown?;
+    }
+    if let (Some(recorder), false) = (&mut recorder, to_output) {
+        recorder.flush()?;
+        writeln!(io::stderr(), "{} ticks recorded", recorder.count())?;
+    }
+    Ok(Answer::Yes)
+}
+
+fn create(path: &Path) -> Result<File, CommandError> {
+    File::create(path).map_err(|source| CommandError::Unwritable { path: path.to_owned(), source })
+}
+
+fn every(period: f64) -> NonZeroU32 {
+    // A cast of what is out of range gives the nearest.
+    NonZeroU32::new((1.0 / (period * RATE)).round() as u32).unwrap_or(NonZeroU32::MIN)
+}
+
+struct Session {
+    scope: Scope,
+    feed: Feed,
+    end: Option<Instant>,
+}
+
+impl Session {
+    fn is_over(&self) -> bool {
+        self.end.is_some_and(|end| Instant::now() >= end)
+    }
+
+    /// Takes what the board says until then.
+    fn listen(&mut self, until: Instant, mut recorder: Option<&mut Recorder>) -> io::Result<()> {
+        loop {
+            let patience = until.saturating_duration_since(Instant::now());
+            let Some(event) = self.feed.next(patience) else { break };
+            self.scope.take(event, |sample| match &mut recorder {
+                Some(recorder) => recorder.add(sample),
+                None => Ok(()),
+            })?;
+        }
+        recorder.map_or(Ok(()), Recorder::flush)
+    }
+
+    /// Without a view.
+    fn record(&mut self, mut recorder: Option<&mut Recorder>) -> Result<(), CommandError> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = interrupted.clone();
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+            .map_err(io::Error::other)?;
+        let mut lost = None;
+        while !self.is_over() && !interrupted.load(Ordering::Relaxed) {
+            self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
+            if self.scope.lost != lost {
+                lost.clone_from(&self.scope.lost);
+                let what = lost.as_deref().unwrap_or("connected again");
+                writeln!(io::stderr(), "{what}")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// With a view.
+    fn show(
+        &mut self,
+        terminal: &mut DefaultTerminal,
+        mut recorder: Option<&mut Recorder>,
+    ) -> Result<(), CommandError> {
+        while !self.is_over() {
+            self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
+            terminal.draw(|frame| view::draw(frame, &self.scope))?;
+            while event::poll(Duration::ZERO)? {
+                if is_enough(&event::read()?) {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_enough(input: &Input) -> bool {
+    let Input::Key(key) = input else { return false };
+    let interrupted = key.modifiers.contains(KeyModifiers::CONTROL);
+    key.kind == KeyEventKind::Press
+        && match key.code {
+            KeyCode::Char('q') | KeyCode::Esc => true,
+            KeyCode::Char('c') => interrupted,
+            _ => false,
+        }
+}

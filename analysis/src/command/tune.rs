@@ -1,0 +1,200 @@
+//! `haptic tune`: the parameters of a running board.
+
+use std::io::{self, Write};
+
+use clap::Args;
+use firmware::certificate::Parameter;
+use firmware::tuning::{self, TUNABLE};
+use firmware::wire::message::{Changes, Outcome, Running, Status};
+use serde::Serialize;
+
+use super::{Answer, CommandError};
+use crate::link::{Address, Link};
+use crate::scope::words;
+
+/// Arguments of `haptic tune`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
+    #[arg(long, value_name = "PORT")]
+    pub port: Address,
+    /// What to change, all or nothing, in SI units: stiffness=30 damping=0.01; without any, what
+    /// runs is printed
+    #[arg(value_name = "NAME=VALUE", value_parser = change)]
+    pub changes: Vec<(Parameter, f64)>,
+    /// Switch the amplifier on afterwards; clears a fault
+    #[arg(long, conflicts_with = "disarm")]
+    pub arm: bool,
+    /// Switch the amplifier off first
+    #[arg(long)]
+    pub disarm: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `stiffness=30`
+fn change(text: &str) -> Result<(Parameter, f64), String> {
+    let (name, value) =
+        text.split_once('=').ok_or_else(|| format!("`{text}` is no change: NAME=VALUE"))?;
+    let parameter = tuning::parameter(name).ok_or_else(|| {
+        let names: Vec<&str> = TUNABLE.iter().map(|(name, _)| *name).collect();
+        format!("there is no parameter `{name}` to tune; there are {}", names.join(", "))
+    })?;
+    match value.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((parameter, value)),
+        _ => Err(format!("`{value}` is no finite number")),
+    }
+}
+
+/// The answer as JSON.
+#[derive(Serialize)]
+struct Report<'a> {
+    program: &'a str,
+    /// The board's sentence, where it refused.
+    refused: Option<&'a str>,
+    sets: u32,
+    margin: Option<f64>,
+    parameters: serde_json::Map<String, serde_json::Value>,
+    state: &'static str,
+    fault: Option<String>,
+    remembered: Option<String>,
+    missed: u32,
+    worst_slack: Option<f64>,
+    energy: f64,
+    worst_deficit: f64,
+    dropped: u32,
+    thinned: u32,
+    discarded: u32,
+    stack_left: Option<u32>,
+}
+
+/// Does what is asked for and prints what runs then. The answer is no where the board refuses.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let changes = collect(&arguments.changes)?;
+    let mut link = Link::open(&arguments.port)?;
+    let outcome = request(&mut link, arguments, changes)?;
+    let refused = match &outcome {
+        Outcome::Done => None,
+        Outcome::Refused(sentence) => Some(sentence.as_str()),
+    };
+    let (running, status) = (link.running()?, link.status()?);
+    if arguments.json {
+        let report = report(&link, refused, &running, &status);
+        serde_json::to_writer(io::stdout(), &report).map_err(io::Error::from)?;
+        writeln!(io::stdout())?;
+    } else {
+        print(&link, refused, &running, &status)?;
+    }
+    Ok(if refused.is_none() { Answer::Yes } else { Answer::No })
+}
+
+/// The changes as the wire has them.
+fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, CommandError> {
+    for (i, (parameter, _)) in changes.iter().enumerate() {
+        if changes[..i].iter().any(|(earlier, _)| earlier == parameter) {
+            return Err(CommandError::Twice { name: words::name(*parameter) });
+        }
+    }
+    // More than there are parameters would have one of them twice.
+    Ok(changes.iter().copied().collect())
+}
+
+/// Each step only if the one before it was done.
+fn request(
+    link: &mut Link,
+    arguments: &Arguments,
+    changes: Changes,
+) -> Result<Outcome<String>, CommandError> {
+    let mut outcome = Outcome::Done;
+    if arguments.disarm {
+        outcome = link.disarm()?;
+    }
+    if outcome == Outcome::Done && !changes.is_empty() {
+        outcome = link.set(changes)?;
+    }
+    if outcome == Outcome::Done && arguments.arm {
+        outcome = link.arm()?;
+    }
+    Ok(outcome)
+}
+
+fn print(
+    link: &Link,
+    refused: Option<&str>,
+    running: &Running,
+    status: &Status,
+) -> Result<(), CommandError> {
+    let (board, mut out) = (link.board(), io::stdout().lock());
+    if let Some(sentence) = refused {
+        writeln!(io::stderr(), "{sentence}")?;
+    }
+    writeln!(out, "{} on {}: {}", link.program(), link.address(), status.state)?;
+    if let Some(fault) = status.fault {
+        writeln!(out, "stopped: {fault}")?;
+    }
+    if let Some(remembered) = link.remembered() {
+        writeln!(out, "{}", words::remembered(&remembered))?;
+    }
+    writeln!(out, "{}", words::numbers(running))?;
+    writeln!(out, "{}", words::reserves(running, status, board, None))?;
+    writeln!(out, "{}", words::energy(status, board))?;
+    writeln!(out, "{}", words::losses(status, link.discarded()))?;
+    Ok(())
+}
+
+fn report<'a>(
+    link: &'a Link,
+    refused: Option<&'a str>,
+    running: &Running,
+    status: &Status,
+) -> Report<'a> {
+    let board = link.board();
+    let named = |(parameter, value): &(Parameter, f64)| {
+        (words::name(*parameter).to_owned(), (*value).into())
+    };
+    Report {
+        program: link.program(),
+        refused,
+        sets: running.sets,
+        margin: running.margin,
+        parameters: running.values.iter().map(named).collect(),
+        state: status.state.as_str(),
+        fault: status.fault.map(|fault| fault.to_string()),
+        remembered: link.remembered().as_ref().map(words::remembered),
+        missed: status.missed,
+        worst_slack: words::worst_slack(status, board),
+        energy: status.energy as f64 * board.energy_step,
+        worst_deficit: status.worst_deficit as f64 * board.energy_step,
+        dropped: status.dropped,
+        thinned: status.thinned,
+        discarded: status.discarded.total(),
+        stack_left: status.stack_left,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_a_name_and_a_number() {
+        assert_eq!(change("stiffness=30"), Ok((Parameter::Stiffness, 30.0)));
+        assert_eq!(change("coupling.stiffness=4e1"), Ok((Parameter::CouplingStiffness, 40.0)));
+        for (text, part) in [
+            ("stiffness", "NAME=VALUE"),
+            ("stiffnes=3", "there are stiffness, damping"),
+            ("damping=soft", "no finite number"),
+            ("damping=inf", "no finite number"),
+        ] {
+            let refused = change(text).unwrap_err();
+            assert!(refused.contains(part), "{refused}");
+        }
+    }
+
+    #[test]
+    fn a_parameter_given_twice_is_a_bad_question() {
+        let twice = [(Parameter::Damping, 0.1), (Parameter::Damping, 0.1)];
+        assert!(matches!(collect(&twice), Err(CommandError::Twice { name: "damping" })));
+    }
+}

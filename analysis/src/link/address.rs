@@ -1,0 +1,121 @@
+//! Where a board is: a serial port, or the socket of an emulated one.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use firmware::wire::BAUD;
+use thiserror::Error;
+
+/// Where a board is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// A serial port.
+    Serial {
+        /// Name of the port, as the system has it.
+        port: String,
+        /// Speed in bit/s.
+        baud: u32,
+    },
+    /// A socket on the network.
+    Tcp(String),
+    /// A socket of this machine.
+    Unix(PathBuf),
+}
+
+/// What is no address.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum AddressError {
+    /// No port.
+    #[error(
+        "the port is empty: name a serial port such as /dev/ttyACM0 or COM3, tcp://HOST:PORT, or \
+         unix:PATH"
+    )]
+    Empty,
+    /// A network address without a port.
+    #[error("`{0}` is no network address: tcp://HOST:PORT, with a port from 1 to 65535")]
+    NoTcpPort(String),
+    /// A speed that is no number.
+    #[error(
+        "`{0}` is no speed: a serial port's is a whole number of bit/s, as in /dev/ttyACM0@{BAUD}"
+    )]
+    NoBaud(String),
+}
+
+impl FromStr for Address {
+    type Err = AddressError;
+
+    fn from_str(text: &str) -> Result<Self, AddressError> {
+        if let Some(path) = text.strip_prefix("unix:") {
+            // The double slash of a URL, or none.
+            let path = path.strip_prefix("//").unwrap_or(path);
+            return if path.is_empty() {
+                Err(AddressError::Empty)
+            } else {
+                Ok(Self::Unix(path.into()))
+            };
+        }
+        if let Some(address) = text.strip_prefix("tcp://") {
+            return match address.rsplit_once(':') {
+                Some((host, port))
+                    if !host.is_empty() && port.parse::<u16>().is_ok_and(|p| p > 0) =>
+                {
+                    Ok(Self::Tcp(address.to_owned()))
+                }
+                _ => Err(AddressError::NoTcpPort(text.to_owned())),
+            };
+        }
+        let (port, baud) = match text.split_once('@') {
+            Some((port, baud)) => match baud.parse() {
+                Ok(baud) if baud > 0 => (port, baud),
+                _ => return Err(AddressError::NoBaud(baud.to_owned())),
+            },
+            None => (text, BAUD),
+        };
+        if port.is_empty() {
+            return Err(AddressError::Empty);
+        }
+        Ok(Self::Serial { port: port.to_owned(), baud })
+    }
+}
+
+impl fmt::Display for Address {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { port, baud } if *baud == BAUD => f.write_str(port),
+            Self::Serial { port, baud } => write!(f, "{port}@{baud}"),
+            Self::Tcp(address) => write!(f, "tcp://{address}"),
+            Self::Unix(path) => write!(f, "unix:{}", path.display()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_address_reads_as_it_is_written() {
+        for text in
+            ["/dev/ttyACM0", "COM3", "/dev/ttyUSB1@115200", "tcp://[::1]:4000", "unix:/tmp/b"]
+        {
+            assert_eq!(text.parse::<Address>().unwrap().to_string(), text);
+        }
+        assert_eq!("unix:///tmp/b".parse(), Ok(Address::Unix("/tmp/b".into())));
+        let serial = Address::Serial { port: "COM3".into(), baud: BAUD };
+        assert_eq!("COM3".parse(), Ok(serial));
+    }
+
+    #[test]
+    fn what_is_no_address_is_said() {
+        for text in ["", "unix:", "@9600"] {
+            assert_eq!(text.parse::<Address>(), Err(AddressError::Empty), "{text}");
+        }
+        for text in ["tcp://", "tcp://host", "tcp://:80", "tcp://host:0", "tcp://host:port"] {
+            assert_eq!(text.parse::<Address>(), Err(AddressError::NoTcpPort(text.into())));
+        }
+        for text in ["COM3@", "COM3@fast", "COM3@0"] {
+            assert!(matches!(text.parse::<Address>(), Err(AddressError::NoBaud(_))), "{text}");
+        }
+    }
+}

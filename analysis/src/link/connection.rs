@@ -1,0 +1,271 @@
+//! A board that answers.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use firmware::wire::message::{
+    Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Remembered, Running, Status,
+    ToBoard, ToHost,
+};
+use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
+
+use super::transport::{self, Transport, is_timeout};
+use super::{Address, LinkError};
+
+/// What a board said, kept.
+pub type Message = ToHost<String>;
+
+/// How long an answer is waited for.
+#[derive(Clone, Copy)]
+struct Patience {
+    /// Until it is asked again: bytes get lost.
+    again: Duration,
+    /// In all.
+    end: Duration,
+}
+
+/// With what a board knows.
+const QUESTION: Patience =
+    Patience { again: Duration::from_millis(250), end: Duration::from_secs(3) };
+/// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
+const REQUEST: Patience = Patience { again: Duration::from_secs(2), end: Duration::from_secs(10) };
+
+/// A connection to a board that has said who it is.
+pub struct Link {
+    address: Address,
+    wire: Wire,
+    program: String,
+    board: Board,
+    remembered: Option<Remembered>,
+    /// Drawn at first, so that an answer to somebody before us is not taken for ours.
+    last_id: Id,
+}
+
+/// Messages over a transport.
+struct Wire {
+    transport: Box<dyn Transport>,
+    decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+    /// Bytes that were read, and how many of them were looked at.
+    bytes: Box<[u8; 4096]>,
+    filled: usize,
+    used: usize,
+}
+
+impl Wire {
+    fn send(&mut self, message: &ToBoard) -> io::Result<()> {
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        let frame = encode(message, &mut buffer).map_err(io::Error::other)?;
+        self.transport.write_all(frame)?;
+        self.transport.flush()
+    }
+
+    /// The next message, if there is one before the time is up.
+    fn receive(&mut self, until: Instant) -> io::Result<Option<Message>> {
+        loop {
+            while self.used < self.filled {
+                let byte = self.bytes[self.used];
+                self.used += 1;
+                if let Some(message) = self.decoder.push(byte) {
+                    return Ok(Some(message));
+                }
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(None);
+            }
+            // No operating system waits for no time at all.
+            self.transport.wait_at_most(left.max(Duration::from_millis(1)))?;
+            match self.transport.read(self.bytes.as_mut_slice()) {
+                Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+                Ok(filled) => (self.used, self.filled) = (0, filled),
+                Err(error) if is_timeout(&error) => {}
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Asks until there is an answer that `wanted` takes, or the time is up.
+    fn ask<T>(
+        &mut self,
+        question: &ToBoard,
+        patience: Patience,
+        mut wanted: impl FnMut(Message) -> Option<T>,
+    ) -> io::Result<Option<T>> {
+        let end = Instant::now() + patience.end;
+        while Instant::now() < end {
+            self.send(question)?;
+            let again = (Instant::now() + patience.again).min(end);
+            while let Some(message) = self.receive(again)? {
+                if let Some(answer) = wanted(message) {
+                    return Ok(Some(answer));
+                }
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl Link {
+    /// Connects and asks who is there.
+    ///
+    /// # Errors
+    /// Where the address cannot be opened, nobody answers, or with another version of the protocol.
+    pub fn open(address: &Address) -> Result<Self, LinkError> {
+        let transport = transport::open(address)
+            .map_err(|source| LinkError::Open { address: address.clone(), source })?;
+        let (decoder, bytes) = (Decoder::new(), Box::new([0; 4096]));
+        let mut wire = Wire { transport, decoder, bytes, filled: 0, used: 0 };
+        let (mut welcome, mut remembered) = (None, None);
+        let greeted = wire.ask(&ToBoard::Hello, QUESTION, |message| match message {
+            ToHost::Welcome { protocol, program } if protocol == PROTOCOL => {
+                welcome = Some(program);
+                None
+            }
+            ToHost::Welcome { protocol, program } => Some(Err((protocol, program))),
+            ToHost::Remembered(fault) => {
+                remembered = Some(fault);
+                None
+            }
+            // The last part of the greeting.
+            ToHost::Board(board) => welcome.take().map(|program| Ok((program, board))),
+            _ => None,
+        });
+        let address = address.clone();
+        match greeted {
+            Ok(Some(Ok((program, board)))) => {
+                Ok(Self { address, wire, program, board, remembered, last_id: fastrand::u16(..) })
+            }
+            Ok(Some(Err((theirs, program)))) => {
+                Err(LinkError::Protocol { address, program, theirs })
+            }
+            Ok(None) => Err(LinkError::Silent { address, after: QUESTION.end }),
+            Err(source) => Err(LinkError::Lost { address, source }),
+        }
+    }
+
+    /// Where the board is.
+    pub fn address(&self) -> &Address {
+        &self.address
+    }
+
+    /// Name of the board's program.
+    pub fn program(&self) -> &str {
+        &self.program
+    }
+
+    /// What the board's numbers mean.
+    pub fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// What stopped the board before it was last started.
+    pub fn remembered(&self) -> Option<Remembered> {
+        self.remembered
+    }
+
+    /// Frames from the board that were none.
+    pub fn discarded(&self) -> Discarded {
+        self.wire.decoder.discarded()
+    }
+
+    /// Changes these numbers, all or none, and waits until they run.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn set(&mut self, changes: Changes) -> Result<Outcome<String>, LinkError> {
+        self.request("a change of its parameters", |id| ToBoard::Set {
+            id,
+            changes: changes.clone(),
+        })
+    }
+
+    /// Switches the amplifier on, or clears a fault and does so.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn arm(&mut self) -> Result<Outcome<String>, LinkError> {
+        self.request("to arm", |id| ToBoard::Arm { id })
+    }
+
+    /// Fades the torque out and switches the amplifier off.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn disarm(&mut self) -> Result<Outcome<String>, LinkError> {
+        self.request("to disarm", |id| ToBoard::Disarm { id })
+    }
+
+    /// The numbers that run.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn running(&mut self) -> Result<Running, LinkError> {
+        self.ask("which parameters run", &ToBoard::Get, QUESTION, |message| match message {
+            ToHost::Running(running) => Some(running),
+            _ => None,
+        })
+    }
+
+    /// How it is going.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn status(&mut self) -> Result<Status, LinkError> {
+        self.ask("how it is going", &ToBoard::Status, QUESTION, |message| match message {
+            ToHost::Status(status) => Some(status),
+            _ => None,
+        })
+    }
+
+    /// Says something that is not answered, or whose answer is taken with [`Self::receive`].
+    ///
+    /// # Errors
+    /// Where the link is lost.
+    pub fn send(&mut self, message: &ToBoard) -> Result<(), LinkError> {
+        self.wire.send(message).map_err(|source| self.lost(source))
+    }
+
+    /// The next message, whatever it is; `None` when the time is up.
+    ///
+    /// # Errors
+    /// Where the link is lost.
+    pub fn receive(&mut self, until: Instant) -> Result<Option<Message>, LinkError> {
+        self.wire.receive(until).map_err(|source| self.lost(source))
+    }
+
+    fn request(
+        &mut self,
+        what: &'static str,
+        message: impl Fn(Id) -> ToBoard,
+    ) -> Result<Outcome<String>, LinkError> {
+        self.last_id = self.last_id.wrapping_add(1);
+        let sent = self.last_id;
+        self.ask(what, &message(sent), REQUEST, |message| match message {
+            ToHost::Answer { id, outcome } if id == sent => Some(outcome),
+            _ => None,
+        })
+    }
+
+    fn ask<T>(
+        &mut self,
+        what: &'static str,
+        question: &ToBoard,
+        patience: Patience,
+        wanted: impl FnMut(Message) -> Option<T>,
+    ) -> Result<T, LinkError> {
+        match self.wire.ask(question, patience, wanted) {
+            Ok(Some(answer)) => Ok(answer),
+            Ok(None) => Err(self.silent(what, patience.end)),
+            Err(source) => Err(self.lost(source)),
+        }
+    }
+
+    /// The error of a board that has not answered for so long.
+    pub fn silent(&self, what: &'static str, after: Duration) -> LinkError {
+        LinkError::Unanswered { address: self.address.clone(), what, after }
+    }
+
+    fn lost(&self, source: io::Error) -> LinkError {
+        LinkError::Lost { address: self.address.clone(), source }
+    }
+}

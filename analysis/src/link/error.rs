@@ -1,0 +1,79 @@
+//! Why a board cannot be talked to.
+
+use std::io;
+use std::time::Duration;
+
+use firmware::wire::PROTOCOL;
+use thiserror::Error;
+
+use super::Address;
+
+/// Why a board cannot be talked to.
+#[derive(Debug, Error)]
+pub enum LinkError {
+    /// No such port, or somebody else has it.
+    #[error("cannot open {address}: {source}{}", ports(.address))]
+    Open {
+        /// The address.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+    /// The port opened, and nobody answers.
+    #[error(
+        "no board answers on {address} within {} s: is it powered, flashed with a scene's program, \
+         and is this its port (and its speed)?",
+        .after.as_secs_f64()
+    )]
+    Silent {
+        /// The address.
+        address: Address,
+        /// How long it was asked.
+        after: Duration,
+    },
+    /// A board of another version.
+    #[error(
+        "the board on {address} runs `{program}` with version {theirs} of the protocol, and this \
+         program speaks version {PROTOCOL}: flash it anew"
+    )]
+    Protocol {
+        /// The address.
+        address: Address,
+        /// The board's program.
+        program: String,
+        /// The board's version.
+        theirs: u16,
+    },
+    /// The board answered before and does no longer.
+    #[error("the board on {address} has not answered {what} within {} s", .after.as_secs_f64())]
+    Unanswered {
+        /// The address.
+        address: Address,
+        /// What was asked.
+        what: &'static str,
+        /// How long was waited.
+        after: Duration,
+    },
+    /// The port is gone.
+    #[error("the link to {address} is lost: {source}")]
+    Lost {
+        /// The address.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// The ports that there are, where one was asked for that cannot be had.
+fn ports(address: &Address) -> String {
+    if !matches!(address, Address::Serial { .. }) {
+        return String::new();
+    }
+    match serialport::available_ports() {
+        Ok(ports) if !ports.is_empty() => {
+            let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
+            format!("; the serial ports here are {}", names.join(", "))
+        }
+        _ => "; there is no serial port here".to_owned(),
+    }
+}

@@ -1,0 +1,85 @@
+//! Bytes to a board and back, with a limit on every wait.
+
+use std::io::{self, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+#[cfg(unix)]
+use std::os::unix::net::UnixStream;
+use std::time::Duration;
+
+use serialport::SerialPort;
+
+use super::Address;
+
+/// Longest wait for a connection, and for the wire to take bytes.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A two-way stream of bytes whose reads end after a while, with or without bytes.
+pub trait Transport: Read + Write + Send {
+    /// Sets the longest wait of a read.
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()>;
+}
+
+impl Transport for Box<dyn SerialPort> {
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
+        Ok(self.set_timeout(limit)?)
+    }
+}
+
+impl Transport for TcpStream {
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
+        self.set_read_timeout(Some(limit))
+    }
+}
+
+#[cfg(unix)]
+impl Transport for UnixStream {
+    fn wait_at_most(&mut self, limit: Duration) -> io::Result<()> {
+        self.set_read_timeout(Some(limit))
+    }
+}
+
+/// Opens an address.
+pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
+    Ok(match address {
+        Address::Serial { port, baud } => {
+            let port = serialport::new(port, *baud).timeout(PATIENCE).open()?;
+            // What a probe has kept from before is not for us.
+            port.clear(serialport::ClearBuffer::All)?;
+            Box::new(port)
+        }
+        Address::Tcp(address) => Box::new(connect(address)?),
+        #[cfg(unix)]
+        Address::Unix(path) => {
+            let stream = UnixStream::connect(path)?;
+            stream.set_write_timeout(Some(PATIENCE))?;
+            Box::new(stream)
+        }
+        #[cfg(not(unix))]
+        Address::Unix(_) => return Err(io::ErrorKind::Unsupported.into()),
+    })
+}
+
+/// Connects to the first of a host's addresses that answers.
+fn connect(address: &str) -> io::Result<TcpStream> {
+    let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, PATIENCE) {
+            Ok(stream) => {
+                // Messages are small, and each waits for the answer to the one before.
+                stream.set_nodelay(true)?;
+                stream.set_write_timeout(Some(PATIENCE))?;
+                return Ok(stream);
+            }
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
+}
+
+/// Whether a read has only run out of time.
+pub fn is_timeout(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+    )
+}

@@ -1,0 +1,80 @@
+//! A live view of a board: what it says, what of it is kept, and how it is drawn.
+
+pub mod feed;
+pub mod history;
+pub mod record;
+pub mod sample;
+pub mod view;
+pub mod words;
+
+use firmware::wire::Discarded;
+use firmware::wire::message::{Board, Remembered, Running, Status};
+
+use self::feed::Event;
+use self::history::History;
+use self::sample::{Sample, Scale};
+
+/// What is known of a board.
+#[derive(Clone, Debug)]
+pub struct Scope {
+    /// Where it is.
+    pub address: String,
+    /// What it has said about itself.
+    pub known: Option<Known>,
+    /// Why there is no link now.
+    pub lost: Option<String>,
+    /// How it was going when it was last asked, and the frames that could not be read here.
+    pub status: Option<(Status, Discarded)>,
+    /// The numbers that run.
+    pub running: Option<Running>,
+    /// The last seconds.
+    pub history: History,
+}
+
+/// What a board has said about itself.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// Name of its program.
+    pub program: String,
+    /// What its numbers mean.
+    pub board: Board,
+    /// What stopped it before it was last started.
+    pub remembered: Option<Remembered>,
+    scale: Scale,
+}
+
+impl Scope {
+    /// Nothing is known yet of the board there; `window` seconds are kept.
+    pub fn new(address: String, window: f64) -> Self {
+        let history = History::new(window);
+        Self { address, known: None, lost: None, status: None, running: None, history }
+    }
+
+    /// Takes in what the board says, and gives its ticks to `each`.
+    pub fn take<E>(
+        &mut self,
+        event: Event,
+        mut each: impl FnMut(&Sample) -> Result<(), E>,
+    ) -> Result<(), E> {
+        match event {
+            Event::Connected { program, board, remembered } => {
+                let scale = Scale::new(board);
+                self.known = Some(Known { program, board, remembered, scale });
+                self.lost = None;
+                self.history.clear();
+            }
+            Event::Ticks(frames) => {
+                let Some(known) = &mut self.known else { return Ok(()) };
+                for frame in &frames {
+                    let sample = known.scale.sample(frame);
+                    each(&sample)?;
+                    self.history.push(sample);
+                }
+            }
+            Event::Status(status, discarded) => self.status = Some((status, discarded)),
+            Event::Running(running) => self.running = Some(running),
+            Event::Lost(why) => self.lost = Some(why),
+        }
+        Ok(())
+    }
+}

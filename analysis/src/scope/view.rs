@@ -1,0 +1,116 @@
+//! A board on a terminal.
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Style, Stylize};
+use ratatui::symbols::Marker;
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
+
+use super::sample::Sample;
+use super::{Scope, words};
+use crate::quantity::significant;
+
+/// Dots side by side in a character.
+const DOTS: usize = 2;
+
+/// Draws all that is known.
+pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
+    let [head, position, torque, facts, keys] = Layout::vertical([
+        Constraint::Length(2),
+        Constraint::Fill(1),
+        Constraint::Fill(1),
+        Constraint::Length(4),
+        Constraint::Length(1),
+    ])
+    .areas(frame.area());
+    frame.render_widget(Paragraph::new(heading(scope)), head);
+    draw_curve(frame, position, scope, "position, rad", |sample| sample.position);
+    draw_curve(frame, torque, scope, "torque, N m", |sample| sample.torque);
+    frame.render_widget(Paragraph::new(facts_of(scope)), facts);
+    frame.render_widget(Line::from("q quits").dim(), keys);
+}
+
+fn heading(scope: &Scope) -> Vec<Line<'static>> {
+    let program = scope.known.as_ref().map_or("", |known| &known.program);
+    let mut first = vec![Span::from(format!("{program} on {}", scope.address)).bold()];
+    if let Some((status, _)) = &scope.status {
+        let colour = match (status.fault, status.state.is_armed()) {
+            (Some(_), _) => Color::Red,
+            (None, true) => Color::Green,
+            (None, false) => Color::Yellow,
+        };
+        first.push(Span::from("   "));
+        first.push(Span::styled(status.state.as_str(), Style::new().fg(colour).bold()));
+        if status.link_lost {
+            first.push(Span::from("   the board counts its host as lost").yellow());
+        }
+    }
+    vec![Line::from(first), trouble(scope)]
+}
+
+/// The worst that there is to say.
+fn trouble(scope: &Scope) -> Line<'static> {
+    if let Some(why) = &scope.lost {
+        return Line::from(format!("{why}; connecting again")).red();
+    }
+    if let Some(fault) = scope.status.and_then(|(status, _)| status.fault) {
+        return Line::from(fault.to_string()).red();
+    }
+    match scope.known.as_ref().and_then(|known| known.remembered.as_ref()) {
+        Some(remembered) => Line::from(words::remembered(remembered)).yellow(),
+        None => Line::default(),
+    }
+}
+
+fn facts_of(scope: &Scope) -> Vec<Line<'static>> {
+    let (Some(known), Some(running), Some((status, here))) =
+        (&scope.known, &scope.running, scope.status)
+    else {
+        return Vec::new();
+    };
+    let slack = scope.history.last().map(|last| last.slack);
+    let energy = words::energy(&status, &known.board);
+    vec![
+        Line::from(words::numbers(running)),
+        Line::from(words::reserves(running, &status, &known.board, slack)),
+        Line::from(format!("{energy}   {}", words::limits(scope))),
+        Line::from(words::losses(&status, here)).dim(),
+    ]
+}
+
+fn draw_curve(
+    frame: &mut Frame<'_>,
+    area: Rect,
+    scope: &Scope,
+    title: &str,
+    value: impl Fn(&Sample) -> f64 + Copy,
+) {
+    let points = scope.history.curve(usize::from(area.width) * DOTS, value);
+    let (low, high) = range(scope.history.range(value).unwrap_or((0.0, 0.0)));
+    let window = scope.history.window();
+    let now = scope.history.last().map_or("?".to_owned(), |last| significant(value(last), 5));
+    let label = |number: f64| format!("{number:>9.3e}");
+    let curve =
+        Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line).data(&points);
+    let chart = Chart::new(vec![curve])
+        .block(Block::bordered().title(format!(" {title}: {now} ")))
+        .x_axis(
+            Axis::default()
+                .bounds([-window, 0.0])
+                .labels([format!("-{window} s"), "now".to_owned()]),
+        )
+        .y_axis(Axis::default().bounds([low, high]).labels([
+            label(low),
+            label(0.5 * (low + high)),
+            label(high),
+        ]));
+    frame.render_widget(chart, area);
+}
+
+/// A range with some height, also of a curve that has none.
+fn range((low, high): (f64, f64)) -> (f64, f64) {
+    let height = (high - low).max(1e-6 * low.abs().max(high.abs()).max(1.0));
+    let middle = 0.5 * (low + high);
+    (middle - 0.55 * height, middle + 0.55 * height)
+}

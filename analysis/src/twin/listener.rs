@@ -1,0 +1,156 @@
+//! The socket of a board that is a thread.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+#[cfg(unix)]
+use std::os::unix::net::{UnixListener, UnixStream};
+#[cfg(unix)]
+use std::path::PathBuf;
+
+use firmware::number::Number;
+use firmware::servo::{OutputMode, Renders};
+use firmware::tuning::Tunable;
+use firmware::wire::Session;
+
+use crate::link::Address;
+
+/// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
+const BYTES: usize = 256;
+
+/// Frames that are sent at a time at most.
+const FRAMES: usize = 16;
+
+/// A stream of bytes that does not wait.
+trait Stream: Read + Write + Send {}
+
+impl<S: Read + Write + Send> Stream for S {}
+
+/// A socket, and who has connected to it: one at a time, as on a serial line.
+pub(super) struct Listener {
+    socket: Socket,
+    client: Option<Box<dyn Stream>>,
+}
+
+enum Socket {
+    Tcp(TcpListener),
+    #[cfg(unix)]
+    Unix(UnixListener, PathBuf),
+}
+
+impl Listener {
+    /// Listens there; gives the address with the port that the system chose where it was to.
+    pub(super) fn bind(address: &Address) -> io::Result<(Self, Address)> {
+        let (socket, address) = match address {
+            Address::Tcp(address) => {
+                let listener = TcpListener::bind(address)?;
+                listener.set_nonblocking(true)?;
+                let address = listener.local_addr()?.to_string();
+                (Socket::Tcp(listener), Address::Tcp(address))
+            }
+            #[cfg(unix)]
+            Address::Unix(path) => {
+                let listener = UnixListener::bind(path)?;
+                listener.set_nonblocking(true)?;
+                (Socket::Unix(listener, path.clone()), address.clone())
+            }
+            _ => return Err(ErrorKind::Unsupported.into()),
+        };
+        Ok((Self { socket, client: None }, address))
+    }
+
+    /// Carries bytes between the session and whoever is connected; gives whether there were any.
+    pub(super) fn exchange<E, N, M>(&mut self, session: &mut Session<'_, E, N, M>) -> bool
+    where
+        E: Tunable<N> + Renders<M>,
+        N: Number,
+        M: OutputMode,
+    {
+        let Some(client) = &mut self.client else {
+            session.poll();
+            // Nobody listens: as on a serial line, what is sent is gone.
+            session.sent(session.outgoing().len());
+            self.client = self.socket.accept();
+            return false;
+        };
+        match carry(client.as_mut(), session) {
+            Ok(was_busy) => was_busy,
+            Err(_) => {
+                self.client = None;
+                false
+            }
+        }
+    }
+}
+
+fn carry<E, N, M>(client: &mut dyn Stream, session: &mut Session<'_, E, N, M>) -> io::Result<bool>
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let mut bytes = [0; BYTES];
+    let read = match client.read(&mut bytes) {
+        Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+        Ok(read) => read,
+        Err(error) if error.kind() == ErrorKind::WouldBlock => 0,
+        Err(error) => return Err(error),
+    };
+    session.receive(&bytes[..read]);
+    let mut all = 0;
+    for _ in 0..FRAMES {
+        session.poll();
+        let written = send(client, session.outgoing())?;
+        session.sent(written);
+        all += written;
+        if written == 0 {
+            break;
+        }
+    }
+    Ok(read + all > 0)
+}
+
+/// Sends what the stream takes. Nothing is not sent: to a stream that was closed at the other end
+/// that would be an error, and what came before would be lost.
+fn send(client: &mut dyn Stream, bytes: &[u8]) -> io::Result<usize> {
+    if bytes.is_empty() {
+        return Ok(0);
+    }
+    match client.write(bytes) {
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(0),
+        written => written,
+    }
+}
+
+impl Socket {
+    fn accept(&self) -> Option<Box<dyn Stream>> {
+        match self {
+            Self::Tcp(listener) => listener.accept().ok().and_then(|(stream, _)| tcp(stream).ok()),
+            #[cfg(unix)]
+            Self::Unix(listener, _) => {
+                listener.accept().ok().and_then(|(stream, _)| unix(stream).ok())
+            }
+        }
+    }
+}
+
+fn tcp(stream: TcpStream) -> io::Result<Box<dyn Stream>> {
+    stream.set_nonblocking(true)?;
+    stream.set_nodelay(true)?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(unix)]
+fn unix(stream: UnixStream) -> io::Result<Box<dyn Stream>> {
+    stream.set_nonblocking(true)?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(unix)]
+impl Drop for Socket {
+    fn drop(&mut self) {
+        if let Self::Unix(_, path) = self {
+            // Somebody may have removed it already.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}

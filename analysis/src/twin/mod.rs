@@ -1,0 +1,144 @@
+//! A board that is a thread: the same cycle and the same wire as on a real one, around a simulated
+//! device, behind a socket.
+//!
+//! Its time is that of its ticks, of which it does as many as a real board would, or all that it
+//! can. A tick is never late here; what may make a real one late is another matter.
+
+mod board;
+mod listener;
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use firmware::boot::{self, Program};
+use firmware::cycle::{FrameQueue, Mailbox};
+use firmware::number::Number;
+use firmware::servo::{OutputMode, RenderError, Renders};
+use firmware::tuning::Tunable;
+use firmware::wire::{Facts, Session};
+
+use self::board::Board;
+use self::listener::Listener;
+use crate::link::Address;
+use crate::rig::Plant;
+
+/// Timer counts in a period: a 170 MHz timer at 1 kHz.
+const TIMER_COUNTS: u32 = 170_000;
+/// Frames that wait for the wire.
+const FRAMES: usize = 64;
+/// Longest time between two looks at the wire.
+const LOOK: Duration = Duration::from_millis(1);
+
+/// How fast a twin's time passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// As a real board's.
+    Real,
+    /// As fast as it can.
+    Free,
+}
+
+/// A board that is a thread; ends when dropped.
+#[derive(Debug)]
+pub struct Twin {
+    address: Address,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Result<(), Box<RenderError>>>>,
+}
+
+impl Twin {
+    /// Boots a program and listens there.
+    ///
+    /// # Errors
+    /// Where the address cannot be listened at.
+    pub fn start<E, N, M>(
+        name: &'static str,
+        program: Program<E>,
+        plant: Box<dyn Plant + Send>,
+        address: &Address,
+        clock: Clock,
+    ) -> io::Result<Self>
+    where
+        E: Tunable<N> + Renders<M> + Send + 'static,
+        N: Number,
+        M: OutputMode,
+    {
+        let (listener, address) = Listener::bind(address)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        let over = ended.clone();
+        let thread = thread::spawn(move || {
+            serve::<E, N, M>(name, program, Board::new(plant, M::TIMING), listener, clock, &over)
+        });
+        Ok(Self { address, ended, thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> &Address {
+        &self.address
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// Where its program could not start.
+    ///
+    /// # Panics
+    /// If its thread has.
+    pub fn end(mut self) -> Result<(), Box<RenderError>> {
+        self.ended.store(true, Ordering::Relaxed);
+        self.thread.take().map_or(Ok(()), |thread| thread.join().expect("the board panicked"))
+    }
+}
+
+impl Drop for Twin {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // What went wrong in it, somebody who wanted to know has asked for.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The program, from boot to the end.
+fn serve<E, N, M>(
+    name: &'static str,
+    program: Program<E>,
+    mut board: Board,
+    mut listener: Listener,
+    clock: Clock,
+    over: &AtomicBool,
+) -> Result<(), Box<RenderError>>
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::<FRAMES>::new());
+    let (requests, mut inbox) = mailbox.split();
+    let (mut frames, ticks) = queue.split();
+    let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)?;
+    let (mut cycle, margin) = (booted.cycle, booted.margin);
+    let facts = Facts { name, timer_counts: TIMER_COUNTS, left: None, stack_left: || None };
+    let mut session = Session::new(program, margin, facts, requests, ticks);
+    let period = Duration::from_secs_f64(program.scene.timing.period);
+    let mut next = Instant::now();
+    while !over.load(Ordering::Relaxed) {
+        // No more at a time than wait for the wire.
+        for _ in 0..FRAMES / 2 {
+            if clock == Clock::Real && Instant::now() < next {
+                break;
+            }
+            next += period;
+            cycle.run(&mut board, &mut inbox, &mut frames);
+        }
+        let was_busy = listener.exchange(&mut session);
+        if clock == Clock::Real && !was_busy {
+            thread::sleep(next.saturating_duration_since(Instant::now()).min(LOOK));
+        }
+    }
+    Ok(())
+}

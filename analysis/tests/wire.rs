@@ -1,0 +1,361 @@
+//! The program as the client of a board that is a thread: `tune`, `scope`, and everything that a
+//! wire may do to them.
+
+mod common;
+
+use std::collections::HashMap;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::process::{Output, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use analysis::link::{Address, Link};
+use analysis::program::{Program, damper_wall};
+use analysis::rig::Plant;
+use analysis::twin::{Clock, Twin};
+use common::{answer, haptic, program};
+use firmware::certificate::Parameter;
+use firmware::environment::{DamperWall, OneSided};
+use firmware::scene::Scene;
+use firmware::wire::message::{Changes, Outcome, Status};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Counts inside the wall at which the device is held.
+const DEPTH: i32 = 300;
+
+/// A device that somebody holds still, and the codes that its motor was given.
+#[derive(Clone, Default)]
+struct Held(Arc<Mutex<Codes>>);
+
+#[derive(Default)]
+struct Codes {
+    ticks: u64,
+    last: u16,
+    seen: HashMap<u16, u64>,
+}
+
+impl Plant for Held {
+    fn count(&mut self) -> Option<i32> {
+        Some(DEPTH)
+    }
+
+    fn hold(&mut self, code: u16) {
+        let mut codes = self.0.lock().unwrap();
+        codes.ticks += 1;
+        codes.last = code;
+        *codes.seen.entry(code).or_default() += 1;
+    }
+}
+
+impl Held {
+    /// Forgets the codes so far.
+    fn forget(&self) {
+        self.0.lock().unwrap().seen.clear();
+    }
+
+    /// The code after so many more ticks.
+    fn after(&self, ticks: u64) -> u16 {
+        let end = self.0.lock().unwrap().ticks + ticks;
+        loop {
+            let codes = self.0.lock().unwrap();
+            if codes.ticks >= end {
+                return codes.last;
+            }
+            drop(codes);
+            std::thread::yield_now();
+        }
+    }
+}
+
+/// A board with the damper wall, and where it listens.
+struct Rig {
+    held: Held,
+    twin: Twin,
+    _folder: TempDir,
+}
+
+impl Rig {
+    fn new(clock: Clock) -> Self {
+        let folder = TempDir::new().unwrap();
+        let address = Address::Unix(folder.path().join("board"));
+        let held = Held::default();
+        let wall = Program::find("damper_wall").unwrap();
+        let twin = wall.listen(Box::new(held.clone()), &address, clock).unwrap();
+        Self { held, twin, _folder: folder }
+    }
+
+    fn port(&self) -> String {
+        self.twin.address().to_string()
+    }
+
+    fn link(&self) -> Link {
+        Link::open(self.twin.address()).unwrap()
+    }
+
+    fn raw(&self) -> UnixStream {
+        let Address::Unix(path) = self.twin.address() else { unreachable!() };
+        UnixStream::connect(path).unwrap()
+    }
+
+    fn haptic(&self, arguments: &[&str]) -> Output {
+        let port = self.port();
+        let (command, rest) = arguments.split_first().unwrap();
+        haptic(&[&[*command, "--port", &port], rest].concat())
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn with(stiffness: f64, damping: f64) -> Scene<damper_wall::Environment> {
+    let wall = DamperWall { stiffness, damping };
+    Scene { environment: OneSided { face: 0.0, wall }, ..damper_wall::SCENE }
+}
+
+/// The code of a wall of that stiffness behind the coupling at rest: two springs in series.
+fn code(stiffness: f64) -> f64 {
+    let transducers = damper_wall::TRANSDUCERS;
+    let angle = f64::from(DEPTH) * std::f64::consts::TAU / transducers.counts_per_turn;
+    let torque = (angle / (1.0 / stiffness + 1.0 / 44.0)).min(1.0);
+    2048.0 - torque * 2047.0 / transducers.full_scale_torque
+}
+
+#[test]
+fn tune_changes_what_is_certified_and_prints_what_runs() {
+    let rig = Rig::new(Clock::Free);
+    let output = rig.haptic(&["tune"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(text(&output.stdout).contains("stiffness=22 damping=0.01 face=0"), "{output:?}");
+    let output = rig.haptic(&["tune", "--json", "stiffness=12.5", "damping=0.002"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let said = answer(&output);
+    assert_eq!(said["program"], "damper_wall");
+    assert_eq!(said["parameters"]["stiffness"], 12.5);
+    assert_eq!(said["parameters"]["damping"], 0.002);
+    assert_eq!(said["parameters"]["coupling.stiffness"], 44.0);
+    let margin = with(12.5, 0.002).certified().assessment().margin();
+    assert_eq!(said["margin"].as_f64(), margin);
+    assert_eq!((&said["refused"], &said["sets"]), (&Value::Null, &Value::from(1)));
+    assert_eq!(said["missed"], 0);
+    // The clamp opens again, for as long as that takes.
+    let state = said["state"].as_str().unwrap();
+    assert!(["settling", "fading-in", "running"].contains(&state), "{state}");
+}
+
+#[test]
+fn tune_prints_the_boards_sentence_where_it_refuses() {
+    let rig = Rig::new(Clock::Free);
+    let sentence = with(30.0, 0.01).certify().unwrap_err().to_string();
+    let output = rig.haptic(&["tune", "stiffness=30"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(text(&output.stderr).trim_end(), sentence);
+    assert!(text(&output.stdout).contains("stiffness=22 "), "{output:?}");
+    let output = rig.haptic(&["tune", "--json", "stiffness=30", "--arm"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(answer(&output)["refused"], sentence);
+    // A parameter of another scene.
+    let output = rig.haptic(&["tune", "residual=0.1"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(text(&output.stderr).contains("no residual; it has stiffness, damping, face"));
+}
+
+#[test]
+fn a_bad_question_is_status_2() {
+    let rig = Rig::new(Clock::Free);
+    for (arguments, part) in [
+        (["tune", "stiffnes=30"], "there is no parameter `stiffnes`"),
+        (["tune", "stiffness"], "NAME=VALUE"),
+        (["tune", "damping=nan"], "no finite number"),
+        (["scope", "--for=-1"], "greater than 0"),
+    ] {
+        let output = rig.haptic(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(text(&output.stderr).contains(part), "{output:?}");
+    }
+    for (port, part) in [
+        ("unix:/nowhere/board", "cannot open unix:/nowhere/board"),
+        ("/dev/nowhere", "serial port"),
+        ("tcp://nowhere", "tcp://HOST:PORT"),
+    ] {
+        let output = haptic(&["tune", "--port", port]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(text(&output.stderr).contains(part), "{output:?}");
+    }
+}
+
+#[test]
+fn somebody_who_is_no_board_is_told_from_one() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("tcp://{}", listener.local_addr().unwrap());
+    let mute = std::thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        stream.write_all(b"220 mail.example.org ESMTP\r\n").unwrap();
+        let mut rest = Vec::new();
+        stream.read_to_end(&mut rest).unwrap();
+        rest
+    });
+    let error = Link::open(&port.parse().unwrap()).err().unwrap().to_string();
+    assert!(error.contains("no board answers on tcp://127.0.0.1"), "{error}");
+    assert!(mute.join().unwrap().len() > 20, "it was asked more than once");
+}
+
+#[test]
+fn arms_and_disarms() {
+    let rig = Rig::new(Clock::Free);
+    let said = answer(&rig.haptic(&["tune", "--json", "--disarm"]));
+    assert_eq!((&said["refused"], &said["state"]), (&Value::Null, &"disarmed".into()));
+    assert_eq!(rig.held.after(10), 2048);
+    // A set is taken while the motor is off, and nothing moves for it.
+    let said = answer(&rig.haptic(&["tune", "--json", "stiffness=11"]));
+    assert_eq!((&said["sets"], &said["state"]), (&Value::from(1), &"disarmed".into()));
+    assert_eq!(rig.held.after(500), 2048);
+    let said = answer(&rig.haptic(&["tune", "--json", "--arm"]));
+    assert_eq!(said["refused"], Value::Null);
+    assert!((f64::from(rig.held.after(500)) - code(11.0)).abs() <= 1.0);
+}
+
+#[test]
+fn scope_records_rows_and_ends_quietly() {
+    let rig = Rig::new(Clock::Real);
+    let output = rig.haptic(&["scope", "--csv", "-", "--for", "0.6", "--every", "1"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(text(&output.stderr), "");
+    let mut rows = csv::Reader::from_reader(output.stdout.as_slice());
+    let header: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();
+    let wanted = "tick,time,count,position,code,torque,state,limit,slack";
+    assert_eq!(header.join(","), wanted);
+    let rows: Vec<HashMap<String, String>> = rows.deserialize().collect::<Result<_, _>>().unwrap();
+    assert!(rows.len() > 300, "{}", rows.len());
+    let number = |row: &HashMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
+    for two in rows.windows(2) {
+        assert_eq!(number(&two[1], "tick"), number(&two[0], "tick") + 1.0);
+    }
+    let last = rows.last().unwrap();
+    assert_eq!((last["state"].as_str(), last["limit"].as_str()), ("running", "none"));
+    assert_eq!(number(last, "count"), f64::from(DEPTH));
+    assert!((number(last, "code") - code(22.0)).abs() <= 1.0);
+    let torque = (number(last, "code") - 2048.0) / 2047.0 * 2.0;
+    assert!((number(last, "torque") - torque).abs() < 1e-12);
+    assert!((number(last, "slack") - 0.001).abs() < 1e-12);
+}
+
+#[test]
+fn scope_ends_quietly_when_nobody_reads_on() {
+    let rig = Rig::new(Clock::Real);
+    let mut child = program(&["scope", "--port", &rig.port()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    for _ in 0..20 {
+        lines.next().unwrap().unwrap();
+    }
+    drop(lines);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
+}
+
+#[test]
+fn scope_says_that_the_link_is_lost_and_goes_on_when_it_is_back() {
+    let rig = Rig::new(Clock::Real);
+    let (address, folder) = (rig.twin.address().clone(), rig._folder);
+    let csv = folder.path().join("ticks.csv");
+    let mut child = program(&["scope", "--port", &address.to_string(), "--for", "4", "--csv"])
+        .arg(&csv)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    let rows = || std::fs::read_to_string(&csv).unwrap_or_default().lines().count();
+    wait_for(|| rows() > 10);
+    drop(rig.twin);
+    assert!(said.next().unwrap().contains("is lost"));
+    let before = rows();
+    let wall = Program::find("damper_wall").unwrap();
+    let _again = wall.listen(Box::new(rig.held), &address, Clock::Real).unwrap();
+    wait_for(|| rows() > before + 10);
+    let rest: Vec<String> = said.collect();
+    assert!(rest.iter().any(|line| line == "connected again"), "{rest:?}");
+    assert!(rest.last().unwrap().ends_with("ticks recorded"), "{rest:?}");
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+fn wait_for(mut is_so: impl FnMut() -> bool) {
+    let end = Instant::now() + Duration::from_secs(30);
+    while !is_so() {
+        assert!(Instant::now() < end, "it takes too long");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Half of them inadmissible; the verdict on each is made here, apart from the wire.
+#[test]
+fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
+    let rig = Rig::new(Clock::Free);
+    let mut link = rig.link();
+    let mut random = fastrand::Rng::with_seed(7);
+    let (mut running, mut refused) = (22.0, 0);
+    rig.held.after(500);
+    for i in 0..1000 {
+        let stiffness = if i % 2 == 0 { 0.5 + 19.0 * random.f64() } else { 44.0 * random.f64() };
+        let damping = if i % 2 == 0 { 0.001 } else { 0.02 + 0.02 * random.f64() };
+        let changes = [(Parameter::Stiffness, stiffness), (Parameter::Damping, damping)];
+        rig.held.forget();
+        let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
+        match with(stiffness, damping).certify() {
+            Ok(_) => {
+                assert_eq!(outcome, Outcome::Done, "set {i}");
+                running = stiffness;
+            }
+            Err(rejection) => {
+                assert_eq!(outcome, Outcome::Refused(rejection.to_string()), "set {i}");
+                refused += 1;
+                // Not for a single tick.
+                let last = rig.held.after(150);
+                let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
+                assert_eq!(seen, [last], "set {i}");
+            }
+        }
+        let last = rig.held.after(150);
+        assert!((f64::from(last) - code(running)).abs() <= 1.0, "set {i}: {last}");
+    }
+    assert!((400..600).contains(&refused), "{refused}");
+    let status = link.status().unwrap();
+    assert_eq!((status.sets, status.missed, status.dropped), (1000 - refused, 0, 0));
+}
+
+/// Random bytes, truncated frames, wrong checksums, a flood, and a stall in the middle of a frame.
+#[test]
+fn a_servo_keeps_time_whatever_comes_over_the_wire() {
+    let rig = Rig::new(Clock::Real);
+    let wanted = rig.held.after(500);
+    rig.held.forget();
+    let mut random = fastrand::Rng::with_seed(11);
+    let hello = [0, 2, 0, 1, 1];
+    let pieces: [Vec<u8>; 4] = [
+        (0..20_000).map(|_| random.u8(..)).collect(),
+        (0..3000).flat_map(|_| [0, 9, 9, 9, 0]).collect(),
+        (0..3000).flat_map(|_| [0, 7, 1, 2, 3, 4, 5, 6, 0]).collect(),
+        vec![0x55; 100_000],
+    ];
+    for piece in &pieces {
+        rig.raw().write_all(piece).unwrap();
+    }
+    let mut stalled = rig.raw();
+    stalled.write_all(&hello[..3]).unwrap();
+    assert_eq!(rig.held.after(300), wanted);
+    drop(stalled);
+    let status: Status = rig.link().status().unwrap();
+    assert_eq!((status.sets, status.missed), (0, 0));
+    let discarded = status.discarded;
+    assert!(discarded.broken >= 3000 && discarded.checksum >= 3000, "{discarded:?}");
+    assert!(discarded.too_long >= 1, "{discarded:?}");
+    // Nothing that it was told has moved the motor.
+    let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
+    assert_eq!(seen, [wanted]);
+}
