@@ -59,7 +59,10 @@ impl Listener {
     }
 
     /// Carries bytes between the session and whoever is connected; gives whether there were any.
-    pub(super) fn exchange<E, N, M>(&mut self, session: &mut Session<'_, E, N, M>) -> bool
+    pub(super) fn exchange<E, N, M, const LENGTH: usize>(
+        &mut self,
+        session: &mut Session<'_, E, N, M, LENGTH>,
+    ) -> bool
     where
         E: Tunable<N> + Renders<M>,
         N: Number,
@@ -82,7 +85,10 @@ impl Listener {
     }
 }
 
-fn carry<E, N, M>(client: &mut dyn Stream, session: &mut Session<'_, E, N, M>) -> io::Result<bool>
+fn carry<E, N, M, const LENGTH: usize>(
+    client: &mut dyn Stream,
+    session: &mut Session<'_, E, N, M, LENGTH>,
+) -> io::Result<bool>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,

@@ -85,6 +85,12 @@ pub struct FrameReader<'a, const LENGTH: usize> {
 }
 
 impl<const LENGTH: usize> FrameReader<'_, LENGTH> {
+    /// Frames that wait.
+    pub fn waiting(&self) -> usize {
+        let taken = self.queue.taken.load(Ordering::Relaxed);
+        self.queue.pushed.load(Ordering::Acquire).wrapping_sub(taken) as usize
+    }
+
     /// Takes the oldest frame.
     pub fn take(&mut self) -> Option<Frame> {
         let queue = self.queue;

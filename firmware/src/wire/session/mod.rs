@@ -13,8 +13,6 @@ mod tests;
 
 use core::fmt::{Display, Write};
 
-use heapless::spsc::Consumer;
-
 use self::outbox::Outbox;
 use self::owed::{Greeting, Owed, Refusal};
 use self::stream::Stream;
@@ -26,7 +24,7 @@ use super::message::{
 };
 use crate::boot::Program;
 use crate::certificate::Sentence;
-use crate::cycle::{self, Frame, Notice, Requests};
+use crate::cycle::{self, FrameReader, Notice, Requests};
 use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
@@ -57,12 +55,12 @@ struct Set<E> {
     margin: Option<f64>,
 }
 
-/// The board's end of the wire.
-pub struct Session<'a, E: Renderable<N>, N: Number, M> {
+/// The board's end of the wire; `LENGTH` is that of the servo's queue of frames.
+pub struct Session<'a, E: Renderable<N>, N: Number, M, const LENGTH: usize> {
     facts: Facts,
     program: Program<E>,
     requests: Requests<'a, Rendering<E, N, M>>,
-    frames: Consumer<'a, Frame>,
+    frames: FrameReader<'a, LENGTH>,
     decoder: Decoder<{ LONGEST_TO_BOARD + CHECKSUM }>,
     outbox: Outbox,
     owed: Owed,
@@ -77,7 +75,7 @@ pub struct Session<'a, E: Renderable<N>, N: Number, M> {
     swapping: Option<(Id, Set<E>)>,
 }
 
-impl<'a, E, N, M> Session<'a, E, N, M>
+impl<'a, E, N, M, const LENGTH: usize> Session<'a, E, N, M, LENGTH>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,
@@ -90,7 +88,7 @@ where
         margin: Option<f64>,
         facts: Facts,
         requests: Requests<'a, Rendering<E, N, M>>,
-        frames: Consumer<'a, Frame>,
+        frames: FrameReader<'a, LENGTH>,
     ) -> Self {
         Self {
             facts,

@@ -2,9 +2,7 @@
 
 use core::num::NonZeroU32;
 
-use heapless::spsc::Consumer;
-
-use crate::cycle::Frame;
+use crate::cycle::{Frame, FrameReader};
 use crate::wire::telemetry::Batch;
 
 /// Longest time in s that a tick waits for others to go with it: a picture at 30 Hz.
@@ -43,12 +41,12 @@ impl Stream {
     /// Takes ticks from the servo's queue until a message is full. While that waits for the wire,
     /// so do the ticks behind it, up to half of the queue: the rest is left out and counted, so
     /// that the queue never overflows for a slow wire.
-    pub(super) fn take(&mut self, frames: &mut Consumer<'_, Frame>) {
-        for _ in 0..frames.capacity() {
-            if self.due && frames.len() <= frames.capacity() / 2 {
+    pub(super) fn take<const LENGTH: usize>(&mut self, frames: &mut FrameReader<'_, LENGTH>) {
+        for _ in 0..LENGTH {
+            if self.due && frames.waiting() <= LENGTH / 2 {
                 return;
             }
-            let Some(frame) = frames.dequeue() else { return };
+            let Some(frame) = frames.take() else { return };
             if let Some(every) = self.every {
                 self.add(frame, every);
             }

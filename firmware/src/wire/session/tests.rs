@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::certificate::Parameter;
-use crate::cycle::{Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, State};
+use crate::cycle::{Cycle, Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, State};
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
@@ -66,13 +66,16 @@ impl Hardware for Still {
 
 type Said = ToHost<String>;
 
+/// Frames that wait.
+const FRAMES: usize = 32;
+
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
-    session: Session<'static, Wall, f32, Latched>,
+    session: Session<'static, Wall, f32, Latched, FRAMES>,
     cycle: Cycle<Wall, f32, Latched>,
     hardware: Still,
     inbox: Inbox<'static, Rendering<Wall, f32, Latched>>,
-    frames: Frames<'static>,
+    frames: Frames<'static, FRAMES>,
     ear: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
 }
 
@@ -80,7 +83,7 @@ impl Bench {
     fn new(left: Option<Retained>) -> Self {
         let program = program();
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
-        let (frames, queue) = Box::leak(Box::new(FrameQueue::<33>::new())).split();
+        let (frames, queue) = Box::leak(Box::new(FrameQueue::<FRAMES>::new())).split();
         let Program { scene, transducers, rendering, options } = &program;
         let prepared =
             tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
