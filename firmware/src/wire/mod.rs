@@ -18,9 +18,5 @@ pub use session::{Facts, Session};
 /// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
 pub const PROTOCOL: u16 = 1;
 
-/// Speed of a serial line in bit/s, for boards and host: the fastest that the probes on all boards
-/// and the usual adapters carry.
-pub const BAUD: u32 = 921_600;
-
 #[cfg(test)]
 mod tests;
