@@ -2,13 +2,13 @@
 
 use static_cell::StaticCell;
 
-use crate::cycle::{Cycle, Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, Requests};
+use crate::cycle::{Cycle, FrameQueue, FrameReader, Frames, Hardware, Inbox, Mailbox, Requests};
 use crate::environment::Renderable;
 use crate::number::Number;
 use crate::servo::{OutputMode, Rendering};
 
-/// Frames that may wait for the task that sends them, plus one: 1.6 ms at 20 kHz.
-const FRAMES: usize = 33;
+/// Frames that may wait for the task that sends them, a power of two: 1.6 ms at 20 kHz.
+const FRAMES: usize = 32;
 
 /// What the servo's interrupt works with.
 pub struct Seat<H, E: Renderable<N> + 'static, N: Number, M: 'static> {
@@ -19,7 +19,7 @@ pub struct Seat<H, E: Renderable<N> + 'static, N: Number, M: 'static> {
     /// Requests from below.
     pub inbox: Inbox<'static, Rendering<E, N, M>>,
     /// Frames to below.
-    pub frames: Frames<'static>,
+    pub frames: Frames<'static, FRAMES>,
 }
 
 impl<H: Hardware, E: Renderable<N>, N: Number, M: OutputMode> Seat<H, E, N, M> {
@@ -41,9 +41,9 @@ pub struct Ends<E: Renderable<N> + 'static, N: Number, M: 'static> {
     /// The interrupt's end of it.
     pub inbox: Inbox<'static, Rendering<E, N, M>>,
     /// The interrupt's end of the queue of frames.
-    pub frames: Frames<'static>,
+    pub frames: Frames<'static, FRAMES>,
     /// The task's end of it.
-    pub told: heapless::spsc::Consumer<'static, Frame>,
+    pub told: FrameReader<'static, FRAMES>,
 }
 
 /// Makes the mailbox and the queue of frames. To be called once.

@@ -106,7 +106,7 @@ macro_rules! board_program {
         const TIMED: $crate::certificate::Timed<
             $crate::scene::Scene<$environment>,
             $crate::board::stm32::Mode,
-        > = $certified.timed();
+        > = $certified.timed::<$crate::board::stm32::Mode>();
 
         static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
             $crate::board::place::Place::empty();

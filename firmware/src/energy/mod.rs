@@ -137,3 +137,6 @@ impl<N: Number> Action<N> for Injector<N> {
         self.last = x_e;
     }
 }
+
+#[cfg(test)]
+mod tests;
