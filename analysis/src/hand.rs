@@ -33,12 +33,18 @@ impl Script {
         Self { story: "a hand swings it and lets go", hand: GRIP, path, release: 3.5 }
     }
 
-    /// Pushes in and eases out, over and over for an hour.
-    pub fn push_over_and_over() -> Self {
-        let push = |n: u32| (0.75 * f64::from(n), if n.is_multiple_of(2) { -0.05 } else { 0.12 });
-        let path = (1..=4800).map(push).collect();
-        let story = "a hand pushes in and eases out, over and over";
-        Self { story, hand: GRIP, path, release: f64::INFINITY }
+    /// The same again and again until so many seconds, without letting go.
+    pub fn over_and_over(self, until: f64) -> Self {
+        /// Time in s from the end of one to the beginning of the next.
+        const PAUSE: f64 = 0.5;
+        let length = self.path.last().map_or(0.0, |&(end, _)| end) + PAUSE;
+        let times = (until / length).ceil() as u32;
+        let shifted = |n| {
+            let start = f64::from(n) * length;
+            self.path.iter().map(move |&(at, position)| (start + at, position))
+        };
+        let path = (0..times).flat_map(shifted).collect();
+        Self { path, release: f64::INFINITY, ..self }
     }
 
     /// Where the hand wants to be at a time in s: smoothly from point to point.
@@ -73,5 +79,19 @@ mod tests {
         }
         assert_eq!(script.position(0.0), 0.0);
         assert_eq!(script.position(99.0), 0.12);
+    }
+
+    #[test]
+    fn what_is_done_over_and_over_is_the_same_each_time() {
+        let (once, often) =
+            (Script::push_and_let_go(), Script::push_and_let_go().over_and_over(60.0));
+        for time in [0.3, 1.0, 3.0] {
+            for n in 0..10 {
+                let again = often.position(time + 3.75 * f64::from(n));
+                assert!((again - once.position(time)).abs() < 1e-12, "{time} s, time {n}");
+            }
+        }
+        assert!(often.path.last().unwrap().0 >= 59.0 && often.release > 60.0);
+        assert!(often.path.windows(2).all(|two| two[0].0 < two[1].0));
     }
 }

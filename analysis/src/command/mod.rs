@@ -14,11 +14,13 @@ pub mod scope;
 pub mod simulate;
 pub mod stability;
 pub mod tune;
+pub mod twin;
 pub mod worst_hand;
 
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use firmware::certificate::Rejection;
@@ -28,7 +30,7 @@ use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
-use crate::link::LinkError;
+use crate::link::{Address, LinkError};
 use crate::recorded::RecordedError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
@@ -73,6 +75,8 @@ pub enum Command {
     Tune(tune::Arguments),
     /// Watch a running board, or record it.
     Scope(scope::Arguments),
+    /// Be a board: run a program in a simulated hand, for tune and scope to be tried on.
+    Twin(twin::Arguments),
     /// What would a scene do, certified or not?
     Simulate(simulate::Arguments),
     /// Does the motion of this device in this hand die away?
@@ -207,6 +211,17 @@ pub enum CommandError {
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// Nobody can be listened to there.
+    #[error("cannot listen on {address}: {source}")]
+    Listen {
+        /// The address.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+    /// A certified scene that this machine cannot render.
+    #[error(transparent)]
+    Render(Box<firmware::servo::RenderError>),
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
@@ -226,6 +241,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::Scope(arguments) => scope::run(&arguments),
+        Command::Twin(arguments) => twin::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
@@ -246,6 +262,15 @@ pub fn execute(arguments: Arguments) -> ExitCode {
             complain(&error);
             ExitCode::from(2)
         }
+    }
+}
+
+/// A time on the command line.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(duration) if !duration.is_zero() => Ok(duration),
+        _ => Err(format!("`{text}` must be a number of seconds greater than 0")),
     }
 }
 

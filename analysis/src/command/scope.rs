@@ -12,7 +12,7 @@ use clap::Args;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEventKind, KeyModifiers};
 
-use super::{Answer, CommandError};
+use super::{Answer, CommandError, seconds};
 use crate::link::{Address, Link};
 use crate::scope::feed::Feed;
 use crate::scope::record::Recorder;
@@ -28,7 +28,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// End after so many seconds
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
+          allow_negative_numbers = true)]
     pub duration: Option<Duration>,
     /// Have only every so many ticks sent; as many as a terminal shows if left out
     #[arg(long, value_name = "TICKS")]
@@ -43,14 +44,6 @@ pub struct Arguments {
 const RATE: f64 = 1000.0;
 /// Time between two pictures.
 const PICTURE: Duration = Duration::from_millis(33);
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
-    match Duration::try_from_secs_f64(seconds) {
-        Ok(duration) if !duration.is_zero() => Ok(duration),
-        _ => Err(format!("`{text}` must be a number of seconds greater than 0")),
-    }
-}
 
 /// Shows or records what a board says, until the time is up or somebody has seen enough.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {

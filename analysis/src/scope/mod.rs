@@ -4,6 +4,8 @@ pub mod feed;
 pub mod history;
 pub mod record;
 pub mod sample;
+#[cfg(test)]
+mod tests;
 pub mod view;
 pub mod words;
 

@@ -90,7 +90,7 @@ fn draw_curve(
     let (low, high) = range(scope.history.range(value).unwrap_or((0.0, 0.0)));
     let window = scope.history.window();
     let now = scope.history.last().map_or("?".to_owned(), |last| significant(value(last), 5));
-    let label = |number: f64| format!("{number:>9.3e}");
+    let label = |number: f64| format!("{:>10}", significant(number, 4));
     let curve =
         Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line).data(&points);
     let chart = Chart::new(vec![curve])

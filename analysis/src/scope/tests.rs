@@ -1,0 +1,150 @@
+use firmware::certificate::Parameter;
+use firmware::cycle::{Frame, State};
+use firmware::dac::DacCode;
+use firmware::fault::Fault;
+use firmware::torque::LimitReason;
+use firmware::wire::Discarded;
+use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::feed::Event;
+use super::history::History;
+use super::sample::Sample;
+use super::{Scope, view};
+
+const BOARD: Board = Board {
+    period: 0.001,
+    timer_counts: 1000,
+    counts_per_turn: 1000.0,
+    full_scale_torque: 2.0,
+    energy_step: 1e-6,
+};
+
+const STATUS: Status = Status {
+    state: State::Running,
+    fault: None,
+    link_lost: false,
+    tick: 5000,
+    count: 0,
+    sets: 3,
+    missed: 2,
+    worst_slack: 810,
+    energy: -5000,
+    worst_deficit: 7000,
+    dropped: 4,
+    thinned: 6,
+    discarded: Discarded { broken: 1, too_long: 2, checksum: 3, unknown: 2 },
+    stack_left: None,
+};
+
+fn frame(tick: u32, count: i32, limit: LimitReason) -> Frame {
+    let code = DacCode::new(2048).unwrap();
+    Frame { tick, count, code, limit, state: State::Running, slack: 900 }
+}
+
+fn take(scope: &mut Scope, event: Event) {
+    scope.take(event, |_| Ok::<(), std::convert::Infallible>(())).unwrap();
+}
+
+fn connected() -> Scope {
+    let mut scope = Scope::new("COM3".to_owned(), 5.0);
+    let fault = Fault::EncoderJump { counts: 900, largest: 100 }.into();
+    let remembered = Some(Remembered { fault, tick: 77, count: 0 });
+    let program = "damper_wall".to_owned();
+    take(&mut scope, Event::Connected { program, board: BOARD, remembered });
+    let values = Changes::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
+    take(&mut scope, Event::Running(Running { sets: 3, margin: Some(0.0015), values }));
+    take(&mut scope, Event::Status(STATUS, Discarded::default()));
+    let limit = |i| if i % 4 == 0 { LimitReason::Torque } else { LimitReason::None };
+    take(&mut scope, Event::Ticks((0..12).map(|i| frame(i, 250, limit(i))).collect()));
+    scope
+}
+
+/// What is on a terminal of that size, line by line.
+fn screen(scope: &Scope, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+    terminal.draw(|frame| view::draw(frame, scope)).unwrap();
+    terminal.backend().to_string()
+}
+
+#[test]
+fn shows_everything_that_is_to_be_watched() {
+    let shown = screen(&connected(), 120, 40);
+    for part in [
+        "damper_wall on COM3",
+        "running",
+        "before the last reset, in tick 77: the encoder jumped by 900 counts",
+        "position, rad: 1.5708",
+        "torque, N m: 0",
+        "stiffness=22",
+        "margin 0.0015 N m s/rad",
+        "slack 90.0 %, worst 81.0 %",
+        "missed 2",
+        "energy into the hand -0.005 J, at most 0.007 J",
+        "limited by torque 25 %",
+        "ticks dropped 4, thinned 6   frames spoilt 8 there, 0 here",
+        "q quits",
+    ] {
+        assert!(shown.contains(part), "{part:?} is not in\n{shown}");
+    }
+}
+
+#[test]
+fn shows_the_worst_trouble() {
+    let mut scope = connected();
+    let fault = Some(Fault::MissedTick { missed: 3, tolerated: 1 }.into());
+    let stopped = Status { state: State::Faulted, fault, ..STATUS };
+    take(&mut scope, Event::Status(stopped, Discarded::default()));
+    let shown = screen(&scope, 120, 40);
+    assert!(shown.contains("faulted") && shown.contains("3 update(s) in a row were missed"));
+    take(&mut scope, Event::Lost("the link to COM3 is lost: gone".to_owned()));
+    let shown = screen(&scope, 120, 40);
+    assert!(shown.contains("the link to COM3 is lost: gone; connecting again"), "{shown}");
+}
+
+#[test]
+fn fits_any_terminal_and_needs_no_board() {
+    for (width, height) in [(1, 1), (3, 20), (20, 3), (80, 24), (300, 100)] {
+        screen(&Scope::new("COM3".to_owned(), 5.0), width, height);
+        screen(&connected(), width, height);
+    }
+}
+
+fn sample(tick: u64, torque: f64) -> Sample {
+    Sample {
+        tick,
+        time: tick as f64 * 0.001,
+        count: 0,
+        position: 0.0,
+        code: 2048,
+        torque,
+        state: State::Running,
+        limit: LimitReason::None,
+        slack: 0.0,
+    }
+}
+
+#[test]
+fn a_curve_keeps_every_peak_and_forgets_what_is_old() {
+    let mut history = History::new(2.0);
+    for tick in 0..5000 {
+        let torque = match tick {
+            1000 => 9.0,
+            4001 => 3.0,
+            4500 => -2.0,
+            _ => 0.0,
+        };
+        history.push(sample(tick, torque));
+    }
+    let curve = history.curve(10, |sample| sample.torque);
+    assert!(curve.len() <= 22, "{}", curve.len());
+    let peak = |wanted| curve.iter().find(|(_, torque)| *torque == wanted).map(|(time, _)| *time);
+    assert_eq!(peak(9.0), None);
+    assert!((peak(3.0).unwrap() + 0.998).abs() < 1e-9);
+    assert!((peak(-2.0).unwrap() + 0.499).abs() < 1e-9);
+    assert_eq!(history.range(|sample| sample.torque), Some((-2.0, 3.0)));
+    // A board that was started again counts from zero.
+    history.push(sample(1, 1.0));
+    assert_eq!(history.range(|sample| sample.torque), Some((1.0, 1.0)));
+}
