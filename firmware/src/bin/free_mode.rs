@@ -8,8 +8,13 @@ use firmware::environment::FreeMode;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
 
+/// Samples from count to torque: none in the paper's example, which the emulated board renders in
+/// lockstep with its device, and the one that a real board's converter takes. A canceller needs as
+/// much of the device's damping either way.
+const DELAY: usize = if cfg!(feature = "stm32") { 1 } else { 0 };
+
 /// What the hand feels.
-pub type Environment = FreeMode<0>;
+pub type Environment = FreeMode<DELAY>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {

@@ -13,6 +13,7 @@ mod registers;
 pub mod serial;
 mod start;
 mod stop;
+mod sweep;
 
 #[cfg(feature = "b-g431b-esc1")]
 pub use super::b_g431b_esc1 as wiring;
@@ -24,6 +25,7 @@ pub use super::stm32f405 as wiring;
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{ServoPlace, run};
+pub use sweep::{SweepPlace, measure};
 
 /// When a torque reaches the motor.
 #[cfg(not(feature = "immediate"))]

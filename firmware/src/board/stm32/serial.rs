@@ -19,6 +19,9 @@ const RECEIVED: usize = 256;
 /// Bytes that may wait to be sent.
 const SENT: usize = 256;
 
+/// Bytes that are given to the driver at once.
+const PIECE: usize = 64;
+
 /// The port. Nothing here waits: what does not fit now is for the next time.
 pub struct Serial(BufferedUart<'static>);
 
@@ -49,9 +52,17 @@ impl Serial {
         }
     }
 
-    /// Sends the bytes, all of them or none; says whether.
-    pub fn write(&mut self, bytes: &[u8]) -> bool {
-        matches!(now(self.0.write(bytes)), Some(Ok(_)))
+    /// Sends as many of the bytes as there is room for; gives their number.
+    pub fn write(&mut self, bytes: &[u8]) -> usize {
+        let mut sent = 0;
+        for piece in bytes.chunks(PIECE) {
+            // The driver takes a piece as a whole or not at all.
+            if !matches!(now(self.0.write(piece)), Some(Ok(_))) {
+                break;
+            }
+            sent += piece.len();
+        }
+        sent
     }
 }
 

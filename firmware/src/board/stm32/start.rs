@@ -63,7 +63,7 @@ where
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
-fn connect() -> Connected {
+pub(super) fn connect() -> Connected {
     let chip = embassy_stm32::init(wiring::clocks());
     #[cfg(feature = "fast-memory")]
     super::fast::load();
@@ -77,12 +77,12 @@ fn connect() -> Connected {
 }
 
 /// The width of a counter.
-const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
+pub(super) const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
     C::WIDTH
 }
 
 /// Ends a program that cannot start. The amplifier has never been on.
-fn refuse(reason: &dyn Display) -> ! {
+pub(super) fn refuse(reason: &dyn Display) -> ! {
     stop();
     defmt::error!("{}", defmt::Display2Format(reason));
     loop {
@@ -95,12 +95,7 @@ fn refuse(reason: &dyn Display) -> ! {
 #[macro_export]
 macro_rules! board_program {
     ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
-        /// The chip that this program is for, where probe-rs looks for it.
-        #[used]
-        #[unsafe(no_mangle)]
-        #[unsafe(link_section = ".probe-rs.chip")]
-        static PROBE_RS_CHIP: [u8; $crate::board::stm32::wiring::CHIP.len()] =
-            *$crate::board::stm32::wiring::CHIP;
+        $crate::board_chip!();
 
         /// The scene, as late as the board's converter: where it is not, this does not compile.
         const TIMED: $crate::certificate::Timed<
@@ -116,14 +111,7 @@ macro_rules! board_program {
             $crate::board::stm32::Mode,
         > = static_cell::StaticCell::new();
 
-        /// A tick: the pacing timer's interrupt.
-        #[unsafe(no_mangle)]
-        #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
-        unsafe extern "C" fn TIM6_DAC() {
-            // SAFETY: this is the handler of the interrupt that `run` enables once it has filled
-            // the place, and no interrupt interrupts itself.
-            unsafe { PLACE.get() }.tick();
-        }
+        $crate::board_tick!();
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
@@ -134,6 +122,36 @@ macro_rules! board_program {
                 options: $crate::cycle::Options::DEFAULT,
             };
             $crate::board::stm32::run(program, &PLACE, &MEETING)
+        }
+    };
+}
+
+/// The chip that a program is for, where probe-rs looks for it.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_chip {
+    () => {
+        /// The chip that this program is for.
+        #[used]
+        #[unsafe(no_mangle)]
+        #[unsafe(link_section = ".probe-rs.chip")]
+        static PROBE_RS_CHIP: [u8; $crate::board::stm32::wiring::CHIP.len()] =
+            *$crate::board::stm32::wiring::CHIP;
+    };
+}
+
+/// The handler of the pacing timer's interrupt, for what is in the place `PLACE`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_tick {
+    () => {
+        /// A tick.
+        #[unsafe(no_mangle)]
+        #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
+        unsafe extern "C" fn TIM6_DAC() {
+            // SAFETY: this is the handler of the interrupt that is enabled once the place is
+            // filled, and no interrupt interrupts itself.
+            unsafe { PLACE.get() }.tick();
         }
     };
 }
