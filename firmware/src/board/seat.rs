@@ -8,7 +8,7 @@ use crate::number::Number;
 use crate::servo::{OutputMode, Rendering};
 
 /// Frames that may wait for the task that sends them, a power of two: 1.6 ms at 20 kHz.
-const FRAMES: usize = 32;
+pub const FRAMES: usize = 32;
 
 /// What the servo's interrupt works with.
 pub struct Seat<H, E: Renderable<N> + 'static, N: Number, M: 'static> {

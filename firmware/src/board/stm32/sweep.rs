@@ -10,7 +10,6 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use heapless::String;
-use heapless::spsc::Consumer;
 use static_cell::StaticCell;
 
 use super::Mode;
@@ -21,7 +20,7 @@ use super::start::{connect, refuse, width};
 use super::wiring::{CONVERTER, ENCODER};
 use crate::board::place::Place;
 use crate::boot::Startup;
-use crate::cycle::{Frame, FrameQueue, FrameSink, Frames, Hardware, State};
+use crate::cycle::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::dac::DacCode;
 use crate::encoder::Position;
 use crate::excitation::{Exciter, Sweep};
@@ -32,8 +31,8 @@ use crate::torque::LimitReason;
 /// Where the sweep's interrupt finds what it works with.
 pub type SweepPlace = Place<Player>;
 
-/// Rows that may wait to be sent, plus one: 60 ms at 1 kHz.
-const ROWS: usize = 65;
+/// Rows that may wait to be sent: 64 ms at 1 kHz.
+const ROWS: usize = 64;
 /// The byte that begins the sweep.
 const BEGIN: u8 = b'g';
 
@@ -52,7 +51,7 @@ pub struct Player {
     /// What the converter has held since this tick's update.
     held: DacCode,
     hardware: Registers,
-    rows: Frames<'static>,
+    rows: Frames<'static, ROWS>,
 }
 
 impl Player {
@@ -117,9 +116,10 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPl
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    let mut writer = Writer { period: sweep.period(), step, row: String::new() };
     loop {
         listen(&mut serial);
-        send(&mut serial, &mut told, sweep.period(), step);
+        writer.send(&mut serial, &mut told);
         cortex_m::asm::wfi();
     }
 }
@@ -133,19 +133,36 @@ fn listen(serial: &mut Serial) {
     }
 }
 
-/// Sends rows as long as there are any and the port takes them.
-fn send(serial: &mut Serial, told: &mut Consumer<'_, Frame>, period: f64, step: f64) {
-    while let Some(frame) = told.peek() {
-        let mut row = String::<64>::new();
-        let (time, torque) =
-            (f64::from(frame.tick) * period, f64::from(frame.code.offset()) * step);
-        let heading = if frame.tick == 0 { "time,torque,counts\n" } else { "" };
-        // The longest row has 60 bytes, and one that had more would be cut off.
-        let _ = writeln!(row, "{heading}{},{},{}", Written(time), Written(torque), frame.count);
-        if serial.write(row.as_bytes()) == 0 {
-            return;
+/// Writes rows of the record.
+struct Writer {
+    period: f64,
+    /// Torque of one code in N m.
+    step: f64,
+    /// What was not sent yet. The longest row, the heading with the first tick, has 60 bytes.
+    row: String<64>,
+}
+
+impl Writer {
+    /// Sends rows as long as there are any and the port takes them.
+    fn send(&mut self, serial: &mut Serial, told: &mut FrameReader<'_, ROWS>) {
+        loop {
+            if self.row.is_empty() {
+                let Some(frame) = told.take() else { return };
+                self.write(&frame);
+            }
+            if serial.write(self.row.as_bytes()) == 0 {
+                return;
+            }
+            self.row.clear();
         }
-        told.dequeue();
+    }
+
+    fn write(&mut self, frame: &Frame) {
+        let heading = if frame.tick == 0 { "time,torque,counts\n" } else { "" };
+        let time = Written(f64::from(frame.tick) * self.period);
+        let torque = Written(f64::from(frame.code.offset()) * self.step);
+        // It fits; what did not would be cut off.
+        let _ = writeln!(self.row, "{heading}{time},{torque},{}", frame.count);
     }
 }
 
