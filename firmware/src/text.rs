@@ -36,6 +36,8 @@ impl<const N: usize> Text<N> {
     }
 
     /// Appends ASCII text; bytes beyond ASCII become `?`.
+    // Sentences are made of dozens of these: inlined, they took most of a board's room for them.
+    #[inline(never)]
     pub const fn push(&mut self, text: &str) {
         let bytes = text.as_bytes();
         let mut i = 0;
@@ -49,6 +51,19 @@ impl<const N: usize> Text<N> {
     /// 1e-5 to 1e9 are written as `1.5e-7`. The digits are for reading: they are rounded, and may
     /// be off in the tenth place.
     pub const fn push_number(&mut self, value: f64) {
+        let mut number = Number::new();
+        number.number(value);
+        self.push(number.as_str());
+    }
+}
+
+/// As many bytes as a number ever takes: `-1.234567891e-308` is of the longest kind.
+type Number = Text<24>;
+
+/// Numbers are written at one length of text only, so that there is one copy of it.
+impl Number {
+    /// Appends a number.
+    const fn number(&mut self, value: f64) {
         if value.is_nan() {
             return self.push("NaN");
         }
@@ -124,10 +139,9 @@ pub struct Written(pub f64);
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // As many bytes as `push_number` ever appends: `-1.234567891e-308` is the longest kind.
-        let mut text = Text::<24>::new();
-        text.push_number(self.0);
-        f.write_str(text.as_str())
+        let mut number = Number::new();
+        number.number(self.0);
+        f.write_str(number.as_str())
     }
 }
 

@@ -17,6 +17,8 @@ pub mod b_g431b_esc1;
 #[cfg(all(target_os = "none", feature = "stm32"))]
 #[allow(unsafe_code)]
 pub mod critical;
+#[cfg(all(target_os = "none", feature = "stm32"))]
+pub mod link;
 #[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;

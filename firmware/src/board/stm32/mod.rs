@@ -24,7 +24,7 @@ pub use super::stm32f405 as wiring;
 
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
-pub use start::{ServoPlace, run};
+pub use start::{HostLink, LinkPlace, ServoPlace, Task, run};
 pub use sweep::{SweepPlace, measure};
 
 /// When a torque reaches the motor.

@@ -12,6 +12,7 @@ use embedded_io_async::{Read, Write};
 use static_cell::StaticCell;
 
 use crate::board::BAUD;
+use crate::board::link::Port;
 
 /// Bytes that may wait for the task that reads them: 5 ms of the line's rate, some ten times what
 /// that task needs for anything but a certificate, during which the host waits for its answer.
@@ -43,17 +44,15 @@ pub fn open<T: Instance>(
     Serial(port.expect("the port's clock divides into the line's rate"))
 }
 
-impl Serial {
-    /// Takes what has arrived, as far as there is room; gives the number of bytes.
-    pub fn read(&mut self, bytes: &mut [u8]) -> usize {
+impl Port for Serial {
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
         match now(self.0.read(bytes)) {
             Some(Ok(count)) => count,
             Some(Err(_)) | None => 0,
         }
     }
 
-    /// Sends as many of the bytes as there is room for; gives their number.
-    pub fn write(&mut self, bytes: &[u8]) -> usize {
+    fn write(&mut self, bytes: &[u8]) -> usize {
         let mut sent = 0;
         for piece in bytes.chunks(PIECE) {
             // The driver takes a piece as a whole or not at all.

@@ -1,8 +1,9 @@
 //! From reset to a running servo.
 
 use core::fmt::Display;
+use core::task::Poll;
 
-use embassy_executor::Executor;
+use embassy_executor::{Executor, SpawnError, SpawnToken};
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use static_cell::StaticCell;
@@ -10,56 +11,108 @@ use static_cell::StaticCell;
 use super::pace::Period;
 use super::quadrature::Counter;
 use super::registers::Registers;
+use super::serial::Serial;
 use super::stop::stop;
 use super::wiring::{self, CONVERTER, ENCODER};
 use super::{Connected, Mode};
+use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
 use crate::board::{critical, stack};
-use crate::boot::{Booted, Program, boot};
+use crate::boot::{Booted, Program, Startup, boot};
+use crate::fault::Retained;
 use crate::number::Number;
 use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
 use crate::tuning::Tunable;
+use crate::wire::{Facts, Session};
 
 /// Where the servo's interrupt finds its seat.
 pub type ServoPlace<E, N> = Place<Seat<Registers, E, N, Mode>>;
 
-/// Runs a scene.
-pub fn run<E, N>(
+/// The host's end of the board, for the task below the servo.
+pub type HostLink<E, N> = Link<Serial, E, N, Mode>;
+
+/// Where that link is: in a place of its own, since a task would keep a copy for each step that
+/// passes it on.
+pub type LinkPlace<E, N> = StaticCell<HostLink<E, N>>;
+
+/// A program's task that serves its [`HostLink`].
+pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>, SpawnError>;
+
+/// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
+pub fn run<E, N, S>(
+    name: &'static str,
     program: Program<E>,
     place: &'static ServoPlace<E, N>,
     meeting: &'static Meeting<E, N, Mode>,
+    link: &'static LinkPlace<E, N>,
+    task: Task<E, N, S>,
 ) -> !
 where
     E: Tunable<N> + Renders<Mode>,
     N: Number,
 {
-    let connected = connect();
-    let period = program.scene.timing.period;
-    let period = Period::of(period).unwrap_or_else(|error| refuse(&error));
+    let port = connect().serial;
+    let period = period(program.scene.timing.period);
     // The counter's width is the board's, whatever the program was first written for.
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
     let program = Program { transducers, ..program };
-    let mut registers = Registers::new(period);
+    let mut hardware = Registers::new(period);
+    let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(meeting);
-    let Booted { cycle, left, .. } =
-        boot(&program, &mut registers, &requests).unwrap_or_else(|error| refuse(&error));
-    if let Some(left) = left {
-        defmt::warn!("left from before the reset: {}", defmt::Display2Format(&left.fault));
+    let Booted { cycle, margin, left } =
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
+    start(&mut hardware);
+    // SAFETY: the interrupt that uses the place is not enabled yet.
+    unsafe { place.fill(Seat { cycle, hardware, inbox, frames }) };
+    // SAFETY: its handler finds its place filled.
+    unsafe { interrupt::TIM6_DAC.enable() };
+    greet(name, left);
+    let facts = Facts { name, timer_counts, left, stack_left: || Some(stack::left()) };
+    let session = Session::new(program, margin, facts, requests, told);
+    let link = link.init(Link { port, session });
+    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
+    EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
+        Ok(token) => spawner.spawn(token),
+        // A task's place is taken only where it was spawned before, which nothing here does.
+        Err(_) => refuse(&"the task of the host's link runs already"),
+    })
+}
+
+impl<E: Tunable<N> + Renders<Mode>, N: Number> HostLink<E, N> {
+    /// Serves the host, and sleeps from one interrupt to the next: whatever there is to do, an
+    /// interrupt has made it so.
+    pub async fn serve(&mut self) -> ! {
+        loop {
+            self.poll();
+            cortex_m::asm::wfi();
+            yield_now().await;
+        }
     }
+}
+
+/// A period, or an end.
+pub(super) fn period(seconds: f64) -> Period {
+    Period::of(seconds).unwrap_or_else(|error| refuse(&error))
+}
+
+/// Latches the converter where that is its mode, and begins to pace. The servo's interrupt is to be
+/// enabled within a period.
+pub(super) fn start(hardware: &mut Registers) {
     if Mode::TIMING == OutputTiming::Latched {
         CONVERTER.latch();
     }
-    registers.start();
-    // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.fill(Seat { cycle, hardware: registers, inbox, frames }) };
-    // SAFETY: its handler finds its place filled.
-    unsafe { interrupt::TIM6_DAC.enable() };
-    defmt::info!("{}: stack left {} of {}", wiring::NAME, stack::left(), stack::size());
-    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
-    EXECUTOR.init(Executor::new()).run(|spawner| {
-        let _ = (&spawner, &connected, &requests, &told);
-    })
+    hardware.start();
+}
+
+/// The first words to a debug probe.
+fn greet(name: &str, left: Option<Retained>) {
+    let (free, size) = (stack::left(), stack::size());
+    defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
+    if let Some(Retained { fault, tick, .. }) = left {
+        let sentence = defmt::Display2Format(&fault);
+        defmt::warn!("not armed, because of what was left in tick {}: {}", tick, sentence);
+    }
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
@@ -90,6 +143,19 @@ pub(super) fn refuse(reason: &dyn Display) -> ! {
     }
 }
 
+/// Lets the executor look at its other tasks, of which there may be some one day.
+async fn yield_now() {
+    let mut yielded = false;
+    core::future::poll_fn(|context| {
+        if core::mem::replace(&mut yielded, true) {
+            return Poll::Ready(());
+        }
+        context.waker().wake_by_ref();
+        Poll::Pending
+    })
+    .await
+}
+
 /// The program of a scene on this board.
 #[doc(hidden)]
 #[macro_export]
@@ -111,7 +177,18 @@ macro_rules! board_program {
             $crate::board::stm32::Mode,
         > = static_cell::StaticCell::new();
 
+        static LINK: $crate::board::stm32::LinkPlace<$environment, $number> =
+            static_cell::StaticCell::new();
+
         $crate::board_tick!();
+
+        /// Below the servo: a task may not be generic, so each program has its own.
+        #[embassy_executor::task]
+        async fn serve(
+            link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
+        ) -> ! {
+            link.serve().await
+        }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
@@ -121,7 +198,8 @@ macro_rules! board_program {
                 rendering: $crate::servo::RenderingOptions::DEFAULT,
                 options: $crate::cycle::Options::DEFAULT,
             };
-            $crate::board::stm32::run(program, &PLACE, &MEETING)
+            let name = env!("CARGO_BIN_NAME");
+            $crate::board::stm32::run(name, program, &PLACE, &MEETING, &LINK, serve)
         }
     };
 }

@@ -12,19 +12,17 @@ use embassy_stm32::interrupt::InterruptExt;
 use heapless::String;
 use static_cell::StaticCell;
 
-use super::Mode;
-use super::pace::Period;
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{connect, refuse, width};
-use super::wiring::{CONVERTER, ENCODER};
+use super::start::{connect, period, start, width};
+use super::wiring::ENCODER;
+use crate::board::link::Port;
 use crate::board::place::Place;
 use crate::boot::Startup;
 use crate::cycle::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::dac::DacCode;
 use crate::encoder::Position;
 use crate::excitation::{Exciter, Sweep};
-use crate::servo::{OutputMode, OutputTiming};
 use crate::text::Written;
 use crate::torque::LimitReason;
 
@@ -89,17 +87,13 @@ impl Player {
 /// Waits for the host, and plays the sweep whenever it asks.
 pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPlace) -> ! {
     let mut serial = connect().serial;
-    let period = Period::of(sweep.period()).unwrap_or_else(|error| refuse(&error));
-    let mut hardware = Registers::new(period);
+    let mut hardware = Registers::new(period(sweep.period()));
     hardware.zero();
-    if Mode::TIMING == OutputTiming::Latched {
-        CONVERTER.latch();
-    }
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
     hardware.guard();
-    hardware.start();
+    start(&mut hardware);
     let player = Player {
         beginning: exciter.clone(),
         exciter,
