@@ -115,11 +115,7 @@ impl Position {
             cold_path();
             self.laps = self.laps.wrapping_add(if step < 0 { -1 } else { 1 });
         }
-        if self.laps == 0 {
-            return Reading { count, saturated: false };
-        }
-        cold_path();
-        Reading { count: if self.laps < 0 { i32::MIN } else { i32::MAX }, saturated: true }
+        if self.laps == 0 { Reading { count, saturated: false } } else { beyond(self.laps) }
     }
 
     /// The low 32 bits of the position.
@@ -132,6 +128,14 @@ impl Position {
     pub const fn count(&self) -> i64 {
         ((self.laps as i64) << 32) + self.count as i64
     }
+}
+
+/// The reading of a position that 32 bits do not hold. Out of line: decided by a choice instead of
+/// a jump, it would cost every tick five instructions.
+#[cold]
+#[inline(never)]
+const fn beyond(laps: i32) -> Reading {
+    Reading { count: if laps < 0 { i32::MIN } else { i32::MAX }, saturated: true }
 }
 
 #[cfg(test)]

@@ -61,14 +61,17 @@ pub struct Limiter<N> {
     level: N,
     bound: N,
     step: N,
+    /// Why the bound is what it is.
     reason: LimitReason,
+    /// Why the level is what it is: that, or the ramp.
+    because: LimitReason,
 }
 
 impl<N: Number> Limiter<N> {
     /// An open limiter with its bound in N m, and the reason that it reports; with an infinite
     /// bound only what is not a number is limited. It opens and closes in one step.
     pub const fn new(bound: N, reason: LimitReason) -> Self {
-        Self { level: bound, bound, step: bound, reason }
+        Self { level: bound, bound, step: bound, reason, because: reason }
     }
 
     /// The same, opening and closing by `step` N m a tick.
@@ -84,11 +87,10 @@ impl<N: Number> Limiter<N> {
         }
         // Rare: keeps the usual way through the tick free of jumps.
         cold_path();
-        let reason = if self.level < self.bound { LimitReason::Ramp } else { self.reason };
         if wanted > N::ZERO {
-            (self.level, reason)
+            (self.level, self.because)
         } else if wanted < N::ZERO {
-            (self.level.negated(), reason)
+            (self.level.negated(), self.because)
         } else {
             (N::ZERO, LimitReason::NotANumber)
         }
@@ -96,7 +98,7 @@ impl<N: Number> Limiter<N> {
 
     /// Lets no torque through.
     pub(crate) fn shut(&mut self) {
-        self.level = N::ZERO;
+        self.set(N::ZERO);
     }
 
     /// Whether no torque gets through.
@@ -107,19 +109,24 @@ impl<N: Number> Limiter<N> {
     /// Closes as far as `torque` (N m) needs, so that closing further acts at once.
     pub(crate) fn meet(&mut self, torque: N) {
         let magnitude = torque.larger(torque.negated());
-        self.level = self.level.smaller(magnitude);
+        self.set(self.level.smaller(magnitude));
     }
 
     /// Opens by a step; gives whether it is now open.
     pub(crate) fn open(&mut self) -> bool {
-        self.level = self.level.plus(self.step).smaller(self.bound);
+        self.set(self.level.plus(self.step).smaller(self.bound));
         self.level >= self.bound
     }
 
     /// Closes by a step; gives whether it is now shut.
     pub(crate) fn close(&mut self) -> bool {
-        self.level = self.level.minus(self.step).positive_part();
+        self.set(self.level.minus(self.step).positive_part());
         self.is_shut()
+    }
+
+    fn set(&mut self, level: N) {
+        self.level = level;
+        self.because = if level < self.bound { LimitReason::Ramp } else { self.reason };
     }
 }
 

@@ -17,7 +17,7 @@ const HEARD: u32 = 16;
 /// Sets that wait: one, and the place that a queue keeps free.
 const SETS: usize = 2;
 /// Notices that wait, and that place.
-const NOTICES: usize = 9;
+const NOTICES: usize = 6;
 
 /// The place where both meet; `R` is what is swapped in, a [`Rendering`](crate::servo::Rendering).
 #[derive(Debug)]
@@ -115,10 +115,10 @@ pub(super) struct Asked {
 }
 
 impl<R> Inbox<'_, R> {
-    /// Whether anything is asked for.
+    /// What is asked for, as a word; zero where it is nothing.
     #[inline(always)]
-    pub(super) fn is_asked(&self) -> bool {
-        self.asked.load(Ordering::Relaxed) != 0
+    pub(super) fn asked(&self) -> u32 {
+        self.asked.load(Ordering::Relaxed)
     }
 
     /// What is asked for, once.

@@ -32,7 +32,7 @@ use crate::fault::Fault;
 use crate::number::Number;
 use crate::servo::{OutputMode, Rendering};
 use crate::torque::LimitReason;
-use trouble::{Behind, Found};
+use trouble::Behind;
 
 /// What becomes of the servo once its clamp is shut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,21 +124,30 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         self.tick = self.tick.wrapping_add(passed);
-        let trouble = passed != 1
-            || step.unsigned_abs() > self.rendering.pace().largest_step
-            || output.limit == LimitReason::NotANumber
-            || underrun;
-        let usual = !trouble && self.state == State::Running;
-        let code = if usual {
-            output.code
-        } else {
-            let found = Found { passed, step, output, underrun };
-            self.unusual(trouble.then_some(found), output.code, hardware, inbox)
-        };
+        // One jump each, none of them taken in a usual tick: conditions that are put together first
+        // cost three or four instructions each.
+        if passed != 1 {
+            self.begin_late(passed, step, hardware, inbox);
+        }
+        if self.rendering.pace().is_too_far(step) {
+            self.jump(passed, step, hardware, inbox);
+        }
+        if output.limit == LimitReason::NotANumber {
+            self.fail(Fault::NotANumber, hardware, inbox);
+        }
+        if underrun {
+            self.fail(Fault::Underrun, hardware, inbox);
+        }
+        let mut attend = inbox.asked();
+        let mut code = output.code;
+        if self.state != State::Running {
+            code = self.unless_disarmed(code);
+            attend = u32::MAX;
+        }
         hardware.write(code);
         self.energy.observe::<M>(step, code);
         let link_due = self.tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
-        if !usual || inbox.is_asked() || link_due {
+        if attend != 0 || link_due {
             self.attend(hardware, inbox, frames.dropped());
         }
         hardware.feed();

@@ -3,23 +3,9 @@
 use super::*;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
-use crate::servo::Output;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;
-
-/// What a tick found.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    /// Whole periods since the last tick.
-    pub passed: u32,
-    /// Counts that the encoder moved.
-    pub step: i32,
-    /// What the servo answered.
-    pub output: Output,
-    /// Whether the converter wanted a code before there was one.
-    pub underrun: bool,
-}
 
 /// Updates that were missed in a row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,48 +38,45 @@ impl Behind {
 }
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
-    /// The code of a tick that is not simply one of a running servo. Whatever the rest of the
-    /// program thinks: without being armed there is no torque.
+    /// The code of a servo that is not simply running. Whatever the rest of the program thinks:
+    /// without being armed there is no torque.
     #[cold]
     #[inline(never)]
-    pub(super) fn unusual(
-        &mut self,
-        trouble: Option<Found>,
-        code: DacCode,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) -> DacCode {
-        if let Some(found) = trouble {
-            self.examine(found, hardware, inbox);
-        }
+    pub(super) fn unless_disarmed(&self, code: DacCode) -> DacCode {
         if self.state.is_armed() { code } else { DacCode::MID_SCALE }
     }
 
-    /// A tick that came late, or moved too far, or whose torque or converter is in trouble.
-    fn examine(
+    /// A tick that is not the next one after the last, and the encoder's step since then.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn begin_late(
         &mut self,
-        found: Found,
+        passed: u32,
+        step: i32,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
     ) {
-        let Found { passed, step, output, underrun } = found;
-        if passed != 1 {
-            self.energy.missed::<M>(step);
-            let missed = passed.saturating_sub(1);
-            self.missed = self.missed.wrapping_add(missed);
-            let missed = self.behind.begin(self.tick, missed);
-            self.unless_tolerated(missed, hardware, inbox);
-        }
+        self.energy.missed::<M>(step);
+        let missed = passed.saturating_sub(1);
+        self.missed = self.missed.wrapping_add(missed);
+        let missed = self.behind.begin(self.tick, missed);
+        self.unless_tolerated(missed, hardware, inbox);
+    }
+
+    /// A step that is too far for one period; it may not be for those that passed.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn jump(
+        &mut self,
+        passed: u32,
+        step: i32,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) {
         let largest = self.rendering.pace().largest_step.saturating_mul(passed);
         let counts = step.unsigned_abs();
         if counts > largest {
             self.fail(Fault::EncoderJump { counts, largest }, hardware, inbox);
-        }
-        if output.limit == LimitReason::NotANumber {
-            self.fail(Fault::NotANumber, hardware, inbox);
-        }
-        if underrun {
-            self.fail(Fault::Underrun, hardware, inbox);
         }
     }
 
@@ -157,7 +140,9 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// Notes trouble; where there is torque, it stops the servo.
-    fn fail(
+    #[cold]
+    #[inline(never)]
+    pub(super) fn fail(
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,

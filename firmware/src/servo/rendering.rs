@@ -51,6 +51,8 @@ pub struct Pace {
     pub tolerated: u32,
     /// The most counts that the encoder can move within a period.
     pub largest_step: u32,
+    /// Twice that.
+    span: u32,
 }
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
@@ -122,6 +124,13 @@ impl Pace {
         ((time / self.period) as u32).clamp(1, LONGEST)
     }
 
+    /// Whether the encoder cannot have moved by `step` counts within a period.
+    #[inline(always)]
+    pub(crate) const fn is_too_far(&self, step: i32) -> bool {
+        // Shifted so that one comparison sees both ends.
+        step.cast_unsigned().wrapping_add(self.largest_step) > self.span
+    }
+
     fn new(timing: Timing, transducers: &Transducers) -> Result<Self, BuildError> {
         let worst = timing.worst_period.unwrap_or(timing.period);
         // A worst period of two periods, to the digits that were written, is two.
@@ -130,6 +139,7 @@ impl Pace {
         // The counter must not wrap unseen before the missed ticks become a fault.
         transducers.largest_step(worst)?;
         let largest_step = transducers.largest_step(timing.period)?;
-        Ok(Self { period: timing.period, tolerated, largest_step })
+        // Below half the counter's range, so that twice that fits.
+        Ok(Self { period: timing.period, tolerated, largest_step, span: 2 * largest_step })
     }
 }
