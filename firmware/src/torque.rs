@@ -54,8 +54,8 @@ impl fmt::Display for LimitReason {
 ///
 /// The level is the scene's bound, except while the servo fades in or out: then it moves by a
 /// fixed step a tick. What is ramped is the clamp and never the stiffness, since a changing
-/// stiffness is outside the certificate and a clamp is inside (theory, end of section 5); opening
-/// it can release at most what the environment stores at its present depth.
+/// stiffness is outside the certificate and a clamp is inside (theory, end of section 5). Closing
+/// only takes energy away; opening puts in at most what the environment stores at its depth, once.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter<N> {
     level: N,

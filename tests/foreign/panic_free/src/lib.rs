@@ -2,13 +2,16 @@
 
 use std::hint::black_box;
 
+use firmware::certificate::Timed;
+use firmware::cycle::{Frame, FrameQueue, FrameSink, Frames, State};
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{
     Coefficients, DamperWall, DelayedSpring, FilteredWall, FreeMode, FreeModeWall, OneSided,
     Rational,
 };
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Output, Servo, Transducers};
+use firmware::energy::EnergyMonitor;
+use firmware::servo::{Latched, Output, Rendering, RenderingOptions, Servo, Transducers};
 use fixed::types::{I8F24, I16F16};
 use no_panic::no_panic;
 
@@ -29,6 +32,31 @@ fn scene<E>(environment: E) -> Scene<E> {
     }
 }
 
+type Wall = OneSided<DamperWall<1>>;
+type Walled = Rendering<Wall, f32, Latched>;
+
+/// What a cycle does in a usual tick: rendering, with or without injected damping, energy, frame.
+#[no_panic]
+#[inline(never)]
+fn cycle(
+    rendering: &mut Walled,
+    energy: &mut EnergyMonitor,
+    frames: &mut Frames<'_, 4>,
+    raw: RawCount,
+) {
+    let Output { code, limit } = rendering.tick(raw, energy);
+    energy.observe::<Latched>(raw.bits().cast_signed(), code);
+    frames.push(Frame { tick: 1, count: 2, code, limit, state: State::Running, slack: 3 });
+}
+
+fn rendering(injection: Option<f64>) -> Walled {
+    let wall = DamperWall { stiffness: 11.0, damping: 0.005 };
+    let certified = scene(OneSided { face: 0.0, wall }).certify().expect("a safe scene");
+    let timed: Timed<_, Latched> = certified.timed();
+    let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };
+    Rendering::new(&timed, &TRANSDUCERS, &options).expect("it fits the format")
+}
+
 macro_rules! ticks {
     ($($name:ident: $environment:ty, $number:ty = $value:expr;)*) => {
         $(
@@ -45,6 +73,14 @@ macro_rules! ticks {
                 let mut servo = Servo::new(&certified, &TRANSDUCERS).expect("it fits the format");
                 black_box($name(black_box(&mut servo), black_box(RawCount::from(7_u16))));
             )*
+            let mut queue = FrameQueue::new();
+            let (mut frames, _reader) = queue.split();
+            let mut energy = EnergyMonitor::default();
+            for injection in [None, Some(0.005)] {
+                let mut rendering = rendering(black_box(injection));
+                let raw = black_box(RawCount::from(7_u16));
+                cycle(black_box(&mut rendering), &mut energy, &mut frames, raw);
+            }
             #[cfg(feature = "control")]
             black_box(control(black_box(&[1, 2]), black_box(1)));
         }
