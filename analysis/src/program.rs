@@ -4,6 +4,8 @@
 pub mod damper_wall;
 #[path = "../../firmware/src/bin/delayed_spring.rs"]
 pub mod delayed_spring;
+// It asks whether it is built for a real board, which is never so here.
+#[allow(unexpected_cfgs)]
 #[path = "../../firmware/src/bin/free_mode.rs"]
 pub mod free_mode;
 // No scene, and so not among them: what a device is measured with.
