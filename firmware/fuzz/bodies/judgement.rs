@@ -1,0 +1,232 @@
+//! Any sets of parameters over the wire into a servo that runs: certificate, swap and ticks.
+
+use std::sync::OnceLock;
+
+use firmware::boot::Program;
+use firmware::certificate::Parameter;
+use firmware::cycle::{Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, Options};
+use firmware::dac::DacCode;
+use firmware::encoder::{CounterWidth, RawCount};
+use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::{Latched, Rendering, RenderingOptions, Renders, Transducers};
+use firmware::tuning::{self, Tunable};
+use firmware::wire::message::{
+    Changes, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, ToBoard, ToHost,
+};
+use firmware::wire::{CHECKSUM, Decoder, Facts, Session, encode, largest_frame};
+
+/// Sets of one input.
+const SETS: usize = 2;
+/// Ticks after each: more than a swap takes.
+const TICKS: usize = 40;
+/// Frames that wait.
+const FRAMES: usize = 16;
+
+/// The servo of a scene before anything is changed, judged once.
+type First<E> = OnceLock<Rendering<E, f32, Latched>>;
+
+macro_rules! scene {
+    ($environment:ty: $value:expr, $limit:expr, $data:expr) => {{
+        static FIRST: First<$environment> = OnceLock::new();
+        drive(&FIRST, program::<$environment>($value, $limit), $data)
+    }};
+}
+
+/// The first byte says which scene; sets and the hand's motion follow.
+pub fn run(data: &[u8]) {
+    let Some((kind, rest)) = data.split_first() else { return };
+    let wall = DamperWall { stiffness: 22.0, damping: 0.01 };
+    let filtered = FilteredWall { stiffness: 10.0, damping: 0.01, filter: 0.5 };
+    match kind % 6 {
+        0 => scene!(OneSided<DamperWall<1>>: OneSided { face: 0.0, wall }, Some(1.0), rest),
+        1 => scene!(Placed<DamperWall<1>>: Placed { face: 0.01, wall }, None, rest),
+        2 => scene!(DelayedSpring<1>: DelayedSpring { stiffness: 21.0 }, None, rest),
+        3 => scene!(DelayedSpring<3>: DelayedSpring { stiffness: 7.0 }, Some(0.3), rest),
+        4 => scene!(FilteredWall<1>: filtered, Some(1.0), rest),
+        _ => scene!(FreeMode<1>: FreeMode { residual: 0.015 }, None, rest),
+    }
+}
+
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+    largest_speed: Transducers::NO_HAND_IS_FASTER,
+};
+
+fn program<E>(environment: E, torque_limit: Option<f64>) -> Program<E> {
+    Program {
+        scene: Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment,
+            torque_limit,
+        },
+        transducers: TRANSDUCERS,
+        rendering: RenderingOptions { fade: 0.004, injection: None },
+        options: Options::DEFAULT,
+    }
+}
+
+/// Bytes as numbers, for as long as there are any.
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn byte(&mut self) -> Option<u8> {
+        let (first, rest) = self.0.split_first()?;
+        self.0 = rest;
+        Some(*first)
+    }
+
+    fn word<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (first, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*first)
+    }
+
+    /// Any number, or one that may well be certified.
+    fn value(&mut self) -> Option<f64> {
+        let kind = self.byte()?;
+        if kind < 16 {
+            return Some(f64::from_le_bytes(self.word()?));
+        }
+        let digits = f64::from(i16::from_le_bytes(self.word()?));
+        Some(digits * [1e-6, 1e-5, 1e-4, 1e-3][usize::from(kind % 4)])
+    }
+
+    fn changes(&mut self) -> Option<Changes> {
+        const NAMES: [Parameter; 9] = [
+            Parameter::Stiffness,
+            Parameter::Damping,
+            Parameter::Face,
+            Parameter::Filter,
+            Parameter::Residual,
+            Parameter::CouplingStiffness,
+            Parameter::TorqueLimit,
+            Parameter::Period,
+            Parameter::Passivity,
+        ];
+        let mut changes = Changes::new();
+        for _ in 0..1 + self.byte()? % 3 {
+            let name = NAMES[usize::from(self.byte()?) % NAMES.len()];
+            changes.push((name, self.value()?)).expect("there is room for three");
+        }
+        Some(changes)
+    }
+}
+
+/// A device that moves as it is told.
+#[derive(Clone)]
+struct Still {
+    count: i16,
+    code: DacCode,
+}
+
+impl Hardware for Still {
+    fn count(&mut self) -> RawCount {
+        RawCount::from(self.count)
+    }
+    fn write(&mut self, code: DacCode) {
+        self.code = code;
+    }
+    fn amplifier(&mut self, _: bool) {}
+    fn passed(&mut self) -> u32 {
+        1
+    }
+    fn elapsed(&mut self) -> u32 {
+        0
+    }
+    fn feed(&mut self) {}
+}
+
+/// A servo with what belongs to its interrupt.
+struct Running<'a, E: Tunable<f32>> {
+    cycle: Cycle<E, f32, Latched>,
+    device: Still,
+    inbox: Inbox<'a, Rendering<E, f32, Latched>>,
+    frames: Frames<'a, FRAMES>,
+}
+
+impl<E: Tunable<f32>> Running<'_, E> {
+    fn tick(&mut self, count: i16) -> DacCode {
+        self.device.count = count;
+        self.cycle.run(&mut self.device, &mut self.inbox, &mut self.frames);
+        self.device.code
+    }
+}
+
+fn drive<E>(first: &First<E>, program: Program<E>, data: &[u8])
+where
+    E: Tunable<f32> + Renders<Latched>,
+{
+    let Program { scene, transducers, rendering, options } = &program;
+    let judged = || {
+        let prepared = tuning::prepare(scene, &[], transducers, rendering);
+        prepared.expect("it is certified").rendering
+    };
+    let first = first.get_or_init(judged).clone();
+    let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::new());
+    let ((requests, inbox), (frames, reader)) = (mailbox.split(), queue.split());
+    requests.arm();
+    let device = Still { count: 0, code: DacCode::MID_SCALE };
+    let cycle = Cycle::new(first, options, 1000, None);
+    let mut servo = Running { cycle, device, inbox, frames };
+    let facts = Facts { name: "any", timer_counts: 1000, left: None, stack_left: || None };
+    let mut session = Session::new(program, None, facts, requests, reader);
+    let mut limit = scene.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
+    let (mut bytes, mut count) = (Reader(data), 0_i16);
+    for _ in 0..TICKS {
+        // It is armed.
+        servo.tick(count);
+        session.poll();
+    }
+    for id in 0..SETS as u16 {
+        let Some(changes) = bytes.changes() else { return };
+        let set = ToBoard::Set { id, changes: changes.clone() };
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        session.receive(encode(&set, &mut buffer).expect("a set fits"));
+        let (mut silent_mailbox, mut silent_queue) = (Mailbox::new(), FrameQueue::new());
+        let ((_quiet, inbox), (frames, _unread)) = (silent_mailbox.split(), silent_queue.split());
+        let (cycle, device) = (servo.cycle.clone(), servo.device.clone());
+        let mut silent = Running { cycle, device, inbox, frames };
+        let told = changes.iter().find(|(name, _)| *name == Parameter::TorqueLimit);
+        let new_limit = told.map_or(limit, |(_, value)| *value);
+        let (mut differs, mut outcome) = (false, None);
+        for _ in 0..TICKS {
+            let step = bytes.byte().unwrap_or(0).cast_signed();
+            count = count.wrapping_add(step.into());
+            let code = servo.tick(count);
+            differs |= code != silent.tick(count);
+            within(code, if outcome == Some(false) { limit } else { limit.max(new_limit) });
+            session.poll();
+            outcome = outcome.or(answer(session.outgoing()));
+            session.sent(session.outgoing().len());
+            assert_eq!(servo.cycle.fault(), None);
+        }
+        match outcome.expect("a set is answered while it is swapped in") {
+            true => limit = new_limit,
+            false => assert!(!differs, "a refused set was felt"),
+        }
+    }
+}
+
+/// The torque never exceeds its limit by more than the rounding to a code.
+fn within(code: DacCode, limit: f64) {
+    let largest = limit / TRANSDUCERS.full_scale_torque * f64::from(DacCode::CODES_TO_FULL_SCALE);
+    assert!(f64::from(code.offset()).abs() <= largest + 0.5, "{code:?}, {limit} N m");
+}
+
+/// Whether a request was done; `None` where these bytes are no answer.
+fn answer(bytes: &[u8]) -> Option<bool> {
+    let mut ear = Decoder::<{ LONGEST_TO_HOST + CHECKSUM }>::new();
+    bytes.iter().find_map(|&byte| match ear.push::<ToHost<&str>>(byte)? {
+        ToHost::Answer { outcome: Outcome::Done, .. } => Some(true),
+        ToHost::Answer { outcome: Outcome::Refused(sentence), .. } => {
+            assert!(!sentence.is_empty());
+            Some(false)
+        }
+        other => panic!("{other:?}"),
+    })
+}

@@ -1,0 +1,80 @@
+//! Any changes to scenes of every kind: from the bytes of a frame to a changed scene.
+//!
+//! Without the certificate, which takes a hundred times as long as all of this; see `judgement`.
+
+use firmware::certificate::Parameter;
+use firmware::environment::{
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
+    Wall,
+};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::tuning::{self, TUNABLE, TuningError, Values};
+use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+
+/// The first byte says which scene, the rest is a message.
+pub fn run(data: &[u8]) {
+    let Some((kind, rest)) = data.split_first() else { return };
+    let Ok((message, _)) = postcard::take_from_bytes::<ToBoard>(rest) else { return };
+    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    let frame = encode(&message, &mut buffer).expect("what was read fits a frame");
+    let mut decoder = Decoder::<{ LONGEST_TO_BOARD + CHECKSUM }>::new();
+    let heard = frame.iter().find_map(|&byte| decoder.push::<ToBoard>(byte));
+    let Some(ToBoard::Set { changes, .. }) = heard else { return };
+    let wall = DamperWall::<1> { stiffness: 22.0, damping: 0.01 };
+    let data = Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: Some(0.5),
+        delay: 1,
+        face: 0.1,
+        one_sided: true,
+    };
+    match kind % 9 {
+        0 => change(OneSided { face: 0.0, wall }, &changes),
+        1 => change(Placed { face: 0.5, wall }, &changes),
+        2 => change(DelayedSpring::<2> { stiffness: 3.0 }, &changes),
+        3 => change(FilteredWall::<1> { stiffness: 3.0, damping: 0.1, filter: 0.5 }, &changes),
+        4 => change(FreeMode::<1> { residual: 0.01 }, &changes),
+        5 => change(FreeModeWall { residual: 0.01, wall: OneSided { face: 0.0, wall } }, &changes),
+        6 => change(Environment::DamperWall(data), &changes),
+        7 => change(Environment::DelayedSpring(Wall { filter: None, ..data }), &changes),
+        _ => change(Environment::FreeModeWall { residual: 0.01, wall: data }, &changes),
+    }
+}
+
+/// All of the changes or none, and nothing else.
+fn change<E: Values + Copy + PartialEq>(environment: E, changes: &[(Parameter, f64)]) {
+    let scene = Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        torque_limit: Some(1.0),
+    };
+    let has = |parameter| tuning::get(&scene, parameter).is_some();
+    let count = |parameter| changes.iter().filter(|(each, _)| *each == parameter).count();
+    let is_tunable = |parameter| TUNABLE.iter().any(|(_, each)| *each == parameter);
+    match tuning::apply(&scene, changes) {
+        Ok(changed) => {
+            for (_, parameter) in TUNABLE {
+                let told = changes.iter().find(|(each, _)| *each == parameter);
+                let before = tuning::get(&scene, parameter);
+                let after = tuning::get(&changed, parameter);
+                let wanted = told.map_or(before, |(_, value)| Some(*value));
+                assert_eq!(after.map(f64::to_bits), wanted.map(f64::to_bits));
+                assert!(count(parameter) <= 1);
+            }
+            assert!(changes.iter().all(|(parameter, _)| is_tunable(*parameter)));
+            assert_eq!((changed.device, changed.timing), (scene.device, scene.timing));
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            match error {
+                TuningError::Fixed { parameter } => assert!(!is_tunable(parameter)),
+                TuningError::Absent { parameter, .. } => assert!(!has(parameter)),
+                TuningError::Twice { parameter } => assert!(count(parameter) > 1),
+            }
+        }
+    }
+}
