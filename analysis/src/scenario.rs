@@ -86,6 +86,8 @@ fn beside(
         return Ok(Outcome { run, energy: None, final_speed: None, board: None });
     };
     let mut board = Board::boot(elf)?;
+    // The hand waits until the servo runs.
+    board.emulator.engage()?;
     let run = run(plant, controller, Some(&mut board), ticks, progress)?;
     Ok(Outcome { run, energy: None, final_speed: None, board: Some(board.emulator.finish()?) })
 }

@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use firmware::board::shown::{Moved, Shown};
+use firmware::cycle::State;
 use tempfile::TempDir;
 
 pub use judge::Judge;
@@ -36,7 +38,7 @@ const BOARD: [&str; 12] = [
     "-monitor",
     "none",
     "-serial",
-    "none",
+    "unix:serial,server=on,wait=off",
     "-icount",
     "shift=5,sleep=off",
     "-semihosting-config",
@@ -46,6 +48,9 @@ const BOARD: [&str; 12] = [
 /// How long the board may take for one answer, unless it is told otherwise. Its start takes a second
 /// at most; the rest is for a host that is busy with other things.
 pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Ticks within which a servo must have opened its clamp: more than any scene's fading takes.
+const LONGEST_FADING: usize = 100_000;
 
 /// A running emulator.
 pub struct Emulator {
@@ -89,7 +94,10 @@ pub enum EmulatorError {
         /// What the board and the emulator had said.
         log: String,
     },
-    /// The judging board gave an answer that is none.
+    /// The servo did not begin to run.
+    #[error("the emulated board's servo has not armed itself within {LONGEST_FADING} ticks")]
+    NotArmed,
+    /// The board gave an answer that is none.
     #[error("the emulated board's reply is not understood: its program is of another version")]
     NoReply,
     /// The log does not say what a report needs.
@@ -114,14 +122,41 @@ impl Emulator {
         self
     }
 
-    /// One tick: the board gets the encoder's raw count and gives its DAC code.
+    /// One tick, in time: the board gets the encoder's raw count and gives its DAC code.
     ///
     /// # Errors
     /// Where the board has ended or does not answer.
     pub fn exchange(&mut self, raw_count: i32) -> Result<u16, EmulatorError> {
-        let mut code = [0; 2];
-        self.guest.exchange(&raw_count.to_le_bytes(), &mut code)?;
-        Ok(u16::from_le_bytes(code))
+        Ok(self.tick(Moved { count: raw_count.cast_unsigned(), missed: 0 })?.code)
+    }
+
+    /// One tick: what the board does about what has become of its world.
+    ///
+    /// # Errors
+    /// Where the board has ended or does not answer.
+    pub fn tick(&mut self, moved: Moved) -> Result<Shown, EmulatorError> {
+        let mut shown = [0; Shown::BYTES];
+        self.guest.exchange(&moved.to_bytes(), &mut shown)?;
+        Shown::from_bytes(shown).ok_or(EmulatorError::NoReply)
+    }
+
+    /// The board's serial port: a socket, until the board ends.
+    pub fn port(&self) -> PathBuf {
+        self.guest.folder.path().join("serial")
+    }
+
+    /// Holds the device still at zero until the servo has armed itself and its clamp is open.
+    ///
+    /// # Errors
+    /// Where the board has ended or does not answer, or does not arm itself.
+    pub fn engage(&mut self) -> Result<(), EmulatorError> {
+        for _ in 0..LONGEST_FADING {
+            let shown = self.tick(Moved { count: 0, missed: 0 })?;
+            if shown.state == State::Running {
+                return Ok(());
+            }
+        }
+        Err(EmulatorError::NotArmed)
     }
 
     /// Ends the run and gives what the board measured and logged.

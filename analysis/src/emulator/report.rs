@@ -6,7 +6,7 @@ use std::str::FromStr;
 /// What a run on the emulated board measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Ticks that the board ran.
+    /// Ticks that the servo ran, those apart in which it was armed or swapped its set.
     pub ticks: u64,
     /// Frames that the log missed because its queue was full.
     pub dropped: u64,
@@ -22,10 +22,13 @@ pub struct Report {
     pub contact_instructions: Option<Stats>,
     /// The same over the other ticks.
     pub free_instructions: Option<Stats>,
-    /// Instructions of everything that a tick runs in interrupts, the measuring included and the
-    /// lockstep's pipes excluded.
+    /// Instructions of the servo's whole interrupt, from its first to its last.
     pub interrupt_instructions: Stats,
-    /// Instructions of the lockstep's two pipe calls in each tick.
+    /// Instructions of the energy monitor in it.
+    pub energy_instructions: Stats,
+    /// Instructions that its frame takes into the queue.
+    pub frame_instructions: Stats,
+    /// Instructions of the lockstep around it, with the exchange of count and code.
     pub lockstep_instructions: Stats,
     /// Instructions that judging the scene took on the board.
     pub certify_instructions: u64,
@@ -103,6 +106,8 @@ impl Report {
             contact_instructions: contact,
             free_instructions: free,
             interrupt_instructions: Stats::joined(interrupt, None),
+            energy_instructions: Stats::joined(lines.stats("spread=energy"), None),
+            frame_instructions: Stats::joined(lines.stats("spread=frame"), None),
             lockstep_instructions: Stats::joined(lockstep, None),
             certify_instructions: lines.number("certify_time", "certify_time")?
                 / calibration.per_instruction.max(1),

@@ -7,6 +7,7 @@
 
 pub mod question;
 pub mod report;
+pub mod shown;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]
@@ -14,23 +15,26 @@ pub mod qemu;
 
 #[cfg(all(target_os = "none", feature = "b-g431b-esc1"))]
 pub mod b_g431b_esc1;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod critical;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
+#[allow(unsafe_code)]
+mod fatal;
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 pub mod link;
 #[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod place;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod retained;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 pub mod seat;
-#[cfg(all(target_os = "none", feature = "stm32"))]
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod stack;
 #[cfg(all(target_os = "none", feature = "stm32"))]

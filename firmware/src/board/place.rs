@@ -39,6 +39,16 @@ impl<T> Place<T> {
         // SAFETY: filled and not shared, as the caller promises.
         unsafe { (*self.0.get()).assume_init_mut() }
     }
+
+    /// What is in the place, for those who only look at it.
+    ///
+    /// # Safety
+    /// The place must have been filled, and nobody may use [`get`](Self::get) with it.
+    #[inline(always)]
+    pub unsafe fn look(&'static self) -> &'static T {
+        // SAFETY: filled and never borrowed for more than looking, as the caller promises.
+        unsafe { (*self.0.get()).assume_init_ref() }
+    }
 }
 
 impl<T> Default for Place<T> {

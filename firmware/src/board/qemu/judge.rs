@@ -8,6 +8,7 @@ use crate::board::question::{Question, answer};
 
 /// Answers until the host closes its end.
 pub fn run() -> ! {
+    super::pace::start_clock();
     let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);

@@ -1,32 +1,38 @@
-//! Encoder and DAC of the emulated board: two pipes to a process on the host.
+//! The world of the emulated board: two pipes to a process on the host, which simulates it.
 //!
-//! Each tick the host writes a count (`i32`, little-endian) into the pipe `counts`, and the board
-//! writes its DAC code (`u16`, little-endian) into the pipe `codes`; both are in the folder where
-//! the emulator was started. The board waits for its count, so host and board cannot drift apart.
-//! The host ends the run by closing `counts`.
+//! Each tick the host writes what has become of the encoder into the pipe `counts`, and the board
+//! writes what became of its lines into the pipe `codes`; both are in the folder where the
+//! emulator was started, and [`shown`](crate::board::shown) says what the bytes are. The board
+//! waits for its count, so host and board cannot drift apart. The host ends the run by closing
+//! `counts`.
+
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-use crate::dac::{Dac, DacCode};
-use crate::encoder::{Encoder, RawCount};
+use super::lines;
+use crate::board::place::Place;
+use crate::board::shown::{Moved, Shown};
+use crate::cycle::State;
 
 /// The host's end could not be opened.
 #[derive(Clone, Copy, Debug)]
 pub struct NoHost;
 
-/// Counts from the host.
-pub struct Counts {
-    pipe: File,
-    last: RawCount,
-    open: bool,
+/// Counts from the host, and what the board shows to it.
+struct Pipes {
+    counts: File,
+    codes: File,
 }
 
-/// DAC codes to the host.
-pub struct Codes {
-    pipe: File,
-    open: bool,
-}
+static PIPES: Place<Pipes> = Place::empty();
+/// Whether the host waits for what the board shows.
+static ASKED: AtomicBool = AtomicBool::new(false);
+/// Whether the next count is to be the encoder's zero.
+static ZEROING: AtomicBool = AtomicBool::new(false);
+/// The host's count where the encoder's zero is.
+static ZERO: AtomicU32 = AtomicU32::new(0);
 
 /// Opens both pipes, the host's first.
 pub(super) fn pipes() -> Result<(File, File), NoHost> {
@@ -35,46 +41,53 @@ pub(super) fn pipes() -> Result<(File, File), NoHost> {
     Ok((counts, codes))
 }
 
-/// Opens both pipes as encoder and DAC.
-pub fn open() -> Result<(Counts, Codes), NoHost> {
+/// Opens both pipes.
+///
+/// # Safety
+/// The interrupt that uses the pipes must not be enabled yet.
+pub(super) unsafe fn open() -> Result<(), NoHost> {
     let (counts, codes) = pipes()?;
-    Ok((
-        Counts { pipe: counts, last: RawCount::from(0_u32), open: true },
-        Codes { pipe: codes, open: true },
-    ))
+    // SAFETY: nobody uses the place yet, as the caller promises.
+    unsafe { PIPES.fill(Pipes { counts, codes }) };
+    Ok(())
 }
 
-impl Counts {
-    /// Whether the host still answers.
-    pub fn open(&self) -> bool {
-        self.open
+/// Where the device is at the next tick is the encoder's zero.
+pub(super) fn zero() {
+    ZEROING.store(true, Ordering::Relaxed);
+}
+
+/// Waits for the host to say what has become of the world; gives the periods that went by without a
+/// tick, or nothing once the host has closed the pipe.
+///
+/// # Safety
+/// The pipes must be open.
+pub(super) unsafe fn receive() -> Option<u32> {
+    // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
+    let mut counts = unsafe { &PIPES.look().counts };
+    let mut bytes = [0; Moved::BYTES];
+    if counts.read_exact(&mut bytes).is_err() {
+        return None;
     }
-}
-
-impl Encoder for Counts {
-    /// Waits for the host's count. Once the host has closed the pipe the count stands still, like
-    /// that of a counter whose wheel does not turn.
-    fn read(&mut self) -> RawCount {
-        #[cfg(feature = "log")]
-        let start = super::meter::now();
-        let mut bytes = [0; 4];
-        self.open = self.pipe.read_exact(&mut bytes).is_ok();
-        if self.open {
-            self.last = RawCount::from(u32::from_le_bytes(bytes));
-        }
-        #[cfg(feature = "log")]
-        super::meter::LOCKSTEP.add(start);
-        self.last
+    ASKED.store(true, Ordering::Relaxed);
+    let Moved { count, missed } = Moved::from_bytes(bytes);
+    if ZEROING.swap(false, Ordering::Relaxed) {
+        ZERO.store(count, Ordering::Relaxed);
     }
+    lines::set_count(count.wrapping_sub(ZERO.load(Ordering::Relaxed)));
+    Some(missed)
 }
 
-impl Dac for Codes {
-    /// Gives the code to the host; a host that has gone away ends the run at the next count.
-    fn write(&mut self, code: DacCode) {
-        #[cfg(feature = "log")]
-        let start = super::meter::now();
-        self.open = self.open && self.pipe.write_all(&code.get().to_le_bytes()).is_ok();
-        #[cfg(feature = "log")]
-        super::meter::LOCKSTEP.add(start);
+/// Shows the host the board's lines, if it waits for that. A host that has gone away ends the run
+/// at the next count.
+///
+/// # Safety
+/// The pipes must be open if a host has asked.
+pub(super) unsafe fn show(state: State) {
+    if ASKED.swap(false, Ordering::Relaxed) {
+        let (code, amplifier) = lines::outputs();
+        let shown = Shown { code, amplifier, state };
+        // SAFETY: as in `receive`.
+        let _ = unsafe { &PIPES.look().codes }.write_all(&shown.to_bytes());
     }
 }

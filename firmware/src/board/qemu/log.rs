@@ -1,91 +1,85 @@
-//! What the servo did, told to the host: frames through a lock-free queue, summed up and logged
+//! What the servo did, told to the host: ticks through a lock-free queue, summed up and logged
 //! below the servo's priority. Nothing is logged in the servo's interrupt.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use embassy_sync::waitqueue::AtomicWaker;
 use heapless::spsc::{Consumer, Producer, Queue};
 use static_cell::StaticCell;
 
 use super::meter::Scale;
+use super::parts::Parts;
+use crate::board::place::Place;
 use crate::certificate::Assessment;
-use crate::dac::DacCode;
+use crate::encoder::RawCount;
 
 // The logger that carries the bytes; it registers itself.
 use defmt_semihosting as _;
 
-/// Frames that the queue holds (one less than its length): the log may fall this far behind.
+/// Ticks that the queue holds (one less than its length): the log may fall this far behind.
 const LENGTH: usize = 33;
 /// Ticks between two lines of the log.
 const EVERY: u32 = 1000;
 
-/// One tick, as the servo saw it. Times are in the meter's units.
+/// One tick, as it was measured. Times are in the meter's units.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct Measured {
+    /// The encoder's counter.
+    pub count: RawCount,
     /// The code that was written.
-    pub code: DacCode,
-    /// Ticks that were due when this one began, 1 when all is well.
-    pub due: u32,
-    /// Time of the compute part, from count to code.
-    pub compute: u32,
-    /// Time of the previous tick's interrupts, pipes included.
-    pub interrupt: u32,
-    /// Time of the previous tick's pipes.
+    pub code: u16,
+    /// Whether the servo was running before.
+    pub was_running: bool,
+    /// Time of the servo's interrupt.
+    pub tick: u32,
+    /// Time of the lockstep around it.
     pub lockstep: u32,
 }
 
-/// The servo's end of the queue.
-pub struct Frames(Producer<'static, Frame>);
-/// The log's end of the queue.
-pub type FramesEnd = Consumer<'static, Frame>;
-
-static QUEUE: StaticCell<Queue<Frame, LENGTH>> = StaticCell::new();
+/// The interrupt's end of the queue.
+static TICKS: Place<Producer<'static, Measured>> = Place::empty();
 static DROPPED: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicBool = AtomicBool::new(false);
-static LOG: AtomicWaker = AtomicWaker::new();
 
-/// Makes the queue. To be called once.
-pub fn frames() -> (Frames, FramesEnd) {
-    let (servo, log) = QUEUE.init(Queue::new()).split();
-    (Frames(servo), log)
+/// Gives a tick to the log; a full queue drops it and counts that.
+///
+/// # Safety
+/// Only the interrupt that uses the queue may call this, after [`Log::open`].
+pub unsafe fn push(tick: Measured) {
+    // SAFETY: filled, and used by this interrupt alone, as the caller promises.
+    if unsafe { TICKS.get() }.enqueue(tick).is_err() {
+        DROPPED.fetch_add(1, Ordering::Relaxed);
+    }
 }
 
-impl Frames {
-    /// Gives a frame to the log; a full queue drops it and counts that.
-    pub fn push(&mut self, frame: Frame) {
-        if self.0.enqueue(frame).is_err() {
-            DROPPED.fetch_add(1, Ordering::Relaxed);
-        }
-        LOG.wake();
-    }
-
-    /// There will be no more frames.
-    pub fn end(self) {
-        ENDED.store(true, Ordering::Release);
-        LOG.wake();
-    }
+/// There will be no more ticks.
+pub fn end() {
+    ENDED.store(true, Ordering::Release);
 }
 
 /// Smallest, largest and sum of a number of instructions.
 #[derive(Clone, Copy)]
-struct Spread {
-    count: u32,
+pub struct Spread {
+    /// How many.
+    pub count: u32,
     min: u32,
     max: u32,
     sum: u64,
 }
 
 impl Spread {
-    const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
+    /// Of nothing.
+    pub const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
 
-    fn add(&mut self, value: u32) {
+    /// Takes another one.
+    pub fn add(&mut self, value: u32) {
         self.count += 1;
         self.min = self.min.min(value);
         self.max = self.max.max(value);
         self.sum += u64::from(value);
     }
 
-    fn log(&self, name: &str) {
+    /// Tells the host, if there was any.
+    pub fn log(&self, name: &str) {
         let Self { count, min, max, sum } = *self;
         if count > 0 {
             defmt::info!("spread={=str} count={} min={} max={} sum={}", name, count, min, max, sum);
@@ -104,93 +98,61 @@ pub fn certificate(by: &str, assessment: &Assessment) {
     }
 }
 
-/// Takes the frames until the servo has ended, logs what they say, and ends the emulation.
-#[embassy_executor::task]
-pub async fn log(mut frames: FramesEnd, scale: Scale) {
-    let mut summary = Summary::new(scale);
-    loop {
-        // Read before the queue is drained: frames pushed before the end are then not missed.
-        let ended = ENDED.load(Ordering::Acquire);
-        while let Some(frame) = frames.dequeue() {
-            summary.add(frame);
-        }
-        if ended {
-            break;
-        }
-        pushed().await;
-    }
-    summary.log();
-    semihosting::process::exit(super::EXIT_DONE)
-}
-
-/// Waits until the servo has pushed something.
-async fn pushed() {
-    let mut waited = false;
-    core::future::poll_fn(|context| {
-        LOG.register(context.waker());
-        if core::mem::replace(&mut waited, true) {
-            core::task::Poll::Ready(())
-        } else {
-            core::task::Poll::Pending
-        }
-    })
-    .await
-}
-
-/// The sums over a run.
-struct Summary {
+/// The log of a run.
+pub struct Log<P> {
+    ticks: Consumer<'static, Measured>,
     scale: Scale,
-    last: Option<Frame>,
-    ticks: u32,
-    overruns: u32,
-    contact: Spread,
-    free: Spread,
+    parts: P,
+    total: u32,
     interrupt: Spread,
     lockstep: Spread,
 }
 
-impl Summary {
-    fn new(scale: Scale) -> Self {
-        let [contact, free, interrupt, lockstep] = [Spread::EMPTY; 4];
-        Self { scale, last: None, ticks: 0, overruns: 0, contact, free, interrupt, lockstep }
+impl<P: Parts> Log<P> {
+    /// Begins a log that looks at the parts of a tick, too. To be called once.
+    ///
+    /// # Safety
+    /// The interrupt that pushes the ticks must not be enabled yet.
+    pub unsafe fn open(scale: Scale, parts: P) -> Self {
+        static QUEUE: StaticCell<Queue<Measured, LENGTH>> = StaticCell::new();
+        let (push, ticks) = QUEUE.init(Queue::new()).split();
+        // SAFETY: nobody uses the place yet, as the caller promises.
+        unsafe { TICKS.fill(push) };
+        let [interrupt, lockstep] = [Spread::EMPTY; 2];
+        Self { ticks, scale, parts, total: 0, interrupt, lockstep }
     }
 
-    fn add(&mut self, frame: Frame) {
-        if let Some(last) = self.last.replace(frame) {
-            self.add_compute(last, Some(frame));
+    /// Takes the ticks that there are; once the host has ended the run, ends the emulation.
+    pub fn poll(&mut self) {
+        // Read before the queue is drained: ticks pushed before the end are then not missed.
+        let ended = ENDED.load(Ordering::Acquire);
+        while let Some(tick) = self.ticks.dequeue() {
+            self.add(&tick);
         }
-        // The first tick has no previous one.
-        if self.ticks > 0 {
-            let lockstep = self.scale.instructions(frame.lockstep);
-            let interrupt = self.scale.instructions(frame.interrupt);
-            self.lockstep.add(lockstep);
-            self.interrupt.add(interrupt.saturating_sub(lockstep));
-        }
-        self.overruns += frame.due - 1;
-        self.ticks += 1;
-        if self.ticks.is_multiple_of(EVERY) {
-            defmt::info!("progress={}", self.ticks);
+        if ended {
+            self.log();
+            semihosting::process::exit(super::EXIT_DONE)
         }
     }
 
-    /// A tick is free where neither it nor the next one gives torque. The next one's is looked at
-    /// because what a tick finds in a delayed wall is felt a tick later.
-    fn add_compute(&mut self, frame: Frame, next: Option<Frame>) {
-        let compute = self.scale.instructions(frame.compute).saturating_sub(self.scale.overhead);
-        let gives_torque = |frame: Frame| frame.code != DacCode::MID_SCALE;
-        let contact = gives_torque(frame) || next.is_some_and(gives_torque);
-        let spread = if contact { &mut self.contact } else { &mut self.free };
-        spread.add(compute);
+    /// A tick that was spent on a ramp, a swap or a fault is no usual one and is not summed up.
+    fn add(&mut self, tick: &Measured) {
+        self.parts.take(tick, &self.scale);
+        if tick.was_running {
+            self.interrupt.add(self.scale.of_interrupt(tick.tick));
+            self.lockstep.add(self.scale.instructions(tick.lockstep));
+        }
+        self.total += 1;
+        if self.total.is_multiple_of(EVERY) {
+            defmt::info!("progress={}", self.total);
+        }
     }
 
-    fn log(mut self) {
-        if let Some(last) = self.last {
-            self.add_compute(last, None);
-        }
+    fn log(&mut self) {
         let dropped = DROPPED.load(Ordering::Relaxed);
-        defmt::info!("ticks={} dropped={} overruns={}", self.ticks, dropped, self.overruns);
-        self.contact.log("contact");
-        self.free.log("free");
+        let overruns = super::pace::missed();
+        defmt::info!("ticks={} dropped={} overruns={}", self.interrupt.count, dropped, overruns);
+        self.parts.log();
         self.interrupt.log("interrupt");
         self.lockstep.log("lockstep");
     }

@@ -5,86 +5,70 @@
 //! repeatably, once they are divided by what a loop of known length takes. They are instructions,
 //! never cycles: the emulator knows nothing of wait states or of the pipeline.
 
-use core::arch::asm;
-use core::sync::atomic::{AtomicU32, Ordering, compiler_fence};
+use core::arch::{asm, naked_asm};
+use core::hint::black_box;
+use core::sync::atomic::{Ordering, compiler_fence};
 
-use crate::dac::DacCode;
-use crate::encoder::RawCount;
-use crate::servo::Output;
-use crate::torque::LimitReason;
-
-/// TIM2's control register 1, from the F405's memory map.
-const CONTROL: *mut u32 = 0x4000_0000 as *mut u32;
-/// TIM2's counter, 32 bits.
-const COUNTER: *const u32 = 0x4000_0024 as *const u32;
-/// TIM2's reload register.
-const RELOAD: *mut u32 = 0x4000_002C as *mut u32;
-
-/// Time spent in interrupts since it was last taken.
-pub static INTERRUPT: Stopwatch = Stopwatch::new();
-/// Time spent in the lockstep's pipes since it was last taken.
-pub static LOCKSTEP: Stopwatch = Stopwatch::new();
-
-/// Sums up stretches of time.
-pub struct Stopwatch(AtomicU32);
-
-impl Stopwatch {
-    const fn new() -> Self {
-        Self(AtomicU32::new(0))
-    }
-
-    /// Adds the time since `start`.
-    #[inline(always)]
-    pub fn add(&self, start: u32) {
-        // Not an atomic addition: what is measured never interrupts itself, and the loop of an
-        // exclusive store would be counted too.
-        let sum = self.0.load(Ordering::Relaxed).wrapping_add(now().wrapping_sub(start));
-        self.0.store(sum, Ordering::Relaxed);
-    }
-
-    /// Gives the sum and begins a new one.
-    pub fn take(&self) -> u32 {
-        let sum = self.0.load(Ordering::Relaxed);
-        self.0.store(0, Ordering::Relaxed);
-        sum
-    }
-}
-
-/// The counter, in units of [`Scale`].
-#[inline(always)]
-pub fn now() -> u32 {
-    // SAFETY: TIM2's counter is a register that may be read at any time and without effect.
-    unsafe { COUNTER.read_volatile() }
-}
+pub use super::pace::now;
 
 /// What the counter's numbers mean.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
     /// Counts that one instruction takes.
     pub per_instruction: u32,
-    /// Instructions that a measurement of a tick counts of itself.
+    /// Instructions that a [`measurement`](measure) counts of itself.
     pub overhead: u32,
+    /// Instructions that the measurement of an interrupt counts of itself: one that does nothing
+    /// but return has one of its own.
+    pub around: u32,
 }
 
 impl Scale {
-    /// Starts the counter and measures a loop of known length and an empty tick.
+    /// Measures a loop of known length, and nothing at all.
     pub fn calibrate() -> Self {
-        // SAFETY: nothing else uses TIM2; a full reload and the enable bit let it run freely.
-        unsafe {
-            RELOAD.write_volatile(u32::MAX);
-            CONTROL.write_volatile(1);
-        }
         let (short, long) = (loop_time(LOOP), loop_time(2 * LOOP));
         let per_instruction = (long.wrapping_sub(short) / (2 * LOOP)).max(1);
-        let nothing = Output { code: DacCode::MID_SCALE, limit: LimitReason::None };
-        let (_, empty) = tick(RawCount::from(0_u32), |_| nothing);
-        Self { per_instruction, overhead: empty / per_instruction }
+        let (_, empty) = measure(0, |nothing| nothing);
+        let around = return_time() / per_instruction - 1;
+        Self { per_instruction, overhead: empty / per_instruction, around }
     }
 
     /// Instructions of a stretch of time.
     pub fn instructions(&self, time: u32) -> u32 {
         time / self.per_instruction
     }
+
+    /// Instructions of a stretch of time that [`measure`] has measured.
+    pub fn measured(&self, time: u32) -> u32 {
+        self.instructions(time).saturating_sub(self.overhead)
+    }
+
+    /// Instructions of a stretch of time that [`interrupt`] has measured.
+    pub fn of_interrupt(&self, time: u32) -> u32 {
+        self.instructions(time).saturating_sub(self.around)
+    }
+}
+
+/// Calls what an interrupt does, and gives the time that it took, with what the measurement takes of
+/// itself.
+#[inline(always)]
+pub fn interrupt(handler: extern "C" fn()) -> u32 {
+    let start = now();
+    handler();
+    now().wrapping_sub(start)
+}
+
+/// Time of the shortest interrupt that there is; in a function of its own, so that nothing else is
+/// done meanwhile.
+#[inline(never)]
+fn return_time() -> u32 {
+    interrupt(return_at_once)
+}
+
+/// The shortest interrupt that there is.
+#[unsafe(naked)]
+extern "C" fn return_at_once() {
+    naked_asm!("bx lr")
 }
 
 /// Turns of the calibration's loop.
@@ -98,48 +82,25 @@ fn loop_time(turns: u32) -> u32 {
     now().wrapping_sub(start)
 }
 
-/// Runs one tick and gives the time that it took, what the measurement takes of itself included.
+/// Does something with a number and gives the time that it took, with what the measurement takes of
+/// itself.
 ///
-/// The count is hidden from the optimiser after the first reading and the result is demanded
-/// before the second, so that no part of the tick can be moved out of the measured stretch.
+/// The number is hidden from the optimiser after the first reading and the result is demanded
+/// before the second, so that no part of it can be moved out of the measured stretch. The servo's
+/// interrupt waits meanwhile, which is no longer than the interrupt itself.
 #[inline(always)]
-pub fn tick(raw: RawCount, tick: impl FnOnce(RawCount) -> Output) -> (Output, u32) {
-    let start = now();
-    let mut count = raw.bits();
-    // SAFETY: no instruction; the operand is unchanged. It may touch memory as far as the compiler
-    // knows, which keeps the servo's state where it is.
-    unsafe { asm!("/* {0} */", inout(reg) count) };
-    let output = tick(RawCount::from(count));
-    // SAFETY: no instruction; as above, with the results as inputs.
-    unsafe {
-        asm!("/* {0} {1} */", in(reg) u32::from(output.code.get()), in(reg) output.limit as u32)
-    };
-    let end = now();
-    compiler_fence(Ordering::SeqCst);
-    (output, end.wrapping_sub(start))
-}
-
-/// Bytes of the stack that have been written since reset, and bytes that there are; the start-up
-/// code has painted it.
-pub fn stack() -> (u32, u32) {
-    /// What cortex-m-rt paints with.
-    const PAINT: u32 = 0xCCCC_CCCC;
-    let (bottom, top) = (&raw const STACK_BOTTOM, &raw const STACK_TOP);
-    let mut lowest = bottom;
-    // SAFETY: reads words between the ends of the stack, which are RAM and which nothing writes
-    // meanwhile below the current frame.
-    while lowest < top && unsafe { lowest.read_volatile() } == PAINT {
-        lowest = lowest.wrapping_add(1);
-    }
-    (top.addr().wrapping_sub(lowest.addr()) as u32, top.addr().wrapping_sub(bottom.addr()) as u32)
-}
-
-unsafe extern "C" {
-    /// The linker script's symbol for the first address above the stack; only its address means
-    /// something.
-    #[link_name = "_stack_start"]
-    static STACK_TOP: u32;
-    /// The symbol for the stack's lowest address.
-    #[link_name = "_stack_end"]
-    static STACK_BOTTOM: u32;
+pub fn measure(number: u32, what: impl FnOnce(u32) -> u32) -> (u32, u32) {
+    cortex_m::interrupt::free(|_| {
+        let start = now();
+        let mut number = number;
+        // SAFETY: no instruction; the operand is unchanged. It may touch memory as far as the
+        // compiler knows, which keeps what the work needs where it is.
+        unsafe { asm!("/* {0} */", inout(reg) number) };
+        let mut result = what(number);
+        // SAFETY: as above.
+        unsafe { asm!("/* {0} */", inout(reg) result) };
+        let end = now();
+        compiler_fence(Ordering::SeqCst);
+        (black_box(result), end.wrapping_sub(start))
+    })
 }

@@ -1,101 +1,102 @@
 //! The emulated board: QEMU's `netduinoplus2`, an STM32F405, in lockstep with a process on the host.
 //!
-//! SysTick paces the servo, which runs in an interrupt executor; a thread executor below it logs.
-//! There is no encoder and no motor: the host's device simulation gives a count and takes a DAC
-//! code for each tick ([`lockstep`]).
+//! SysTick's interrupt is the servo's, above everything else. There is no encoder and no motor: the
+//! host's device simulation gives a count and takes a code around each tick ([`lockstep`]), and what
+//! a tick sees of that are words of memory in the place of registers ([`lines`]). Count and code
+//! belong to the same instant, since the simulation waits for the code.
 //!
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
 
 #[cfg(feature = "log")]
 pub mod judge;
+pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
 pub mod log;
 #[cfg(feature = "log")]
 pub mod meter;
 pub mod pace;
+#[cfg(feature = "log")]
+mod parts;
+pub mod registers;
+pub mod serial;
 mod start;
+pub(super) mod stop;
+mod sweep;
+pub mod tick;
 
-pub use start::{Drive, Judgement, SceneProgram, Seat, measure, run};
+pub use start::{Places, run};
+pub use sweep::{SweepPlace, measure};
 
-use embassy_executor::InterruptExecutor;
-
-/// Runs the servo's task, above everything else but SysTick.
-static SERVO_EXECUTOR: InterruptExecutor = InterruptExecutor::new();
-
-/// The interrupt that the servo's executor borrows: that of a timer which this board does not use.
-#[derive(Clone, Copy)]
-struct ServoInterrupt;
-
-impl ServoInterrupt {
-    /// TIM7 in the F405's vector table.
-    const NUMBER: u16 = 55;
-}
-
-// SAFETY: the F405 has 82 interrupts, and 55 is one of them for as long as the program runs.
-unsafe impl cortex_m::interrupt::InterruptNumber for ServoInterrupt {
-    fn number(self) -> u16 {
-        Self::NUMBER
-    }
-}
-
-/// All interrupts arrive here, since the program brings no table of the chip's names.
-#[cortex_m_rt::exception]
-unsafe fn DefaultHandler(number: i16) {
-    assert!(number == ServoInterrupt::NUMBER as i16, "interrupt {} was never enabled", number);
-    #[cfg(feature = "log")]
-    let start = meter::now();
-    // SAFETY: this is the handler of the executor's interrupt, which `start` alone enables.
-    unsafe { SERVO_EXECUTOR.on_interrupt() };
-    #[cfg(feature = "log")]
-    meter::INTERRUPT.add(start);
-}
-
-/// A fault ends the emulation, so that the host sees an error and not silence.
-#[cortex_m_rt::exception]
-unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
-    #[cfg(feature = "log")]
-    defmt::error!("hard fault");
-    semihosting::process::exit(EXIT_FAULT)
-}
-
-/// A panic ends the emulation likewise. None is reachable by input; this is for mistakes.
-#[panic_handler]
-fn panic(_info: &core::panic::PanicInfo<'_>) -> ! {
-    #[cfg(feature = "log")]
-    defmt::error!("{}", defmt::Display2Format(_info));
-    semihosting::process::exit(EXIT_FAULT)
-}
+/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
+pub type Mode = crate::servo::Simultaneous;
 
 /// Exit status of a run that the host ended.
 const EXIT_DONE: i32 = 0;
 /// Exit status of a program that could not start; the log says why.
 const EXIT_REFUSED: i32 = 1;
-/// Exit status of a fault or a panic.
-const EXIT_FAULT: i32 = 2;
+
+/// The host has ended the run; where there is a log, that is finished first.
+fn ended() {
+    #[cfg(feature = "log")]
+    log::end();
+    #[cfg(not(feature = "log"))]
+    semihosting::process::exit(EXIT_DONE)
+}
+
+/// All interrupts but SysTick's arrive here, since the program brings no table of the chip's names.
+#[cortex_m_rt::exception]
+unsafe fn DefaultHandler(number: i16) {
+    assert!(number == serial::INTERRUPT.cast_signed(), "interrupt {number} was never enabled");
+    // SAFETY: this is that interrupt's handler.
+    unsafe { serial::receive() };
+}
 
 /// The program of a scene on this board.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
     ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
-        /// The servo's task; a task may not be generic, so each program has its own.
-        #[embassy_executor::task]
-        async fn serve(
-            seat: $crate::board::qemu::Seat<$crate::servo::Servo<$environment, $number>>,
-        ) {
-            seat.serve().await
+        /// The scene, whose torque is as late as it says.
+        const TIMED: $crate::certificate::Timed<
+            $crate::scene::Scene<$environment>,
+            $crate::board::qemu::Mode,
+        > = $certified.timed::<$crate::board::qemu::Mode>();
+
+        static PLACES: $crate::board::qemu::Places<$environment, $number> =
+            $crate::board::qemu::Places::empty();
+
+        /// What other boards have as their timer's interrupt.
+        #[inline(never)]
+        extern "C" fn tick() {
+            // SAFETY: called by the handler of the interrupt that `run` enables once it has filled
+            // the place, and no interrupt interrupts itself.
+            unsafe { PLACES.seat.get() }.tick();
+        }
+
+        /// A tick, with the world around it.
+        #[unsafe(export_name = "SysTick")]
+        unsafe extern "C" fn sys_tick() {
+            // SAFETY: the place is filled before the interrupt is enabled, and these are called
+            // before and after a tick, when nobody holds what is in it.
+            let state = || unsafe { PLACES.seat.get() }.cycle.state();
+            // SAFETY: as above.
+            let lose = |missed| unsafe { PLACES.seat.get() }.hardware.lose(missed);
+            // SAFETY: the pipes are open before the interrupt is enabled.
+            unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::board::qemu::SceneProgram {
-                certified: &$certified,
-                certify: $crate::scene::Scene::<$environment>::certify,
-                transducers: &$transducers,
+            let program = $crate::boot::Program {
+                scene: *TIMED.scene(),
+                transducers: $transducers,
+                rendering: $crate::servo::RenderingOptions::DEFAULT,
+                options: $crate::cycle::Options::DEFAULT,
             };
-            $crate::board::qemu::run(program, serve)
+            let compiler = $certified.assessment();
+            $crate::board::qemu::run(env!("CARGO_BIN_NAME"), program, compiler, &PLACES)
         }
     };
 }
@@ -105,15 +106,29 @@ macro_rules! board_program {
 #[macro_export]
 macro_rules! board_sweep {
     ($sweep:ident) => {
-        /// The exciter's task.
-        #[embassy_executor::task]
-        async fn serve(seat: $crate::board::qemu::Seat<$crate::excitation::Exciter<'static>>) {
-            seat.serve().await
+        static PLACE: $crate::board::qemu::SweepPlace = $crate::board::place::Place::empty();
+
+        /// What other boards have as their timer's interrupt.
+        #[inline(never)]
+        extern "C" fn tick() {
+            // SAFETY: called by the handler of the interrupt that `measure` enables once it has
+            // filled the place, and no interrupt interrupts itself.
+            $crate::board::qemu::lines::write(unsafe { PLACE.get() }.next().code);
+        }
+
+        /// A tick, with the world around it.
+        #[unsafe(export_name = "SysTick")]
+        unsafe extern "C" fn sys_tick() {
+            let state = || $crate::cycle::State::Running;
+            // A sweep has no use for a time that the host has lost.
+            let lose = |_| ();
+            // SAFETY: the pipes are open and the place is filled before the interrupt is enabled.
+            unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            $crate::board::qemu::measure(&$sweep, serve)
+            $crate::board::qemu::measure(&$sweep, &PLACE)
         }
     };
 }

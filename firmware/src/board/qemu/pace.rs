@@ -1,11 +1,11 @@
-//! One tick of the servo a period, paced by SysTick.
+//! When a tick is due: SysTick, and beside it a clock that never stops, which tells how late the
+//! servo is.
 
-use core::future::poll_fn;
+use core::hint::cold_path;
 use core::sync::atomic::{AtomicU32, Ordering};
-use core::task::Poll;
 
-use cortex_m::peripheral::{SYST, syst::SystClkSource};
-use embassy_sync::waitqueue::AtomicWaker;
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
 
 use crate::board::StartError;
 
@@ -14,50 +14,123 @@ const CORE_CLOCK: f64 = 168e6;
 /// SysTick counts down from at most this: it has 24 bits.
 const LONGEST_RELOAD: u32 = 0xFF_FFFF;
 
-/// Ticks that SysTick has begun and the servo has not.
-static DUE: AtomicU32 = AtomicU32::new(0);
-/// Wakes the servo.
-static SERVO: AtomicWaker = AtomicWaker::new();
+/// TIM2's registers, from the F405's memory map: control register 1, counter (of 32 bits), and
+/// reload.
+const CONTROL: *mut u32 = 0x4000_0000 as *mut u32;
+const COUNTER: *const u32 = 0x4000_0024 as *const u32;
+const RELOAD: *mut u32 = 0x4000_002C as *mut u32;
+/// Counts of the clock a second: the emulated TIM2 counts nanoseconds, whatever the core does.
+const CLOCK: f64 = 1e9;
 
-/// SysTick's reload value for a period in s.
-pub fn reload(period: f64) -> Result<u32, StartError> {
-    let longest = (LONGEST_RELOAD as f64 + 1.0) / CORE_CLOCK;
-    // Written so that NaN is refused.
-    if !(period > 1.5 / CORE_CLOCK && period <= longest) {
-        return Err(StartError::Period { period, longest });
+/// Periods that began without a tick.
+static MISSED: AtomicU32 = AtomicU32::new(0);
+
+/// Starts the clock.
+pub fn start_clock() {
+    // SAFETY: nothing else uses TIM2; a full reload and the enable bit let it run freely.
+    unsafe {
+        RELOAD.write_volatile(u32::MAX);
+        CONTROL.write_volatile(1);
     }
-    Ok((period * CORE_CLOCK + 0.5) as u32 - 1)
+}
+
+/// The clock.
+#[inline(always)]
+pub fn now() -> u32 {
+    // SAFETY: TIM2's counter is a register that may be read at any time and without effect.
+    unsafe { COUNTER.read_volatile() }
+}
+
+/// A period as both count it.
+#[derive(Clone, Copy, Debug)]
+pub struct Period {
+    reload: u32,
+    clock_counts: u32,
+}
+
+impl Period {
+    /// The period nearest to this many seconds.
+    ///
+    /// # Errors
+    /// Where SysTick, which has 24 bits, cannot pace it.
+    pub fn of(seconds: f64) -> Result<Self, StartError> {
+        let longest = (LONGEST_RELOAD as f64 + 1.0) / CORE_CLOCK;
+        // Written so that NaN is refused.
+        if !(seconds > 1.5 / CORE_CLOCK && seconds <= longest) {
+            return Err(StartError::Period { period: seconds, longest });
+        }
+        let reload = (seconds * CORE_CLOCK + 0.5) as u32 - 1;
+        let clock_counts = (f64::from(reload + 1) * (CLOCK / CORE_CLOCK) + 0.5) as u32;
+        Ok(Self { reload, clock_counts })
+    }
+
+    /// Clock counts in a period.
+    pub const fn clock_counts(&self) -> u32 {
+        self.clock_counts
+    }
 }
 
 /// Begins to pace.
-pub fn start(mut timer: SYST, reload: u32) {
+pub fn start(mut timer: SYST, period: Period) {
     timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(reload);
+    timer.set_reload(period.reload);
     timer.clear_current();
     timer.enable_counter();
     timer.enable_interrupt();
 }
 
-/// Waits for the next tick; gives the number of ticks that were due, more than one when the servo
-/// came late.
-pub async fn next() -> u32 {
-    poll_fn(|context| {
-        SERVO.register(context.waker());
-        match DUE.swap(0, Ordering::Relaxed) {
-            0 => Poll::Pending,
-            due => Poll::Ready(due),
-        }
-    })
-    .await
+/// Periods that began without a tick, since the start.
+pub fn missed() -> u32 {
+    MISSED.load(Ordering::Relaxed)
 }
 
-/// A period has begun.
-#[cortex_m_rt::exception]
-fn SysTick() {
-    #[cfg(feature = "log")]
-    let start = super::meter::now();
-    DUE.fetch_add(1, Ordering::Relaxed);
-    SERVO.wake();
-    #[cfg(feature = "log")]
-    super::meter::INTERRUPT.add(start);
+/// Keeps count of the periods. Belongs to the servo's interrupt.
+#[derive(Debug)]
+pub struct Pace {
+    /// Clock counts in a period.
+    period: u32,
+    /// Clock counts up to which a tick is in time.
+    in_time: u32,
+    /// The clock when the present period began.
+    began: u32,
+}
+
+impl Pace {
+    /// From now on.
+    pub fn new(period: Period) -> Self {
+        let period = period.clock_counts;
+        Self { period, in_time: period + period / 2, began: now() }
+    }
+
+    /// Periods that have begun since the last tick: 1 in time. To be called at a tick's beginning.
+    #[inline(always)]
+    pub fn passed(&mut self) -> u32 {
+        let now = now();
+        let since = now.wrapping_sub(self.began);
+        // To half a period the period began now: the two clocks are not of one source.
+        if since <= self.in_time {
+            self.began = now;
+            return 1;
+        }
+        cold_path();
+        // The clock may be a little behind SysTick, but by no part of a period that matters.
+        let almost = since.wrapping_add(self.period / 64);
+        let passed = almost.checked_div(self.period).unwrap_or(1).max(1);
+        let whole = passed.wrapping_mul(self.period).min(since);
+        self.began = self.began.wrapping_add(whole);
+        MISSED.fetch_add(passed - 1, Ordering::Relaxed);
+        passed
+    }
+
+    /// Clock counts since the present period began.
+    #[inline(always)]
+    pub fn elapsed(&self) -> u32 {
+        now().wrapping_sub(self.began)
+    }
+
+    /// The host has simulated so many periods more than there were ticks: they have passed here,
+    /// too.
+    pub fn lose(&mut self, missed: u32) {
+        self.began = self.began.wrapping_sub(missed.wrapping_mul(self.period));
+    }
 }

@@ -12,7 +12,7 @@ pub mod quadrature;
 mod registers;
 pub mod serial;
 mod start;
-mod stop;
+pub(super) mod stop;
 mod sweep;
 
 #[cfg(feature = "b-g431b-esc1")]

@@ -1,11 +1,8 @@
-//! What a panic and a fault of the processor do: no torque, amplifier off, a record for the next
-//! boot, and a wait for the watchdog, which resets the board.
-
-use core::arch::naked_asm;
-use core::panic::PanicInfo;
+//! What a fault leaves behind: no torque, amplifier off, a record for the next boot, and a wait for
+//! the watchdog, which resets the board.
 
 use super::wiring::{AMPLIFIER, CONVERTER};
-use crate::board::{retained, stack};
+use crate::board::retained;
 use crate::fault::Fault;
 
 /// Takes the torque away, by registers alone: it works with whatever is left of the program.
@@ -17,52 +14,11 @@ pub fn stop() {
 /// Ends the program because of a fault. The servo's interrupt comes no more, so the watchdog resets
 /// the board; where it does not run yet, the amplifier has never been on, and the board stays as it
 /// is, for a person to look at.
-fn end(fault: Fault) -> ! {
+pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
     stop();
     retained::keep_fault(fault);
     loop {
         cortex_m::asm::nop();
     }
-}
-
-/// None is reachable by input; this is for mistakes.
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    let (line, column) = info.location().map_or((0, 0), |at| (at.line(), at.column()));
-    end(Fault::Panic { line, column })
-}
-
-/// The processor's handler of faults, first part: a stack that has run over cannot serve the second
-/// part, so that gets a fresh one, and the old one's address to look at.
-#[unsafe(export_name = "HardFault")]
-#[unsafe(naked)]
-unsafe extern "C" fn hard_fault() -> ! {
-    naked_asm!(
-        "mov r0, sp",
-        "movw r1, #:lower16:_stack_start",
-        "movt r1, #:upper16:_stack_start",
-        "mov sp, r1",
-        "b {faulted}",
-        faulted = sym faulted,
-    )
-}
-
-/// Where the processor stacks the address of the instruction that faulted, behind r0 to r3, r12 and
-/// the return address; and the bytes that it stacks without the floating-point registers.
-const STACKED_PC: u32 = 24;
-const STACKED: u32 = 32;
-
-/// The handler's second part, with the stack pointer as it was.
-extern "C" fn faulted(stacked: u32) -> ! {
-    let address = if stacked.is_multiple_of(4) && stack::holds(stacked, STACKED) {
-        // SAFETY: a word of the stack, where the processor has just put it, above the frames that
-        // have taken the stack's top again.
-        unsafe { ((stacked + STACKED_PC) as *const u32).read_volatile() }
-    } else {
-        0
-    };
-    // SAFETY: the fault status may be read at any time.
-    let status = unsafe { (*cortex_m::peripheral::SCB::PTR).cfsr.read() };
-    end(Fault::HardFault { address, status })
 }

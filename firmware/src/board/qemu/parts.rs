@@ -1,0 +1,121 @@
+//! What the parts of a tick cost, measured below the servo's priority by doing them again: the
+//! servo's interrupt is measured as it is flashed, without a meter inside.
+
+use super::log::{Measured, Spread};
+use super::meter::{Scale, measure};
+use super::start::refuse;
+use crate::board::seat::FRAMES;
+use crate::boot::Program;
+use crate::cycle::{Frame, FrameQueue, FrameSink, Frames, State};
+use crate::dac::DacCode;
+use crate::encoder::RawCount;
+use crate::energy::EnergyMonitor;
+use crate::number::Number;
+use crate::servo::{OutputMode, Servo};
+use crate::torque::LimitReason;
+use crate::tuning::Tunable;
+
+/// What looks at the parts of each tick.
+pub trait Parts {
+    /// Takes a tick.
+    fn take(&mut self, tick: &Measured, scale: &Scale);
+    /// Tells the host.
+    fn log(&mut self);
+}
+
+/// A tick without parts.
+pub struct NoParts;
+
+impl Parts for NoParts {
+    fn take(&mut self, _: &Measured, _: &Scale) {}
+    fn log(&mut self) {}
+}
+
+/// The parts of a cycle: its servo from count to code, its energy monitor, and its frame.
+pub struct CycleParts<E: Tunable<N>, N: Number, M> {
+    servo: Servo<E, N>,
+    energy: EnergyMonitor,
+    last: Option<(u16, u32)>,
+    contact: Spread,
+    free: Spread,
+    energy_cost: Spread,
+    frame_cost: Spread,
+    mode: core::marker::PhantomData<M>,
+}
+
+impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
+    /// Of a servo at rest that renders the program's scene, which has been judged. Ends the program
+    /// where it cannot be built.
+    pub fn new(program: &Program<E>) -> Self {
+        let built = Servo::build(&program.scene, &program.transducers);
+        let servo = built.unwrap_or_else(|error| refuse(&error));
+        let [contact, free, energy_cost, frame_cost] = [Spread::EMPTY; 4];
+        let (energy, mode) = (EnergyMonitor::default(), core::marker::PhantomData);
+        Self { servo, energy, last: None, contact, free, energy_cost, frame_cost, mode }
+    }
+
+    /// A tick is free where neither it nor the next one gives torque. The next one's is looked at
+    /// because what a tick finds in a delayed wall is felt a tick later.
+    fn add_servo(&mut self, next: u16) {
+        let Some((code, cost)) = self.last else { return };
+        let gives_torque = |code: u16| code != DacCode::MID_SCALE.get();
+        let contact = gives_torque(code) || gives_torque(next);
+        let spread = if contact { &mut self.contact } else { &mut self.free };
+        spread.add(cost);
+    }
+
+    /// Instructions from count to code.
+    fn servo_cost(&mut self, tick: &Measured, scale: &Scale) -> u32 {
+        let (_, time) = measure(tick.count.bits(), |count| {
+            let output = self.servo.tick(RawCount::from(count));
+            u32::from(output.code.get()) | (output.limit as u32) << 16
+        });
+        scale.measured(time)
+    }
+
+    fn energy_cost(&mut self, tick: &Measured, scale: &Scale) -> u32 {
+        let code = DacCode::new(tick.code).unwrap_or(DacCode::MID_SCALE);
+        let (_, time) = measure(tick.count.bits(), |step| {
+            self.energy.observe::<M>(step.cast_signed(), code);
+            step
+        });
+        scale.measured(time)
+    }
+}
+
+/// Instructions that a frame takes into its queue.
+fn frame_cost(frames: &mut Frames<'_, FRAMES>, tick: &Measured, scale: &Scale) -> u32 {
+    let code = DacCode::new(tick.code).unwrap_or(DacCode::MID_SCALE);
+    let (limit, state) = (LimitReason::None, State::Running);
+    let (_, time) = measure(tick.count.bits(), |count| {
+        let frame =
+            Frame { tick: count, count: count.cast_signed(), code, limit, state, slack: count };
+        frames.push(frame);
+        count
+    });
+    scale.measured(time)
+}
+
+impl<E: Tunable<N>, N: Number, M: OutputMode> Parts for CycleParts<E, N, M> {
+    fn take(&mut self, tick: &Measured, scale: &Scale) {
+        // Before that the clamp opens, with the device at rest.
+        if !tick.was_running {
+            return;
+        }
+        self.add_servo(tick.code);
+        self.last = Some((tick.code, self.servo_cost(tick, scale)));
+        let energy = self.energy_cost(tick, scale);
+        self.energy_cost.add(energy);
+        let mut queue = FrameQueue::<FRAMES>::new();
+        let frame = frame_cost(&mut queue.split().0, tick, scale);
+        self.frame_cost.add(frame);
+    }
+
+    fn log(&mut self) {
+        self.add_servo(DacCode::MID_SCALE.get());
+        self.contact.log("contact");
+        self.free.log("free");
+        self.energy_cost.log("energy");
+        self.frame_cost.log("frame");
+    }
+}

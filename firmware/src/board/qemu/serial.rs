@@ -1,0 +1,125 @@
+//! The serial port to the host: USART1, which the emulator connects to a socket.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::peripheral::NVIC;
+use heapless::spsc::{Consumer, Producer, Queue};
+use static_cell::StaticCell;
+
+use super::pace;
+use crate::board::BAUD;
+use crate::board::link::Port;
+use crate::board::place::Place;
+
+/// USART1's registers, from the F405's memory map: status, data, and control register 1.
+const STATUS: *const u32 = 0x4001_1000 as *const u32;
+const DATA: *mut u32 = 0x4001_1004 as *mut u32;
+const CONTROL: *mut u32 = 0x4001_100C as *mut u32;
+
+/// Status: a byte has come.
+const RECEIVED: u32 = 1 << 5;
+/// Control: port on, an interrupt for each byte that comes, transmitter on, receiver on.
+const ON: u32 = 1 << 13 | 1 << 5 | 1 << 3 | 1 << 2;
+
+/// Bytes that may wait for the task that reads them, and one: as on the other boards. What comes
+/// while there is no room is lost, and the frame that it was part of with it.
+const WAITING: usize = 257;
+
+/// Clock counts that a byte takes on a line: ten bits of a 1 GHz clock.
+const CLOCK_PER_BYTE: u32 = 1_000_000_000 / (BAUD / 10);
+/// Bytes that the port has room for.
+const ROOM: u32 = 256;
+
+/// USART1's interrupt.
+#[derive(Clone, Copy)]
+struct Interrupt;
+
+/// Its number in the F405's vector table.
+pub(super) const INTERRUPT: u16 = 37;
+
+// SAFETY: the F405 has 82 interrupts, and 37 is one of them for as long as the program runs.
+unsafe impl cortex_m::interrupt::InterruptNumber for Interrupt {
+    fn number(self) -> u16 {
+        INTERRUPT
+    }
+}
+
+/// The interrupt's end of the queue.
+static INCOMING: Place<Producer<'static, u8>> = Place::empty();
+/// Bytes that came when there was no room.
+static LOST: AtomicU32 = AtomicU32::new(0);
+
+/// The port. Nothing here waits: what does not fit now is for the next time.
+pub struct Serial {
+    incoming: Consumer<'static, u8>,
+    /// The clock when the last byte that was written has left.
+    free: u32,
+}
+
+/// Opens the port. To be called once, after [`lower_all`](crate::board::critical::lower_all).
+pub fn open() -> Serial {
+    static QUEUE: StaticCell<Queue<u8, WAITING>> = StaticCell::new();
+    let (producer, incoming) = QUEUE.init_with(Queue::new).split();
+    // SAFETY: the interrupt that uses the place is not enabled yet.
+    unsafe { INCOMING.fill(producer) };
+    // SAFETY: nothing else uses the port, and its interrupt finds its place filled.
+    unsafe {
+        CONTROL.write_volatile(ON);
+        NVIC::unmask(Interrupt);
+    }
+    Serial { incoming, free: pace::now() }
+}
+
+/// A byte has come.
+///
+/// # Safety
+/// To be called by the handler of the port's interrupt, and nothing else.
+pub(super) unsafe fn receive() {
+    // SAFETY: the place was filled before the interrupt was enabled, and nothing else uses it.
+    let incoming = unsafe { INCOMING.get() };
+    // SAFETY: the port's registers; reading the data says that they were taken.
+    while unsafe { STATUS.read_volatile() } & RECEIVED != 0 {
+        let byte = unsafe { DATA.read_volatile() } as u8;
+        if incoming.enqueue(byte).is_err() {
+            LOST.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Bytes that were lost because nobody took those before them.
+#[cfg(feature = "log")]
+pub fn lost() -> u32 {
+    LOST.load(Ordering::Relaxed)
+}
+
+impl Port for Serial {
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
+        let mut count = 0;
+        for place in bytes {
+            let Some(byte) = self.incoming.dequeue() else { break };
+            *place = byte;
+            count += 1;
+        }
+        count
+    }
+
+    /// The emulated port takes bytes without end and in no time; a line would not.
+    fn write(&mut self, bytes: &[u8]) -> usize {
+        if bytes.is_empty() {
+            return 0;
+        }
+        let now = pace::now();
+        let busy = self.free.wrapping_sub(now).cast_signed();
+        if busy <= 0 {
+            self.free = now;
+        }
+        let waiting = busy.max(0).cast_unsigned().div_ceil(CLOCK_PER_BYTE);
+        let count = bytes.len().min(ROOM.saturating_sub(waiting) as usize);
+        for &byte in bytes.iter().take(count) {
+            // SAFETY: the port's data register, which always has room here.
+            unsafe { DATA.write_volatile(byte.into()) };
+            self.free = self.free.wrapping_add(CLOCK_PER_BYTE);
+        }
+        count
+    }
+}

@@ -1,0 +1,17 @@
+//! What a fault leaves behind on this board.
+
+use super::{lines, lockstep};
+use crate::board::retained;
+use crate::cycle::State;
+use crate::fault::Fault;
+
+/// Ends the program because of a fault: no torque, amplifier off, a record for the next boot, and
+/// a reset, for which other boards need a watchdog.
+pub fn end(fault: Fault) -> ! {
+    cortex_m::interrupt::disable();
+    lines::stop();
+    retained::keep_fault(fault);
+    // SAFETY: a host that has asked has done so through the pipes, so they are open.
+    unsafe { lockstep::show(State::Faulted) };
+    cortex_m::peripheral::SCB::sys_reset()
+}

@@ -1,0 +1,46 @@
+//! A tick with the world around it: the host moves the encoder before, and sees the board's lines
+//! after.
+
+use super::{ended, lockstep};
+#[cfg(feature = "log")]
+use super::{lines, log, meter};
+use crate::cycle::State;
+
+/// One interrupt. What `tick` does is what other boards have as their timer's interrupt, from its
+/// first instruction to its last, and it is what is measured as such; `state` says what the servo
+/// is doing, and `lose` is told of periods that went by without a tick.
+///
+/// # Safety
+/// The pipes must be open.
+#[inline(always)]
+pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl FnOnce(u32)) {
+    #[cfg(feature = "log")]
+    let begin = meter::now();
+    // SAFETY: the pipes are open, as the caller promises.
+    match unsafe { lockstep::receive() } {
+        Some(0) => {}
+        Some(missed) => lose(missed),
+        None => return ended(),
+    }
+    #[cfg(feature = "log")]
+    let (before, start) = (state(), meter::now());
+    #[cfg(feature = "log")]
+    let time = meter::interrupt(tick);
+    #[cfg(not(feature = "log"))]
+    tick();
+    #[cfg(feature = "log")]
+    let end = meter::now();
+    // SAFETY: as above.
+    unsafe { lockstep::show(state()) };
+    #[cfg(feature = "log")]
+    // SAFETY: this is the interrupt that the queue is for, enabled after the log was opened.
+    unsafe {
+        log::push(log::Measured {
+            count: lines::count(),
+            code: lines::outputs().0,
+            was_running: before == State::Running,
+            tick: time,
+            lockstep: meter::now().wrapping_sub(end).wrapping_add(start.wrapping_sub(begin)),
+        })
+    };
+}
