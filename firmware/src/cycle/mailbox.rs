@@ -78,7 +78,8 @@ impl<R> Requests<'_, R> {
         self.ask(HEARD);
     }
 
-    /// Gives a set to be swapped in as a whole; [`Notice::Applied`] answers.
+    /// Gives a set to be swapped in as a whole; [`Notice::Applied`] answers. It has to be of the
+    /// period that the board's timer has, which [`tuning`](crate::tuning) leaves as it is.
     ///
     /// # Errors
     /// The set itself, where the one before it is still waiting.

@@ -41,6 +41,12 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
         self.limiter.meet(self.torque);
     }
 
+    /// Puts a torque in the place of the one that is held: no input makes one that is no number.
+    #[cfg(test)]
+    pub(crate) fn poison(&mut self, torque: N) {
+        self.torque = torque;
+    }
+
     /// Goes on from another servo's position.
     pub(crate) fn follow(&mut self, other: &Self) {
         self.position = other.position;

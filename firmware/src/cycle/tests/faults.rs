@@ -115,6 +115,16 @@ fn an_encoder_that_goes_on_jumping_keeps_the_servo_from_being_armed() {
 }
 
 #[test]
+fn a_torque_that_is_not_a_number() {
+    let mut bench = running(&SPRING, 500);
+    bench.cycle.rendering.servo_mut().poison(f32::NAN);
+    let frame = bench.tick(500);
+    assert_eq!((frame.code, frame.limit), (DacCode::MID_SCALE, LimitReason::NotANumber));
+    assert_stopped(&mut bench, Fault::NotANumber);
+    assert_armed_again(&mut bench);
+}
+
+#[test]
 fn a_converter_that_had_no_code() {
     let mut bench = running(&SPRING, 500);
     bench.board.underrun = true;

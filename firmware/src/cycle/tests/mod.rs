@@ -3,6 +3,7 @@
 mod board;
 mod faults;
 mod frames;
+mod modes;
 mod swap;
 
 use board::{Bench, Board, Event, PERIOD};
