@@ -115,7 +115,10 @@ impl Position {
             cold_path();
             self.laps = self.laps.wrapping_add(if step < 0 { -1 } else { 1 });
         }
-        if self.laps == 0 { Reading { count, saturated: false } } else { beyond(self.laps) }
+        if self.laps == 0 {
+            return Reading { count, saturated: false };
+        }
+        Reading { count: beyond(self.laps), saturated: true }
     }
 
     /// The low 32 bits of the position.
@@ -130,12 +133,12 @@ impl Position {
     }
 }
 
-/// The reading of a position that 32 bits do not hold. Out of line: decided by a choice instead of
+/// The nearest to a position that 32 bits do not hold. Out of line: decided by a choice instead of
 /// a jump, it would cost every tick five instructions.
 #[cold]
 #[inline(never)]
-const fn beyond(laps: i32) -> Reading {
-    Reading { count: if laps < 0 { i32::MIN } else { i32::MAX }, saturated: true }
+const fn beyond(laps: i32) -> i32 {
+    if laps < 0 { i32::MIN } else { i32::MAX }
 }
 
 #[cfg(test)]

@@ -118,25 +118,27 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
-        let (passed, underrun) = (hardware.passed(), hardware.underrun());
+        let (passed, underrun, raw) = (hardware.passed(), hardware.underrun(), hardware.count());
+        let tick = self.tick.wrapping_add(passed);
+        self.tick = tick;
+        // One jump each, none of them taken in a usual tick: conditions that are put together first
+        // cost three or four instructions each. And before there is a torque, or after there is a
+        // code: what a call must not touch costs an instruction or two to be kept from it.
+        if passed != 1 {
+            self.begin_late(passed, raw, hardware, inbox);
+        }
         let before = self.rendering.servo().low_count();
-        let output = self.rendering.tick(hardware.count(), &self.energy);
+        let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
-        self.tick = self.tick.wrapping_add(passed);
-        // One jump each, none of them taken in a usual tick: conditions that are put together first
-        // cost three or four instructions each.
-        if passed != 1 {
-            self.begin_late(passed, step, hardware, inbox);
-        }
         if self.rendering.pace().is_too_far(step) {
             self.jump(passed, step, hardware, inbox);
         }
         if output.limit == LimitReason::NotANumber {
-            self.fail(Fault::NotANumber, hardware, inbox);
+            self.not_a_number(hardware, inbox);
         }
         if underrun {
-            self.fail(Fault::Underrun, hardware, inbox);
+            self.underrun(hardware, inbox);
         }
         let mut attend = inbox.asked();
         let mut code = output.code;
@@ -146,7 +148,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         hardware.write(code);
         self.energy.observe::<M>(step, code);
-        let link_due = self.tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
+        let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
         if attend != 0 || link_due {
             self.attend(hardware, inbox, frames.dropped());
         }
@@ -156,14 +158,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if elapsed > self.longest {
             slack = self.long(elapsed, hardware, inbox);
         }
-        frames.push(Frame {
-            tick: self.tick,
-            count,
-            code,
-            limit: output.limit,
-            state: self.state,
-            slack,
-        });
+        frames.push(Frame { tick, count, code, limit: output.limit, state: self.state, slack });
     }
 
     /// The rendering.

@@ -1,6 +1,7 @@
 //! What stops the servo, found in a tick. Kept out of line, like all that is rare.
 
 use super::*;
+use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
 
@@ -46,17 +47,17 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if self.state.is_armed() { code } else { DacCode::MID_SCALE }
     }
 
-    /// A tick that is not the next one after the last, and the encoder's step since then.
+    /// A tick that is not the next one after the last, and the encoder's counter in it.
     #[cold]
     #[inline(never)]
     pub(super) fn begin_late(
         &mut self,
         passed: u32,
-        step: i32,
+        raw: RawCount,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
     ) {
-        self.energy.missed::<M>(step);
+        self.energy.missed::<M>(self.rendering.servo().step_to(raw));
         let missed = passed.saturating_sub(1);
         self.missed = self.missed.wrapping_add(missed);
         let missed = self.behind.begin(self.tick, missed);
@@ -78,6 +79,28 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if counts > largest {
             self.fail(Fault::EncoderJump { counts, largest }, hardware, inbox);
         }
+    }
+
+    /// A torque that was none.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn not_a_number(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) {
+        self.fail(Fault::NotANumber, hardware, inbox);
+    }
+
+    /// A converter that wanted a code before there was one.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn underrun(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) {
+        self.fail(Fault::Underrun, hardware, inbox);
     }
 
     /// A tick that took longer than any before; gives its slack. Without any the code was late
@@ -140,9 +163,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// Notes trouble; where there is torque, it stops the servo.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn fail(
+    fn fail(
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,

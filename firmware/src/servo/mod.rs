@@ -187,6 +187,13 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
         self.position.low()
     }
 
+    /// Counts from the position to that of the next reading.
+    pub(crate) fn step_to(&self, raw: RawCount) -> i32 {
+        let mut next = self.position;
+        next.update(raw);
+        next.low().wrapping_sub(self.position.low())
+    }
+
     /// Angle of the device in rad.
     pub fn angle_rad(&self) -> f64 {
         self.position.count() as f64 * self.radians_per_count
