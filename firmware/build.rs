@@ -19,10 +19,16 @@ fn main() {
     println!("cargo:rerun-if-changed={}", map.display());
     // Arguments of this package's own programs, so that a program that depends on the library
     // finds its own map and not this one.
-    println!("cargo:rustc-link-arg-bins=-L{}", root.display());
-    println!("cargo:rustc-link-arg-bins=--nmagic");
-    println!("cargo:rustc-link-arg-bins=-Tlink.x");
-    if ["CARGO_FEATURE_LOG", "CARGO_FEATURE_STM32"].iter().any(|f| env::var_os(f).is_some()) {
-        println!("cargo:rustc-link-arg-bins=-Tdefmt.x");
+    let has = |feature| env::var_os(feature).is_some();
+    let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into(), "-Tlink.x".into()];
+    if has("CARGO_FEATURE_LOG") || has("CARGO_FEATURE_STM32") {
+        arguments.push("-Tdefmt.x".into());
+    }
+    for argument in &arguments {
+        println!("cargo:rustc-link-arg-bins={argument}");
+        println!("cargo:rustc-link-arg-tests={argument}");
+    }
+    if has("CARGO_FEATURE_ON_TARGET") {
+        println!("cargo:rustc-link-arg-tests=-Tembedded-test.x");
     }
 }

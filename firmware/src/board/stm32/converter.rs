@@ -31,6 +31,11 @@ impl Converter {
         });
     }
 
+    /// The code that the converter puts out now.
+    pub fn output(self) -> u16 {
+        self.registers.dor(self.channel).read().dor()
+    }
+
     /// Gives no torque at once, whatever the timer does.
     pub fn stop(self) {
         self.registers.cr().modify(|w| w.set_ten(self.channel, false));

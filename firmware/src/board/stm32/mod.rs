@@ -9,7 +9,7 @@ mod fast;
 pub mod line;
 pub mod pace;
 pub mod quadrature;
-mod registers;
+pub mod registers;
 pub mod serial;
 mod start;
 pub(super) mod stop;
@@ -24,7 +24,7 @@ pub use super::stm32f405 as wiring;
 
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
-pub use start::{HostLink, LinkPlace, ServoPlace, Task, run};
+pub use start::{HostLink, LinkPlace, ServoPlace, Task, begin, connect, period, run, width};
 pub use sweep::{SweepPlace, measure};
 
 /// When a torque reaches the motor.

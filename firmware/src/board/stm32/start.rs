@@ -62,7 +62,7 @@ where
     let Ends { requests, inbox, frames, told } = ends(meeting);
     let Booted { cycle, margin, left } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
-    start(&mut hardware);
+    begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { place.fill(Seat { cycle, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
@@ -92,13 +92,13 @@ impl<E: Tunable<N> + Renders<Mode>, N: Number> HostLink<E, N> {
 }
 
 /// A period, or an end.
-pub(super) fn period(seconds: f64) -> Period {
+pub fn period(seconds: f64) -> Period {
     Period::of(seconds).unwrap_or_else(|error| refuse(&error))
 }
 
 /// Latches the converter where that is its mode, and begins to pace. The servo's interrupt is to be
 /// enabled within a period.
-pub(super) fn start(hardware: &mut Registers) {
+pub fn begin(hardware: &mut Registers) {
     if Mode::TIMING == OutputTiming::Latched {
         CONVERTER.latch();
     }
@@ -116,7 +116,7 @@ fn greet(name: &str, left: Option<Retained>) {
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
-pub(super) fn connect() -> Connected {
+pub fn connect() -> Connected {
     let chip = embassy_stm32::init(wiring::clocks());
     #[cfg(feature = "fast-memory")]
     super::fast::load();
@@ -130,7 +130,7 @@ pub(super) fn connect() -> Connected {
 }
 
 /// The width of a counter.
-pub(super) const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
+pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
     C::WIDTH
 }
 

@@ -14,7 +14,7 @@ use static_cell::StaticCell;
 
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{connect, period, start, width};
+use super::start::{begin, connect, period, width};
 use super::wiring::ENCODER;
 use crate::board::link::Port;
 use crate::board::place::Place;
@@ -93,7 +93,7 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPl
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
     hardware.guard();
-    start(&mut hardware);
+    begin(&mut hardware);
     let player = Player {
         beginning: exciter.clone(),
         exciter,

@@ -1,0 +1,145 @@
+//! The servo's cycles on a real board, over a minute, with the amplifier off.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::peripheral::{DWT, NVIC};
+use firmware::board::place::Place;
+use firmware::board::seat::{Ends, Meeting, Seat, ends};
+use firmware::board::stm32::registers::Registers;
+use firmware::board::stm32::wiring::AMPLIFIER;
+use firmware::board::stm32::{Mode, begin, connect, period};
+use firmware::boot::Startup;
+use firmware::certificate::Timed;
+use firmware::cycle::{Cycle, Hardware, Options};
+use firmware::dac::DacCode;
+use firmware::encoder::RawCount;
+use firmware::scene::Scene;
+use firmware::servo::{Rendering, RenderingOptions};
+
+use super::{Environment, Failure, SCENE, TRANSDUCERS};
+
+/// The scene, as late as the board's converter.
+const TIMED: Timed<Scene<Environment>, Mode> = SCENE.certified().timed();
+
+/// The board, but for what would move something.
+struct Muted(Registers);
+
+impl Hardware for Muted {
+    #[inline(always)]
+    fn count(&mut self) -> RawCount {
+        self.0.count()
+    }
+
+    #[inline(always)]
+    fn write(&mut self, code: DacCode) {
+        self.0.write(code);
+    }
+
+    fn amplifier(&mut self, _: bool) {
+        AMPLIFIER.set(false);
+    }
+
+    #[inline(always)]
+    fn passed(&mut self) -> u32 {
+        self.0.passed()
+    }
+
+    #[inline(always)]
+    fn elapsed(&mut self) -> u32 {
+        self.0.elapsed()
+    }
+
+    #[inline(always)]
+    fn feed(&mut self) {
+        self.0.feed();
+    }
+}
+
+static PLACE: Place<Seat<Muted, Environment, f32, Mode>> = Place::empty();
+static MEETING: Meeting<Environment, f32, Mode> = static_cell::StaticCell::new();
+
+/// What the interrupt has measured, in cycles.
+struct Measured {
+    ticks: AtomicU32,
+    sum: AtomicU32,
+    least: AtomicU32,
+    most: AtomicU32,
+}
+
+static MEASURED: Measured = Measured {
+    ticks: AtomicU32::new(0),
+    sum: AtomicU32::new(0),
+    least: AtomicU32::new(u32::MAX),
+    most: AtomicU32::new(0),
+};
+
+impl Measured {
+    /// Adds a tick. One interrupt writes, so loads and stores do for atomic additions.
+    #[inline(always)]
+    fn add(&self, cycles: u32) {
+        let of = |number: &AtomicU32| number.load(Ordering::Relaxed);
+        self.least.store(of(&self.least).min(cycles), Ordering::Relaxed);
+        self.most.store(of(&self.most).max(cycles), Ordering::Relaxed);
+        self.sum.store(of(&self.sum).wrapping_add(cycles), Ordering::Relaxed);
+        self.ticks.store(of(&self.ticks).wrapping_add(1), Ordering::Relaxed);
+    }
+
+    fn begin_again(&self) {
+        self.least.store(u32::MAX, Ordering::Relaxed);
+        for number in [&self.most, &self.sum, &self.ticks] {
+            number.store(0, Ordering::Relaxed);
+        }
+    }
+}
+
+/// A tick, measured from the handler's first instruction to its last but for the measurement's own.
+#[unsafe(no_mangle)]
+#[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
+unsafe extern "C" fn TIM6_DAC() {
+    let start = DWT::cycle_count();
+    // SAFETY: this is the handler of the interrupt that is enabled once the place is filled, and no
+    // interrupt interrupts itself.
+    unsafe { PLACE.get() }.tick();
+    MEASURED.add(DWT::cycle_count().wrapping_sub(start));
+}
+
+/// The servo's cycles over a minute: minimum, mean and worst.
+pub fn measure() -> Result<(), Failure> {
+    /// Ticks until the clamp is open: until then a tick takes longer than one that renders.
+    const OPENING: u32 = 200;
+    /// Ticks of a minute. Their sum fits 32 bits up to 70 000 cycles a tick.
+    const MINUTE: u32 = 60_000;
+    let _ = connect();
+    // SAFETY: `connect` is through with the core's peripherals, and nobody else uses them.
+    let mut core = unsafe { cortex_m::Peripherals::steal() };
+    core.DCB.enable_trace();
+    core.DWT.enable_cycle_counter();
+    let hardware = Registers::new(period(SCENE.timing.period));
+    let Ends { requests, inbox, frames, mut told } = ends(&MEETING);
+    let rendering = Rendering::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
+    let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;
+    let cycle = Cycle::new(rendering, &Options::DEFAULT, hardware.period(), None);
+    requests.arm();
+    let mut hardware = Muted(hardware);
+    hardware.0.zero();
+    begin(&mut hardware.0);
+    // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
+    unsafe {
+        PLACE.fill(Seat { cycle, hardware, inbox, frames });
+        NVIC::unmask(embassy_stm32::interrupt::TIM6_DAC);
+    }
+    defmt::info!("move the handle, if you like, for a minute: the amplifier is off");
+    for ticks in [OPENING, MINUTE] {
+        MEASURED.begin_again();
+        while MEASURED.ticks.load(Ordering::Relaxed) < ticks {
+            while told.take().is_some() {}
+        }
+    }
+    let of = |number: &AtomicU32| number.load(Ordering::Relaxed);
+    let mean = of(&MEASURED.sum) / of(&MEASURED.ticks).max(1);
+    let (least, most) = (of(&MEASURED.least), of(&MEASURED.most));
+    defmt::info!("| servo interrupt | minimum | mean | worst |");
+    defmt::info!("|---|---|---|---|");
+    defmt::info!("| cycles | {=u32} | {=u32} | {=u32} |", least, mean, most);
+    Ok(())
+}

@@ -1,0 +1,203 @@
+//! Tests on a real board, through a debug probe; `boards.md` says how. Each begins with a reset.
+//!
+//! The numbers below are those of the builder's device: adapt them first.
+#![no_std]
+#![no_main]
+
+mod cycles;
+
+use firmware::board::stm32::quadrature::Counter;
+use firmware::board::stm32::registers::Registers;
+use firmware::board::stm32::wiring::{CHIP, CONVERTER, ENCODER};
+use firmware::board::stm32::{begin, connect, period, width};
+use firmware::boot::Startup;
+use firmware::cycle::Hardware;
+use firmware::dac::DacCode;
+use firmware::encoder::Position;
+use firmware::environment::{DamperWall, OneSided};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+/// The builder's encoder and motor.
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: width(ENCODER),
+    full_scale_torque: 2.0,
+    largest_speed: 100.0,
+};
+
+/// What the servo of these tests renders: the wall of the program `damper_wall`.
+type Environment = OneSided<DamperWall<1>>;
+
+const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    torque_limit: Some(1.0),
+};
+
+/// Why a test fails.
+type Failure = &'static str;
+
+/// The chip that these tests are for, where probe-rs looks for it.
+#[used]
+#[unsafe(no_mangle)]
+#[unsafe(link_section = ".probe-rs.chip")]
+static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
+
+/// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
+fn paced() -> Registers {
+    let _ = connect();
+    let mut hardware = Registers::new(period(SCENE.timing.period));
+    hardware.zero();
+    begin(&mut hardware);
+    hardware
+}
+
+/// Waits until the next period has begun.
+fn next(hardware: &mut Registers) {
+    let counts = hardware.period();
+    while hardware.elapsed() < counts {}
+    hardware.passed();
+}
+
+/// Waits for this many periods, which are milliseconds.
+fn wait(hardware: &mut Registers, periods: u32) {
+    for _ in 0..periods {
+        next(hardware);
+    }
+}
+
+/// Follows the encoder.
+struct Follower(Position);
+
+impl Follower {
+    fn new() -> Self {
+        Self(Position::new(TRANSDUCERS.counter))
+    }
+
+    fn count(&mut self) -> i64 {
+        self.0.update(ENCODER.count());
+        self.0.count()
+    }
+}
+
+/// The handle is turned by hand, once around, the way that is to be positive.
+fn turn() -> Result<(), Failure> {
+    let (mut hardware, mut encoder) = (paced(), Follower::new());
+    let wanted = TRANSDUCERS.counts_per_turn as i64;
+    defmt::info!("turn the handle once around, the positive way, within 20 s");
+    for _ in 0..20_000 {
+        next(&mut hardware);
+        encoder.count();
+    }
+    let count = encoder.count();
+    defmt::info!("{} counts, and {} were expected", count, wanted);
+    match count {
+        0 => Err("the encoder has not moved: is it supplied and connected?"),
+        _ if count < 0 => Err("the encoder counts down: swap its channels A and B"),
+        // As exactly as a hand can turn to where it was.
+        _ if (count - wanted).abs() * 50 > wanted => Err("these are not the counts of a turn"),
+        _ => Ok(()),
+    }
+}
+
+/// A code appears at the update after the one that it was written behind, and not before.
+#[cfg(not(feature = "immediate"))]
+fn latch() -> Result<(), Failure> {
+    let mut hardware = paced();
+    for code in [1, 1024, 2047, 2048, 3072, 4095, 2048] {
+        next(&mut hardware);
+        let before = CONVERTER.output();
+        hardware.write(DacCode::new(code).map_err(|_| "no code")?);
+        cortex_m::asm::delay(1000);
+        if CONVERTER.output() != before {
+            return Err("a code has appeared within its tick: the converter is not latched");
+        }
+        next(&mut hardware);
+        cortex_m::asm::delay(1000);
+        if CONVERTER.output() != code {
+            return Err("a code has not appeared at the next update: is the trigger the timer's?");
+        }
+    }
+    Ok(())
+}
+
+/// Levels to be measured at the torque pin.
+fn levels() -> Result<(), Failure> {
+    let mut hardware = paced();
+    for (code, millivolts) in [(2048, 1650), (1, 1), (1024, 825), (3072, 2475), (4095, 3299)] {
+        defmt::info!("for 4 s: code {}, about {} mV with a supply of 3.3 V", code, millivolts);
+        hardware.write(DacCode::new(code).map_err(|_| "no code")?);
+        wait(&mut hardware, 4000);
+    }
+    Ok(())
+}
+
+/// A little torque one way, for at most a tenth of a second, has to turn the handle that way; and
+/// then the other. A spring can only push back where that holds.
+fn polarity() -> Result<(), Failure> {
+    /// A fiftieth of full scale.
+    const LITTLE: u16 = DacCode::CODES_TO_FULL_SCALE / 50;
+    let (mut hardware, mut encoder) = (paced(), Follower::new());
+    let enough = TRANSDUCERS.counts_per_turn as i64 / 500;
+    for (sign, code) in [(1, 2048 + LITTLE), (-1, 2048 - LITTLE)] {
+        let code = DacCode::new(code).map_err(|_| "no code")?;
+        let start = encoder.count();
+        hardware.write(code);
+        hardware.amplifier(true);
+        let mut moved = 0;
+        for _ in 0..100 {
+            next(&mut hardware);
+            moved = (encoder.count() - start) * sign;
+            if moved.abs() > enough {
+                break;
+            }
+        }
+        hardware.write(DacCode::MID_SCALE);
+        hardware.amplifier(false);
+        defmt::info!("moved by {} counts the way of the torque", moved);
+        if moved < -enough {
+            return Err("the motor turns against its torque: swap its leads");
+        }
+        if moved <= enough {
+            return Err("the motor has hardly moved: is the amplifier supplied and enabled?");
+        }
+        wait(&mut hardware, 500);
+    }
+    Ok(())
+}
+
+#[embedded_test::tests]
+mod tests {
+    use super::Failure;
+
+    #[test]
+    #[timeout(30)]
+    fn a_turn_counts_up_by_the_counts_of_a_turn() -> Result<(), Failure> {
+        super::turn()
+    }
+
+    #[test]
+    #[cfg(not(feature = "immediate"))]
+    fn a_code_appears_at_the_next_update_and_not_before() -> Result<(), Failure> {
+        super::latch()
+    }
+
+    #[test]
+    fn levels_to_be_measured_at_the_torque_pin() -> Result<(), Failure> {
+        super::levels()
+    }
+
+    #[test]
+    fn torque_turns_the_handle_its_own_way() -> Result<(), Failure> {
+        super::polarity()
+    }
+
+    #[test]
+    #[timeout(90)]
+    fn cycles_of_the_servo_over_a_minute() -> Result<(), Failure> {
+        super::cycles::measure()
+    }
+}
