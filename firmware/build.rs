@@ -5,6 +5,8 @@ use std::path::Path;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
+    // The tests on a board ask for it, which is no mistake.
+    println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     if env::var_os("CARGO_CFG_TARGET_OS").is_none_or(|os| os != "none") {
         return;
     }

@@ -34,10 +34,28 @@ fn check(toolchain: &Toolchain, board: Board, name: &str) {
     assert_eq!(probe::chip(&elf).unwrap(), chip(board));
 }
 
+/// What people of embedded systems type, for the board that most of them have.
+#[test]
+fn the_plain_command_builds_a_program_that_fits() {
+    let toolchain = toolchain();
+    let built = toolchain.try_release(Board::NucleoG474re, "damper_wall");
+    built.unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// They run by hand only, but shall not rot.
+#[test]
+fn the_tests_on_a_board_build() {
+    let built = toolchain().try_tests(Board::NucleoG474re);
+    built.unwrap_or_else(|error| panic!("{error}"));
+}
+
+fn toolchain() -> Toolchain {
+    prepare(Tools::Compiler, |step| eprintln!("{step}")).unwrap_or_else(|error| panic!("{error}"))
+}
+
 #[test]
 fn every_program_builds_for_every_board_and_fits() {
-    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
-    let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
+    let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
     assert_eq!(programs, ["damper_wall", "delayed_spring", "free_mode", "identify"]);
     for board in Board::ALL {

@@ -182,6 +182,26 @@ impl Toolchain {
         Program::at(self.scene(name, format, board.name(), &format!("-{board}"))?)
     }
 
+    /// Builds a program for a board as somebody does who types `cargo build --release`, and keeps
+    /// nothing of it: whether it does and fits.
+    ///
+    /// # Errors
+    /// Where it does not.
+    pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
+        let build = ["--release", "--features", board.name(), "--bin", name, "--target", TARGET];
+        self.compile(name, &build)
+    }
+
+    /// Builds the tests that run on a board, and keeps nothing of them: whether they build and fit.
+    ///
+    /// # Errors
+    /// Where they do not.
+    pub fn try_tests(&self, board: Board) -> Result<(), BuildError> {
+        let (name, features) = ("on_target", format!("{board},on-target"));
+        let build = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
+        self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
+    }
+
     /// What a board's program may take of its memory.
     ///
     /// # Errors
@@ -226,14 +246,18 @@ impl Toolchain {
         // Cargo puts each build of a program, whatever its features, in the same place; the lock
         // keeps it there until it is copied.
         let _alone = self.workspace.lock("build")?;
-        let output = self.cargo().args(job.arguments()).output().map_err(BuildError::NoCargo)?;
-        if !output.status.success() {
-            let said = String::from_utf8_lossy(&output.stderr);
-            let output = last_lines(&said, 60);
-            return Err(BuildError::Compile { program: job.name.into(), output });
-        }
+        self.compile(job.name, &job.arguments())?;
         let folder = self.target_folder().join(TARGET).join("flash");
         self.workspace.keep(&folder.join(job.name), &job.file)
+    }
+
+    fn compile(&self, program: &str, arguments: &[&str]) -> Result<(), BuildError> {
+        let output = self.cargo().args(arguments).output().map_err(BuildError::NoCargo)?;
+        if output.status.success() {
+            return Ok(());
+        }
+        let output = last_lines(&String::from_utf8_lossy(&output.stderr), 60);
+        Err(BuildError::Compile { program: program.into(), output })
     }
 
     /// Each compiler has a folder of its own: in a common one each would rebuild what the other

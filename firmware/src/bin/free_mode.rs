@@ -8,13 +8,9 @@ use firmware::environment::FreeMode;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
 
-/// Samples from count to torque: none in the paper's example, which the emulated board renders in
-/// lockstep with its device, and the one that a real board's converter takes. A canceller needs as
-/// much of the device's damping either way.
-const DELAY: usize = if cfg!(feature = "stm32") { 1 } else { 0 };
-
-/// What the hand feels.
-pub type Environment = FreeMode<DELAY>;
+/// What the hand feels: the paper's canceller, as late as the board's torque. It needs as much of the
+/// device's damping with and without a sample of delay.
+pub type Environment = FreeMode<{ firmware::board::LATE }>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
