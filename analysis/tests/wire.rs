@@ -359,3 +359,25 @@ fn a_servo_keeps_time_whatever_comes_over_the_wire() {
     let seen: Vec<u16> = rig.held.0.lock().unwrap().seen.keys().copied().collect();
     assert_eq!(seen, [wanted]);
 }
+
+#[test]
+fn a_twin_is_a_board_to_try_things_on() {
+    let folder = TempDir::new().unwrap();
+    let port = format!("unix:{}", folder.path().join("board").display());
+    let mut twin = program(&["twin", "free_mode", "--port", &port, "--for", "3"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    assert_eq!(said.next().unwrap().unwrap(), format!("free_mode listens on {port}"));
+    let running = answer(&haptic(&["tune", "--port", &port, "--json", "residual=0.004"]));
+    assert_eq!((&running["refused"], &running["program"]), (&Value::Null, &"free_mode".into()));
+    assert_eq!(running["parameters"]["residual"], 0.004);
+    // Somebody else is there already.
+    let second = haptic(&["twin", "free_mode", "--port", &port]);
+    assert_eq!(second.status.code(), Some(2), "{second:?}");
+    assert!(text(&second.stderr).contains("cannot listen on unix:"), "{second:?}");
+    assert_eq!(twin.wait().unwrap().code(), Some(0));
+    let unknown = haptic(&["twin", "freemode", "--port", &port]);
+    assert!(text(&unknown.stderr).contains("the programs are delayed_spring"), "{unknown:?}");
+}
