@@ -65,11 +65,15 @@ impl Waiting {
 /// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
 /// proved on the way.
 ///
+/// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits where a root
+/// comes near, being squares of what is small there; who has the square's root knows better, and
+/// what is known at the ends is known of every box beside them.
+///
 /// The enclosure is as tight as it gets around `border`, and no tighter than it takes where the
 /// minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit
 /// it is what tells on which side of the limit the minimum is.
 #[inline(never)]
-pub const fn minimum(p: &Series, r: &Series, border: Interval) -> Minimum {
+pub const fn minimum(p: &Series, r: &Series, ends: [Interval; 2], border: Interval) -> Minimum {
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
     let mut search = Search {
         degree,
@@ -82,7 +86,9 @@ pub const fn minimum(p: &Series, r: &Series, border: Interval) -> Minimum {
         waiting: [Waiting::NONE; MAX_WAITING],
         waiting_len: 0,
     };
-    let root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
+    root.r[0] = root.r[0].and(ends[0]);
+    root.r[degree] = root.r[degree].and(ends[1]);
     let left = upper_bound(root.p[0], root.r[0]);
     let right = upper_bound(root.p[degree], root.r[degree]);
     search.run(root);

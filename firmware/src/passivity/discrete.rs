@@ -91,7 +91,10 @@ const fn real_part(g: &Reduced, border: Interval) -> Result<RealPart, Obstacle> 
     let r = Series::squared_magnitude(&g.denominator);
     // Where the scale's sign turns the sides around, the enclosure is tight everywhere.
     let border = if g.scale.is_positive() { border } else { Interval::ENTIRE };
-    let Minimum { value, at } = minimum(&p, &r, border.double().div(g.scale));
+    let left = g.denominator.at_unit_root(UnitRoot::Minus);
+    let right = g.denominator.at_unit_root(UnitRoot::Plus);
+    let ends = [left.mul(left), right.mul(right)];
+    let Minimum { value, at } = minimum(&p, &r, ends, border.double().div(g.scale));
     let minimum = value.mul(g.scale).half();
     if minimum.is_finite() {
         Ok(RealPart { minimum, cos_theta: at })
@@ -234,6 +237,21 @@ mod tests {
         assert!(minimum(&[1.0, -1.0], &[1.0, 1.0]).unwrap().is_zero());
         // Both at once: (z^2 + 1) / (z^2 - 1), residues 1 at 1 and 1 at -1.
         assert!(minimum(&[1.0, 0.0, 1.0], &[1.0, 0.0, -1.0]).unwrap().is_zero());
+    }
+
+    /// `abs(z + a)^2` at `z = -1` is `(1 - a)^2`, which as a sum of squares is lost at 1e-8.
+    #[test]
+    fn poles_may_be_as_near_the_circle_as_doubles_tell() {
+        for nearness in [1e-6, 1e-9, 1e-12, 1e-15] {
+            for sign in [1.0, -1.0] {
+                let a = 1.0 - nearness;
+                // Its real part is least on the other side of the circle.
+                let found = minimum(&[1.0, 0.0], &[1.0, sign * a]);
+                let found = found.unwrap_or_else(|why| panic!("{nearness} {sign}: {why:?}"));
+                let wanted = 1.0 / (1.0 + a);
+                assert!((found.lo() - wanted).abs() + (found.hi() - wanted).abs() < 1e-14);
+            }
+        }
     }
 
     #[test]

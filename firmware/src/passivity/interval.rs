@@ -192,6 +192,11 @@ impl Interval {
         Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// What both intervals of the same number leave of it.
+    pub const fn and(self, other: Self) -> Self {
+        Self::new(self.lo.max(other.lo), self.hi.min(other.hi))
+    }
+
     /// The smaller of two numbers, one from each interval.
     pub const fn min(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi) }
