@@ -43,7 +43,7 @@ pub fn is_recorded(path: &Path) -> bool {
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
 pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RecordedError> {
     let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Trace { title, ..read(Table::open(path)?, period)? })
+    Ok(Trace { title, ..read(Table::open(path)?, period)? }.as_far_as_drawable())
 }
 
 fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RecordedError> {

@@ -28,7 +28,7 @@ pub enum Figure {
     /// The picture.
     Drawn(Picture),
     /// Why there is none.
-    Missing(&'static str),
+    Missing(String),
 }
 
 /// Black on white with the reader's own fonts; nothing is fetched. Wide things shrink or wrap, so

@@ -140,5 +140,6 @@ pub fn trace(title: String, period: f64, run: &Run, script: &Script) -> Trace {
         limit: run.ticks.iter().map(|tick| Served::Ran(tick.limit)).collect(),
         release: Some(script.release).filter(|&release| release < time(run.ticks.len())),
         face: None,
+        lost: None,
     }
 }

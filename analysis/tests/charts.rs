@@ -116,6 +116,47 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
     assert!(svg(folder.path(), &["trace", "simulated.csv"]).contains("tick missed"));
 }
 
+/// Numbers that a file may have and no machine has: a picture, or a sentence that names what is out
+/// of range; never a computation without end.
+#[test]
+fn extreme_numbers_come_to_an_end() {
+    let folder = folder();
+    let motion = "[simulation]\nsamples = 50\nvelocity = 1.0\n";
+    for (from, to) in [
+        ("period = 0.001", "period = 5e-324"),
+        ("period = 0.001", "period = 1e-300"),
+        ("period = 0.001", "period = 1e300"),
+        ("inertia = 2.2e-5", "inertia = 5e-324"),
+        ("inertia = 2.2e-5", "inertia = 1e300"),
+        ("damping = 0.022", "damping = 1e300"),
+        ("damping = 0.022", "damping = 1e-300"),
+        ("damping = 0.022", "damping = 0.0"),
+        ("stiffness = 44.0", "stiffness = 1e300"),
+        ("stiffness = 22.0", "stiffness = 1e300"),
+    ] {
+        let text = format!("{WALL}{motion}").replacen(from, to, 1);
+        std::fs::write(folder.path().join("x.toml"), text).unwrap();
+        for arguments in [
+            &["map", "x.toml", "--points", "100", "-o", "x.svg"][..],
+            &["nyquist", "x.toml", "-o", "x.svg"],
+            &["limits", "x.toml", "-o", "x.svg"],
+            &["trace", "x.toml", "-o", "x.svg"],
+        ] {
+            let run = chart(folder.path(), arguments);
+            let said = String::from_utf8(run.stderr).unwrap();
+            let drawn = run.status.code() == Some(0);
+            assert!(drawn != said.starts_with("error: "), "{to} {arguments:?}: {said}");
+            assert!(!said.contains("panicked") && said.len() < 500, "{to} {arguments:?}: {said}");
+        }
+        let mut report = program(&["report", "x.toml", "-o", "x.html"]);
+        let report = report.current_dir(folder.path()).output().unwrap();
+        let said = String::from_utf8(report.stderr).unwrap();
+        assert!(report.status.code().is_some() && !said.contains("panicked"), "{to}: {said}");
+    }
+    let map = chart(folder.path(), &["map", "wall.toml", "--damping", "0:1e308", "-o", "x.svg"]);
+    assert!(String::from_utf8(map.stderr).unwrap().contains("beyond the range of a map"));
+}
+
 #[test]
 fn what_cannot_be_drawn_is_a_bad_question() {
     let folder = folder();

@@ -4,7 +4,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{WALL, answer, complaint, haptic};
+use common::{WALL, answer, complaint, haptic, haptic_reading};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -98,6 +98,49 @@ fn bad_questions_are_named() {
     }
 }
 
+/// What a loop does that grows until there are no numbers for it.
+#[test]
+fn a_motion_ends_where_the_numbers_do() {
+    let folder = TempDir::new().unwrap();
+    let more = "[simulation]\nsamples = 20000\nposition = 0.001\n";
+    let unstable = format!("{WALL}{more}").replace("stiffness = 22.0", "stiffness = 60.0");
+    for friction in ["", "friction = 0.0001\n"] {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, format!("{unstable}{friction}")).unwrap();
+        let output = haptic(&["simulate", name(&path), "--json"]);
+        assert_eq!(output.status.code(), Some(1));
+        let motion = answer(&output);
+        let computed = column(&motion, "position").len();
+        assert!(computed > 100 && computed < 20000, "{computed}");
+        for other in ["velocity", "torque"] {
+            assert_eq!(column(&motion, other).len(), computed);
+        }
+        assert!(column(&motion, "position").iter().any(|x| x.abs() > 1e300));
+        let named = format!("from sample {computed} on");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(&named) && said.contains("not stable"), "{said}");
+
+        let output = haptic(&["simulate", name(&path), "--csv"]);
+        let rows = String::from_utf8(output.stdout).unwrap();
+        assert_eq!((output.status.code(), rows.lines().count()), (Some(1), computed + 1));
+        assert!(!rows.contains("inf") && !rows.contains("NaN"));
+        let text = haptic(&["simulate", name(&path)]);
+        assert_eq!(text.status.code(), Some(1));
+        assert!(String::from_utf8(text.stdout).unwrap().contains(&format!("{computed} over")));
+
+        // The picture shows what can be drawn and says what it leaves out.
+        let picture = folder.path().join("trace.svg");
+        let output = haptic(&["chart", "trace", name(&path), "-o", name(&picture)]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(String::from_utf8(output.stderr).unwrap().contains("are left out"));
+        assert!(std::fs::read_to_string(&picture).unwrap().contains("not drawn from"));
+        let page = folder.path().join("page.html");
+        let output = haptic(&["report", name(&path), "-o", name(&page)]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(std::fs::read_to_string(&page).unwrap().contains("not drawn from"));
+    }
+}
+
 /// Each of these would otherwise be computed with infinities, without an answer or without an end.
 #[test]
 fn numbers_out_of_range_are_said_to_be_so() {
@@ -150,25 +193,77 @@ fn the_worst_hand_is_found_past_the_line_only() {
     assert_eq!((status, search["oscillates"].as_bool()), (1, Some(true)));
 }
 
+const CHAIN: &str = "actuator_lag = 0.0\nencoder = \"motor\"\n[[device.mass]]\ninertia = 1e-5\n\
+    damping = 0.022\n[[device.mass]]\ninertia = 1.2e-5\n[[device.link]]\nstiffness = 60.0\n\
+    damping = 0.001\n";
+
 #[test]
 fn a_design_is_a_scene_that_certifies() {
     let folder = TempDir::new().unwrap();
-    let wall = scene(&folder, "");
-    for question in [
-        &["design", "largest", "stiffness"][..],
-        &["design", "largest", "damping", "--safety", "0.97"],
-        &["design", "device"],
-        &["design", "period"],
-    ] {
-        let output = haptic(&[question, &[name(&wall)]].concat());
+    let head = WALL.split_once("type").unwrap().0;
+    let moving = "[simulation]\nsamples = 9\nlatency = 0.0009\n[human]\nstiffness = 4.0\n\
+                  [limits]\nencoder_step = 1e-4\n";
+    let rigid = "inertia = 2.2e-5\ndamping = 0.022\n";
+    let wall = format!("{WALL}{moving}");
+    let chain = wall.replace(rigid, CHAIN);
+    let undelayed = wall.replace("delay = 1", "delay = 0");
+    let free = format!("{head}type = \"free-mode\"\nresidual = 0.001\n{moving}");
+    let cases: [(&str, &[&str], &str); 12] = [
+        (&wall, &["largest", "stiffness"], "largest stiffness: 2"),
+        (&wall, &["largest", "damping", "--safety", "0.97"], "largest damping: 0.01"),
+        (&wall, &["largest", "delay"], "largest delay: 1 sample\n"),
+        (&wall, &["device"], "least device damping: 0.021"),
+        (&wall, &["period"], "longest period: 0.0010"),
+        (&chain, &["largest", "stiffness"], "largest stiffness: 2"),
+        (&chain, &["device"], "least damping of the motor's mass: 0.021"),
+        (&chain, &["period", "--safety", "0.9"], "longest period: 0.000"),
+        (&undelayed, &["largest", "stiffness"], "largest stiffness: any value certifies"),
+        (&undelayed, &["largest", "delay"], "largest delay: 1 sample\n"),
+        (&free, &["period"], "longest period: any value certifies"),
+        (&free, &["largest", "cancellation"], "largest cancellation: 0.02"),
+    ];
+    let path = folder.path().join("scene.toml");
+    for (text, question, said) in cases {
+        std::fs::write(&path, text).unwrap();
+        let question = [&["design"], question, &[name(&path)]].concat();
+        let output = haptic(&question);
         assert_eq!(output.status.code(), Some(0), "{output:?}");
-        let designed = folder.path().join("designed.toml");
-        std::fs::write(&designed, output.stdout).unwrap();
-        let (status, answer) = json(&["certify", name(&designed), "--json"]);
-        assert_eq!((status, answer["verdict"].as_str()), (0, Some("certified")), "{question:?}");
+        let designed = String::from_utf8(output.stdout).unwrap();
+        assert!(designed.starts_with(&format!("# {said}")), "{designed}");
+        let certify = haptic_reading(&["certify", "-", "--json"], designed.as_bytes());
+        assert_eq!(answer(&certify)["verdict"], "certified", "{designed}");
+        // What the user wrote stays.
+        for table in ["[simulation]", "[human]", "encoder_step = 0.0001"] {
+            assert!(designed.contains(table), "{designed}");
+        }
+        assert_eq!(
+            designed.matches("[[device.mass]]").count(),
+            text.matches("[[device.mass]]").count()
+        );
+        let (status, report) = json(&[&question[..], &["--json"]].concat());
+        assert_eq!((status, report["scenes"][0].as_str()), (0, Some(designed.as_str())));
     }
-    let message = complaint(haptic(&["design", "largest", "cancellation", name(&wall)]));
+    std::fs::write(&path, &wall).unwrap();
+    let message = complaint(haptic(&["design", "largest", "cancellation", name(&path)]));
     assert!(message.contains("no cancellation"), "{message}");
+}
+
+#[test]
+fn designs_of_several_scenes_go_into_a_folder_and_find_their_torques_from_there() {
+    let folder = TempDir::new().unwrap();
+    std::fs::write(folder.path().join("push.csv"), "0.1\n").unwrap();
+    let wall = scene(&folder, "[simulation]\nsamples = 3\ntorque_file = \"push.csv\"\n");
+    let out = folder.path().join("designed");
+    let output = haptic(&["design", "period", name(&wall), name(&wall), "-o", name(&out)]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    for file in ["design-1.toml", "design-2.toml"] {
+        let file = out.join(file);
+        assert_eq!(haptic(&["certify", name(&file)]).status.code(), Some(0));
+        assert_eq!(haptic(&["simulate", name(&file)]).status.code(), Some(0));
+    }
+    let output = haptic(&["design", "period", name(&wall), name(&wall)]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.lines().all(|line| line.starts_with('#')) && said.contains("--output"), "{said}");
 }
 
 /// A chain of masses, simulated although a certificate is not taken of it where the encoder is at
@@ -176,12 +271,8 @@ fn a_design_is_a_scene_that_certifies() {
 #[test]
 fn chains_move_and_may_be_seen_from_either_end() {
     let folder = TempDir::new().unwrap();
-    let chain = WALL.replace(
-        "inertia = 2.2e-5\ndamping = 0.022\n",
-        "actuator_lag = 0.0001\nencoder = \"motor\"\n[[device.mass]]\ninertia = 1e-5\n\
-         damping = 0.022\n[[device.mass]]\ninertia = 1.2e-5\n[[device.link]]\nstiffness = 60.0\n\
-         damping = 0.001\n",
-    );
+    let lagging = CHAIN.replace("actuator_lag = 0.0\n", "actuator_lag = 0.0001\n");
+    let chain = WALL.replace("inertia = 2.2e-5\ndamping = 0.022\n", &lagging);
     let text = format!("{chain}[simulation]\nsamples = 200\nvelocity = 1.0\n");
     let path = folder.path().join("chain.toml");
     let mut ends = Vec::new();

@@ -188,6 +188,12 @@ fn is_drawable(value: f64) -> bool {
     value.abs() <= 1e300
 }
 
+/// Whether an axis can have this range: its ends drawable, and numbers to tell apart between them.
+pub fn is_range(range: &Range<f64>) -> bool {
+    let width = range.end - range.start;
+    is_drawable(range.start) && is_drawable(range.end) && width >= f64::MIN_POSITIVE
+}
+
 /// The range of some values; from zero to zero if there are none.
 fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
     let mut finite = values.filter(|value| is_drawable(*value));

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::hatch::Ground;
 use super::*;
 use crate::file::SceneFile;
-use crate::quantity::shortened;
+use crate::quantity::{shortened, significant};
 use crate::simulation::served::Served;
 use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
 
@@ -43,6 +43,9 @@ pub struct Trace {
     pub release: Option<f64>,
     /// Angle in rad beyond which a one-sided wall is felt.
     pub face: Option<f64>,
+    /// When the run went beyond what a picture can show, if it did; there are no samples from
+    /// there on.
+    pub lost: Option<f64>,
 }
 
 impl Trace {
@@ -55,17 +58,30 @@ impl Trace {
         let experiment = Experiment::of(file, folder)?;
         let motion = simulate(&experiment, Stride::default())?;
         let period = file.scene.timing.period;
-        Ok(Self {
+        let trace = Self {
             title: file.name.clone(),
             clock: Clock::Seconds,
             time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
             position: motion.position,
             torque: motion.torque,
             limit: motion.limit,
-            hand: Vec::new(),
-            release: None,
             face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
-        })
+            ..Self::default()
+        };
+        Ok(trace.as_far_as_drawable())
+    }
+
+    /// Ends the run where a picture cannot show it any more, or where there is no more of it.
+    pub fn as_far_as_drawable(mut self) -> Self {
+        let both = self.position.iter().zip(&self.torque);
+        let kept = both.take_while(|(x, f)| is_drawable(**x) && is_drawable(**f)).count();
+        self.lost = self.time.get(kept).copied();
+        self.time.truncate(kept);
+        for column in [&mut self.position, &mut self.torque, &mut self.hand] {
+            column.truncate(kept);
+        }
+        self.limit.truncate(kept);
+        self
     }
 
     /// When a sample begins, and when the last one ends.
@@ -145,6 +161,14 @@ fn legend(trace: &Trace) -> String {
     }
     if !trace.hand.is_empty() {
         words.push("broken: where the hand wants to be".to_owned());
+    }
+    if let Some(lost) = trace.lost {
+        let unit = match trace.clock {
+            Clock::Seconds => "s",
+            Clock::Ticks => "ticks",
+        };
+        let when = significant(lost, 6);
+        words.push(format!("not drawn from {when} {unit} on: too large for a picture"));
     }
     words.join("; ")
 }

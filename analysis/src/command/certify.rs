@@ -1,23 +1,24 @@
 //! `haptic certify`: is a scene safe in every hand, and by how much?
 
-use std::io::{self, Write};
+use std::io;
 
 use clap::Args;
 
+use super::common::{ForWhom, SceneArgument};
 use super::{Answer, CommandError};
+use crate::batch;
 use crate::quantity::significant;
 use crate::verdict::{self, Enclosure, Report, Verdict};
-use crate::{batch, file};
 
 /// Arguments of `haptic certify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, TOML or JSON; `-` is standard input
-    #[arg(value_name = "FILE")]
-    pub file: String,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub scene: SceneArgument,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
     /// FILE has a scene as JSON on each line; print a result a line, in the same order
     #[arg(long)]
     pub batch: bool,
@@ -26,20 +27,13 @@ pub struct Arguments {
 /// Answers for a file or for a batch of scenes. A batch is answered with yes if it could be read:
 /// each of its lines has an answer of its own.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let mut out = io::stdout().lock();
     if arguments.batch {
-        batch::certify(&arguments.file, &mut out)?;
+        batch::certify(&arguments.scene.file, &mut io::stdout().lock())?;
         return Ok(Answer::Yes);
     }
-    let scene = file::load(&arguments.file)?;
+    let scene = arguments.scene.load()?;
     let report = verdict::judge(&scene.name, &scene.scene);
-    if arguments.json {
-        serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
-        writeln!(out)?;
-    } else {
-        write!(out, "{}", text(&report))?;
-    }
-    out.flush()?;
+    arguments.answer.print(&report, text)?;
     Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
 }
 

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod certify;
 pub mod chart;
+pub mod common;
 pub mod demo;
 pub mod design;
 pub mod device;
@@ -177,6 +178,15 @@ pub enum CommandError {
         /// Name of the scene.
         scene: String,
     },
+    /// A picture that does not show all of a run; exit status 1, for it shows the rest.
+    #[error(
+        "the run grows beyond what a picture can show: sample {sample} and all after it are left \
+         out"
+    )]
+    LeftOut {
+        /// The first sample, counted from 0, that is not shown.
+        sample: usize,
+    },
     /// A page's file must be called one.
     #[error("{path}: the name of a page must end in .html")]
     NoPage {
@@ -227,6 +237,18 @@ pub enum CommandError {
     Output(#[from] io::Error),
 }
 
+impl CommandError {
+    /// Whether the question was good and this is its answer.
+    fn is_a_no(&self) -> bool {
+        matches!(
+            self,
+            Self::Refused(_)
+                | Self::LeftOut { .. }
+                | Self::Simulation(SimulationError::Overflow { .. })
+        )
+    }
+}
+
 /// Runs one command and turns its answer into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
@@ -254,13 +276,9 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
             ExitCode::SUCCESS
         }
-        Err(error @ CommandError::Refused(_)) => {
-            complain(&error);
-            ExitCode::FAILURE
-        }
         Err(error) => {
             complain(&error);
-            ExitCode::from(2)
+            if error.is_a_no() { ExitCode::FAILURE } else { ExitCode::from(2) }
         }
     }
 }

@@ -1,25 +1,26 @@
 //! `haptic report`: one page about a scene.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use super::chart::draw_map;
+use super::chart::map;
+use super::common::SceneArgument;
 use super::{Answer, CommandError};
 use crate::chart::ChartError;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::{Trace, trace};
-use crate::file;
 use crate::map::MapError;
 use crate::report::{Figure, Page};
+use crate::simulation::SimulationError;
 use crate::verdict::{Verdict, judge};
 
 /// Arguments of `haptic report`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, TOML or JSON; `-` is standard input
-    #[arg(value_name = "FILE")]
-    pub file: String,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub scene: SceneArgument,
     /// The page, .html
     #[arg(short, long, value_name = "PAGE")]
     pub output: PathBuf,
@@ -34,24 +35,29 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
         return Err(CommandError::NoPage { path: arguments.output.clone() });
     }
-    let file = file::load(&arguments.file)?;
+    let file = arguments.scene.load()?;
     let report = judge(&file.name, &file.scene);
     let named = [(file.name.clone(), file.scene)];
-    let map = match draw_map(&file, (None, None), SIDE) {
-        Err(MapError::NoWall { .. }) => Figure::Missing(
-            "The environment has no wall, whose stiffness and damping a map would show.",
-        ),
+    let map = match map::of_file(&file, (None, None), SIDE) {
+        Err(MapError::NoWall { .. }) => {
+            missing("The environment has no wall, whose stiffness and damping a map would show.")
+        }
+        Err(error @ (MapError::Device(_) | MapError::NoRange { .. })) => {
+            missing(&error.to_string())
+        }
         drawn => Figure::Drawn(drawn?),
     };
     let motion = if file.simulation.is_some() {
-        let folder = Path::new(&arguments.file).parent().unwrap_or(Path::new(""));
-        Figure::Drawn(trace(&Trace::simulated(&file, folder)?)?)
+        match Trace::simulated(&file, arguments.scene.folder()) {
+            Err(error @ SimulationError::TooFast { .. }) => missing(&error.to_string()),
+            moved => motion(&moved?)?,
+        }
     } else {
-        Figure::Missing("The scene has no [simulation] table, which would say what to simulate.")
+        missing("The scene has no [simulation] table, which would say what to simulate.")
     };
     let nyquist = match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named) {
         Err(ChartError::NoTransfer { .. }) => {
-            Figure::Missing("The environment has no transfer function to draw.")
+            missing("The environment has no transfer function to draw.")
         }
         drawn => Figure::Drawn(drawn?),
     };
@@ -59,4 +65,18 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     std::fs::write(&arguments.output, page.html())
         .map_err(|source| CommandError::Unwritable { path: arguments.output.clone(), source })?;
     Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
+}
+
+fn missing(why: &str) -> Figure {
+    Figure::Missing(why.to_owned())
+}
+
+/// The picture of a run, or why there is none.
+fn motion(moved: &Trace) -> Result<Figure, ChartError> {
+    match (trace(moved), moved.lost) {
+        (Err(ChartError::TooFewPoints), Some(_)) => {
+            Ok(missing("The motion is too large for a picture from its start on."))
+        }
+        (drawn, _) => Ok(Figure::Drawn(drawn?)),
+    }
 }

@@ -1,37 +1,29 @@
 //! `haptic worst-hand`: in which hand does a scene oscillate?
 
-use std::io::{self, Write};
-
 use clap::Args;
 
+use super::common::{ForWhom, SceneArgument};
 use super::{Answer, CommandError};
-use crate::file::{self, Purpose};
 use crate::quantity::significant;
 use crate::worst_hand::{Search, search};
 
 /// Arguments of `haptic worst-hand`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, TOML or JSON; `-` is standard input
-    #[arg(value_name = "FILE")]
-    pub file: String,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub scene: SceneArgument,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// Searches: the answer is no where a hand was found.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let file = file::load_for(Purpose::Simulate, &arguments.file)?;
+    let file = arguments.scene.load_to_simulate()?;
     let search = search(&file.scene, &file.chain)?;
-    let mut out = io::stdout().lock();
-    if arguments.json {
-        serde_json::to_writer(&mut out, &search).map_err(io::Error::from)?;
-        writeln!(out)?;
-    } else {
-        write!(out, "{}", text(&file.name, file.scene.timing.period, &search))?;
-    }
-    out.flush()?;
+    let period = file.scene.timing.period;
+    arguments.answer.print(&search, |search| text(&file.name, period, search))?;
     Ok(if search.oscillates { Answer::No } else { Answer::Yes })
 }
 

@@ -16,8 +16,7 @@ use thiserror::Error;
 use crate::file::SceneFile;
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::plant::Plant;
-use crate::simulation::tick::Tick;
-use crate::simulation::{Experiment, Stride};
+use crate::simulation::{Experiment, SimulationError, Stride};
 use plant::SampledPlant;
 
 /// What is known of a scene, from the worst to the best.
@@ -50,6 +49,20 @@ pub enum MapError {
         /// Name of the scene.
         scene: String,
     },
+    /// The device is beyond the range of numbers.
+    #[error(transparent)]
+    Device(#[from] SimulationError),
+    /// There is nothing to judge between the borders of the map.
+    #[error(
+        "stiffness from {} to {} N m/rad and damping from {} to {} N m s/rad are beyond the range \
+         of a map", stiffness.start, stiffness.end, damping.start, damping.end
+    )]
+    NoRange {
+        /// The stiffness.
+        stiffness: Range<f64>,
+        /// The damping.
+        damping: Range<f64>,
+    },
     /// The drawing failed.
     #[error(transparent)]
     Chart(#[from] crate::chart::ChartError),
@@ -66,7 +79,7 @@ impl Family {
     /// The walls of a scene file, on its device in no hand.
     ///
     /// # Errors
-    /// Where the environment has no wall.
+    /// Where the environment has no wall, or the device's motion is beyond the range of numbers.
     pub fn of(file: &SceneFile) -> Result<Self, MapError> {
         let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
         Self::on(&file.name, alone)
@@ -75,7 +88,7 @@ impl Family {
     /// The walls of a scene that a person calls `name`, on its rigid device in no hand.
     ///
     /// # Errors
-    /// Where the environment has no wall.
+    /// Where the environment has no wall, or the device's motion is beyond the range of numbers.
     pub fn rigid(name: &str, scene: &Scene) -> Result<Self, MapError> {
         Self::on(name, Experiment::still(scene))
     }
@@ -84,7 +97,7 @@ impl Family {
         if crate::simulation::wall(&alone.scene).is_none() {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
-        let tick = Tick::new(&alone.plant, &alone.stepping(Stride::default()), 0.0);
+        let tick = alone.tick(Stride::default())?;
         Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick) })
     }
 

@@ -48,6 +48,7 @@ use thiserror::Error;
 
 use crate::device::Motion;
 use crate::file::{FileError, SceneFile};
+use crate::quantity::significant;
 
 use closed::ClosedLoop;
 use drive::Drive;
@@ -106,6 +107,17 @@ pub enum SimulationError {
         rate: f64,
         /// The period in s.
         period: f64,
+    },
+    /// The motion grows beyond the range of numbers.
+    #[error(
+        "the motion grows beyond the range of numbers: there is none from sample {sample} on, which \
+         is at {} s; the loop is not stable (`haptic stability`)", significant(*.time, 6)
+    )]
+    Overflow {
+        /// The first sample, counted from 0, of which something is no finite number.
+        sample: usize,
+        /// When that is in s.
+        time: f64,
     },
     /// No eigenvalues were found.
     #[error("the eigenvalues of the closed loop were not found; its numbers are too far apart")]
@@ -199,6 +211,18 @@ impl Experiment {
         }
     }
 
+    /// Whether `computed` samples are all that there should be.
+    ///
+    /// # Errors
+    /// Where the motion has left the range of numbers before.
+    pub fn completed(&self, computed: usize) -> Result<(), SimulationError> {
+        if computed >= self.samples {
+            return Ok(());
+        }
+        let time = computed as f64 * self.scene.timing.period;
+        Err(SimulationError::Overflow { sample: computed, time })
+    }
+
     /// Whether the loop is linear and the same in every tick.
     fn is_linear(&self) -> bool {
         let centred = wall(&self.scene).is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
@@ -250,7 +274,8 @@ impl Default for Stride {
     }
 }
 
-/// Samples at the instants of the ticks.
+/// Samples at the instants of the ticks, all of them finite: a motion that grows beyond the range
+/// of numbers ends before it does ([`Experiment::completed`]).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trajectory {
     /// Position of the encoder's mass in rad.
@@ -269,6 +294,29 @@ impl Trajectory {
         let zeros = || vec![0.0; samples];
         let limit = vec![Served::IN_FULL; samples];
         Self { position: zeros(), velocity: zeros(), torque: zeros(), limit }
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.position.len()
+    }
+
+    fn is_finite(&self, sample: usize) -> bool {
+        [&self.position, &self.velocity, &self.torque].iter().all(|of| of[sample].is_finite())
+    }
+
+    /// Leaves out what is beyond the range of numbers. The last sample tells whether anything is: a
+    /// position that has left the range does not come back.
+    fn end_in_range(&mut self) {
+        let samples = self.samples();
+        if samples == 0 || self.is_finite(samples - 1) {
+            return;
+        }
+        let kept = (0..samples).take_while(|&sample| self.is_finite(sample)).count();
+        for column in [&mut self.position, &mut self.velocity, &mut self.torque] {
+            column.truncate(kept);
+        }
+        self.limit.truncate(kept);
     }
 
     fn columns(&mut self) -> (Columns<'_>, &mut [Served]) {
@@ -319,7 +367,8 @@ impl Simulator {
         Ok(Self { drive, engine: Engine::General(Box::new(general)) })
     }
 
-    /// The next samples, as many as `trajectory` has room for.
+    /// The next samples, as many as `trajectory` has room for; it is cut off where the motion
+    /// leaves the range of numbers, and nothing comes after that.
     pub fn fill(&mut self, trajectory: &mut Trajectory) {
         let (columns, limit) = trajectory.columns();
         match &mut self.engine {
@@ -330,6 +379,7 @@ impl Simulator {
             }
             Engine::General(general) => general.fill(&self.drive, columns, limit),
         }
+        trajectory.end_in_range();
     }
 }
 
@@ -339,7 +389,7 @@ fn linear(experiment: &Experiment, tick: &Tick) -> Option<Box<dyn Linear>> {
     kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 
-/// Runs an experiment from its start to its end.
+/// Runs an experiment from its start to its end, or as far as there are numbers for it.
 ///
 /// # Errors
 /// Where the scene has no law that could run.

@@ -1,0 +1,39 @@
+//! `haptic chart identify`: a measured device in its disk.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::OutputArguments;
+use crate::chart::{self, Picture};
+use crate::command::CommandError;
+use crate::command::identify::{Reading, of_file, positive};
+
+/// Arguments of `haptic chart identify`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Record of stepped sines, as `haptic identify` reads it; `-` is standard input
+    #[arg(value_name = "FILE.csv")]
+    pub file: PathBuf,
+    /// Counts of the encoder in one turn
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub counts_per_rev: f64,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub reading: Reading,
+    /// Title of the picture; otherwise the file's name
+    #[arg(long)]
+    pub title: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Draws the responses.
+pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+    let Arguments { file, counts_per_rev, reading, .. } = arguments;
+    let found = of_file(file, *counts_per_rev, reading)?;
+    let name = || file.file_stem().unwrap_or_default().to_string_lossy();
+    let title = arguments.title.clone().unwrap_or_else(|| format!("Measured: {}", name()));
+    Ok(chart::identify::identify(&title, &found)?)
+}

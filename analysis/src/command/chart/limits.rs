@@ -1,0 +1,97 @@
+//! `haptic chart limits`: how stiff a wall may be, and what the encoder costs, over the sample rate.
+
+use std::ops::Range;
+
+use clap::Args;
+use firmware::scene::Coupling;
+
+use super::{OutputArguments, number, range};
+use crate::chart::limits::DelayCurve;
+use crate::chart::{self, ChartError, Picture};
+use crate::command::CommandError;
+use crate::command::common::SceneArgument;
+use crate::limits::{Curves, Limit, at_period, largest_stiffness, with_wall};
+use crate::map::MapError;
+use crate::progress;
+use crate::quantity::{shortened, significant};
+use crate::simulation::wall;
+
+/// Arguments of `haptic chart limits`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub scene: SceneArgument,
+    /// Sample rates from:to in Hz
+    #[arg(long, value_name = "FROM:TO", value_parser = positive_range, default_value = "500:100000")]
+    pub rates: Range<f64>,
+    /// Counts of the encoder a turn
+    #[arg(long, value_name = "N", value_parser = counts, default_value = "65536")]
+    pub counts_per_rev: f64,
+    /// Part of the largest stiffness that is used, for the ripple: at all of it there is no bound
+    #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
+    pub used: f64,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Longest delay in the picture of limits, in samples.
+const DELAYS: usize = 4;
+/// Sample rates in the picture of limits.
+const RATES: usize = 61;
+
+/// Looks for the limits and draws them.
+pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+    let file = arguments.scene.load()?;
+    if wall(&file.scene).is_none() {
+        return Err(MapError::NoWall { scene: file.name }.into());
+    }
+    let curves = Curves {
+        rates: arguments.rates.clone(),
+        points: RATES,
+        counts_per_turn: arguments.counts_per_rev,
+        used: arguments.used,
+    };
+    let bar = progress::bar(DELAYS as u64 + 1, "limits");
+    let drawn: Vec<_> = (0..=DELAYS)
+        .map(|delay| {
+            let points = curves.of(&file.scene, delay);
+            let slowest = at_period(&file.scene, 1.0 / curves.rates.start);
+            let undelayed = with_wall(&slowest, 0.0, Some(delay));
+            bar.inc(1);
+            let is_coupling = largest_stiffness(&undelayed) == Limit::Any;
+            DelayCurve { delay, is_coupling, points }
+        })
+        .collect();
+    bar.finish_and_clear();
+    let coupling = match file.scene.coupling {
+        Coupling::Rigid => "rigid coupling",
+        Coupling::Spring { .. } => "behind the standard coupling 2 delta/T",
+    };
+    let note = format!(
+        "ripple of half a count of {} a turn, at {} % of the largest stiffness, {coupling}",
+        significant(curves.counts_per_turn, 7),
+        significant(100.0 * curves.used, 3)
+    );
+    let title = format!("{}: how stiff, how fast", shortened(&file.name, 48));
+    chart::limits::limits(&title, &note, &drawn).map_err(|error| match error {
+        ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },
+        other => other.into(),
+    })
+}
+
+fn positive_range(text: &str) -> Result<Range<f64>, String> {
+    let range = range(text)?;
+    if range.start > 0.0 { Ok(range) } else { Err(format!("{} must be above 0", range.start)) }
+}
+
+fn counts(text: &str) -> Result<f64, String> {
+    let counts = number(text)?;
+    if counts >= 1.0 { Ok(counts) } else { Err(format!("{counts} must be at least 1")) }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let part = number(text)?;
+    if part > 0.0 && part < 1.0 { Ok(part) } else { Err(format!("{part} must be between 0 and 1")) }
+}

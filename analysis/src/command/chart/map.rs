@@ -1,0 +1,75 @@
+//! `haptic chart map`: what becomes of walls of every stiffness and damping.
+
+use std::ops::Range;
+
+use clap::Args;
+
+use super::{OutputArguments, range};
+use crate::chart::map::Overlay;
+use crate::chart::{self, Picture};
+use crate::command::CommandError;
+use crate::command::common::SceneArgument;
+use crate::file::SceneFile;
+use crate::map::border::closed_form_border;
+use crate::map::{Family, Map, MapError};
+use crate::progress;
+use crate::quantity::{shortened, significant};
+use crate::simulation::wall;
+
+/// Arguments of `haptic chart map`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub scene: SceneArgument,
+    /// Stiffness from:to in N m/rad; otherwise about twice the stiffest certified spring's
+    #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
+    pub stiffness: Option<Range<f64>>,
+    /// Damping from:to in N m s/rad; otherwise about as far as the device's own goes
+    #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
+    pub damping: Option<Range<f64>>,
+    /// Number of scenes to judge, on a square grid
+    #[arg(long, value_name = "N", default_value_t = 1_000_000,
+          value_parser = clap::value_parser!(u64).range(4..=25_000_000))]
+    pub points: u64,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Judges the walls and draws them.
+pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+    let file = arguments.scene.load()?;
+    let side = (arguments.points as f64).sqrt().ceil() as usize;
+    let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
+    Ok(of_file(&file, ranges, side)?)
+}
+
+/// A range of stiffness and one of damping, where they are given.
+type Ranges = (Option<Range<f64>>, Option<Range<f64>>);
+
+/// The map of a scene file's walls, of `side` times `side` cells.
+pub fn of_file(
+    file: &SceneFile,
+    (stiffness, damping): Ranges,
+    side: usize,
+) -> Result<Picture, MapError> {
+    let family = Family::of(file)?;
+    let usual = family.usual_ranges();
+    let (stiffness, damping) = (stiffness.unwrap_or(usual.0), damping.unwrap_or(usual.1));
+    if ![&stiffness, &damping].into_iter().all(chart::is_range) {
+        return Err(MapError::NoRange { stiffness, damping });
+    }
+    let bar = progress::bar(side as u64, "judging walls");
+    let map = Map::new(&family, stiffness, damping, side, || bar.inc(1));
+    bar.finish_and_clear();
+    let wall = wall(&file.scene);
+    let delay = wall.map_or(0, |wall| wall.delay);
+    let period = significant(1e3 * file.scene.timing.period, 4);
+    let overlay = Overlay {
+        title: format!("{}: walls of delay {delay}, T = {period} ms", shortened(&file.name, 40)),
+        border: closed_form_border(&family, &map),
+        scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping)),
+    };
+    Ok(chart::map::map(&map, &overlay)?)
+}

@@ -1,0 +1,34 @@
+//! `haptic chart nyquist`: the curves of environments, seen from velocity.
+
+use clap::Args;
+
+use super::OutputArguments;
+use crate::chart::{self, Picture};
+use crate::command::CommandError;
+use crate::file;
+
+/// Arguments of `haptic chart nyquist`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene files, TOML or JSON; `-` is standard input
+    #[arg(value_name = "FILE", required = true, num_args = 1..=6)]
+    pub files: Vec<String>,
+    /// Title of the picture; otherwise the scene's name
+    #[arg(long)]
+    pub title: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Draws the curves.
+pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+    let files: Result<Vec<_>, _> = arguments.files.iter().map(|file| file::load(file)).collect();
+    let scenes: Vec<_> = files?.into_iter().map(|file| (file.name, file.scene)).collect();
+    let title = match (&arguments.title, &scenes[..]) {
+        (Some(title), _) => title.clone(),
+        (None, [(name, _)]) => name.clone(),
+        _ => "From velocity to torque: (T z/(z-1)) E(z)".to_owned(),
+    };
+    Ok(chart::nyquist::nyquist(&title, &scenes)?)
+}

@@ -1,0 +1,60 @@
+//! `haptic chart trace`: a run over time, simulated or recorded.
+
+use std::path::Path;
+
+use clap::Args;
+
+use super::OutputArguments;
+use crate::chart::trace::{Trace, trace};
+use crate::chart::{ChartError, Output};
+use crate::command::common::folder;
+use crate::command::{Answer, CommandError};
+use crate::file::{self, Purpose};
+use crate::recorded::{self, RecordedError};
+
+/// Arguments of `haptic chart trace`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file with a simulation table, TOML or JSON, `-` being standard input; or a .csv from
+    /// `haptic run --csv` or `haptic simulate --csv`
+    #[arg(value_name = "FILE")]
+    pub file: String,
+    /// Period of the servo in s, for a .csv that counts ticks
+    #[arg(long, value_name = "SECONDS", value_parser = crate::command::identify::positive)]
+    pub period: Option<f64>,
+    /// Title of the picture; otherwise the scene's or the file's name
+    #[arg(long)]
+    pub title: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Draws the run and writes the picture; no, where it cannot show all of it.
+pub fn run(arguments: &Arguments, output: &Output) -> Result<Answer, CommandError> {
+    let run = load(arguments)?;
+    let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });
+    match (trace(&run), left_out) {
+        (Err(ChartError::TooFewPoints), Some(left_out)) => Err(left_out),
+        (drawn, left_out) => {
+            output.write(&drawn?)?;
+            left_out.map_or(Ok(Answer::Yes), Err)
+        }
+    }
+}
+
+fn load(arguments: &Arguments) -> Result<Trace, CommandError> {
+    let path = Path::new(&arguments.file);
+    let mut drawn = if recorded::is_recorded(path) {
+        recorded::load(path, arguments.period)?
+    } else if arguments.period.is_some() {
+        return Err(RecordedError::PeriodKnown { file: arguments.file.clone() }.into());
+    } else {
+        let file = file::load_for(Purpose::Simulate, &arguments.file)?;
+        Trace::simulated(&file, folder(&arguments.file))?
+    };
+    if let Some(title) = &arguments.title {
+        drawn.title.clone_from(title);
+    }
+    Ok(drawn)
+}

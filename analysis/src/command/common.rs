@@ -1,0 +1,88 @@
+//! What several commands have in common: a scene as their argument, a method and its steps, and
+//! an answer that is text for a person or one JSON object for a program.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::CommandError;
+use crate::file::{self, Purpose, SceneFile};
+use crate::simulation::Stride;
+use crate::simulation::method::Method;
+
+/// The scene that a command is about.
+#[derive(Debug, Args)]
+pub struct SceneArgument {
+    /// Scene file, TOML or JSON; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: String,
+}
+
+impl SceneArgument {
+    /// Reads it, to certify.
+    pub fn load(&self) -> Result<SceneFile, CommandError> {
+        Ok(file::load(&self.file)?)
+    }
+
+    /// Reads it, to look at what it does.
+    pub fn load_to_simulate(&self) -> Result<SceneFile, CommandError> {
+        Ok(file::load_for(Purpose::Simulate, &self.file)?)
+    }
+
+    /// Where the files that it names are looked for.
+    pub fn folder(&self) -> &Path {
+        folder(&self.file)
+    }
+}
+
+/// The folder of a file; that of a program itself for standard input.
+pub fn folder(file: &str) -> &Path {
+    Path::new(file).parent().unwrap_or(Path::new(""))
+}
+
+/// How the device is taken through a tick.
+#[derive(Debug, Args)]
+pub struct Steps {
+    /// Method of integration of the device; the servo is computed tick by tick in all of them
+    #[arg(long, value_enum, default_value_t)]
+    pub method: Method,
+    /// Steps of the method in each tick
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub substeps: u32,
+}
+
+impl Steps {
+    /// Method and steps.
+    pub fn stride(&self) -> Stride {
+        Stride { method: self.method, substeps: self.substeps }
+    }
+}
+
+/// For whom an answer is.
+#[derive(Debug, Args)]
+pub struct ForWhom {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl ForWhom {
+    /// Prints the answer as JSON, or as the text that is made of it.
+    pub fn print<A: Serialize>(
+        &self,
+        answer: &A,
+        text: impl FnOnce(&A) -> String,
+    ) -> Result<(), CommandError> {
+        let mut out = io::BufWriter::new(io::stdout().lock());
+        if self.json {
+            serde_json::to_writer(&mut out, answer).map_err(io::Error::from)?;
+            writeln!(out)?;
+        } else {
+            write!(out, "{}", text(answer))?;
+        }
+        Ok(out.flush()?)
+    }
+}
