@@ -15,6 +15,7 @@ mod infimum;
 mod passivity;
 pub mod two_port;
 
+use firmware::scene::Device;
 use thiserror::Error;
 
 pub use passivity::{ExcessPassivity, NoPassivity, Reached};
@@ -126,6 +127,25 @@ impl Chain {
     pub fn with_actuator_lag(self, lag: f64) -> Result<Self, ChainError> {
         not_negative(|| "lag of the amplifier".to_owned(), lag)?;
         Ok(Self { actuator_lag: lag, ..self })
+    }
+
+    /// The same chain with another damping in N m s/rad of the motor's mass against the ground.
+    pub fn with_motor_damping(mut self, damping: f64) -> Result<Self, ChainError> {
+        not_negative(|| "damping of mass 1".to_owned(), damping)?;
+        if let Some(motor) = self.masses.first_mut() {
+            motor.damping = damping;
+        }
+        Ok(self)
+    }
+
+    /// The rigid body that stands for the chain in a certificate: all inertia, all damping to the
+    /// ground, and the lower end of the chain's passivity where that is not the damping.
+    pub fn as_rigid(&self) -> Result<Device, NoPassivity> {
+        let passivity = match self.is_rigid() {
+            true => None,
+            false => Some(self.excess_passivity()?.delta.lo()),
+        };
+        Ok(Device { inertia: self.inertia(), damping: self.damping(), passivity })
     }
 
     /// Masses from the motor to the hand.

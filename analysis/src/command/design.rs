@@ -4,11 +4,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use firmware::scene::Scene;
 use serde::Serialize;
 
+use super::common::folder;
 use super::{Answer, CommandError};
-use crate::design::{self, Choice, Quantity, Terms};
+use crate::design::{self, Choice, Quantity, SAMPLES, Terms};
+use crate::file::simulation::HandTorque;
 use crate::file::{self, SceneFile, write};
 
 /// Arguments of `haptic design`.
@@ -80,15 +81,23 @@ fn part(text: &str) -> Result<f64, String> {
 
 /// An answer as JSON.
 #[derive(Serialize)]
-struct Report<'r> {
-    quantity: &'r str,
-    unit: &'r str,
+struct Report {
+    quantity: &'static str,
+    unit: &'static str,
     /// The last value that certifies; null where every value does, or none.
     value: Option<f64>,
     limited: bool,
     possible: bool,
     /// The scenes that certify, as TOML.
     scenes: Vec<String>,
+}
+
+/// What is asked for: which end of it, its name, its unit.
+struct Sought {
+    which: &'static str,
+    name: &'static str,
+    unit: &'static str,
+    note: Option<&'static str>,
 }
 
 /// Answers: no where nothing passes.
@@ -102,36 +111,55 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             border(arguments, [*first, *second], &points)
         }
         Question::Largest { quantity, file } => {
-            let files = [file::load(file)?];
-            let found = match design::largest(&files[0].scene, *quantity, &terms) {
-                design::Answer::Limit(value, scene) => design::Answer::Limit(value, vec![scene]),
-                design::Answer::Unlimited => design::Answer::Unlimited,
+            let file = arguments.load(file)?;
+            let (name, unit) = quantity.name_and_unit();
+            let sought = Sought { which: "largest", name, unit, note: None };
+            let whole = |scene| vec![SceneFile { scene, ..file.clone() }];
+            let found = match design::largest(&file.scene, *quantity, &terms) {
+                design::Answer::Limit(value, scene) => design::Answer::Limit(value, whole(scene)),
+                design::Answer::Unlimited(scene) => design::Answer::Unlimited(whole(scene)),
                 design::Answer::Nothing => design::Answer::Nothing,
                 design::Answer::NoSuchNumber => {
-                    let (quantity, scene) = (quantity.name_and_unit().0, files[0].name.clone());
-                    return Err(CommandError::NoSuchQuantity { scene, quantity });
+                    return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: name });
                 }
             };
-            let (name, unit) = quantity.name_and_unit();
-            answer(arguments, ("largest ", name, unit), &files, &found)
+            answer(arguments, &sought, &found)
         }
         Question::Device { files } => {
-            let (files, scenes) = load(files)?;
-            let found = design::device(&scenes, &terms);
-            answer(arguments, ("least ", "device damping", "N m s/rad"), &files, &found)
+            let files = arguments.load_all(files)?;
+            let unit = "N m s/rad";
+            let sought = if files.iter().all(|file| file.chain.is_rigid()) {
+                Sought { which: "least", name: "device damping", unit, note: None }
+            } else {
+                let note = Some("of the chain, this damper alone was changed");
+                Sought { which: "least", name: "damping of the motor's mass", unit, note }
+            };
+            answer(arguments, &sought, &design::device(&files, &terms))
         }
         Question::Period { files } => {
-            let (files, scenes) = load(files)?;
-            let found = design::period(&scenes, &terms);
-            answer(arguments, ("longest ", "period", "s"), &files, &found)
+            let files = arguments.load_all(files)?;
+            let sought = Sought { which: "longest", name: "period", unit: "s", note: None };
+            answer(arguments, &sought, &design::period(&files, &terms))
         }
     }
 }
 
-fn load(files: &[String]) -> Result<(Vec<SceneFile>, Vec<Scene>), CommandError> {
-    let files = files.iter().map(|name| file::load(name)).collect::<Result<Vec<_>, _>>()?;
-    let scenes = files.iter().map(|file| file.scene).collect();
-    Ok((files, scenes))
+impl Arguments {
+    fn load_all(&self, files: &[String]) -> Result<Vec<SceneFile>, CommandError> {
+        files.iter().map(|name| self.load(name)).collect()
+    }
+
+    /// Reads a scene file. What is written into another folder finds its torque file where it is.
+    fn load(&self, name: &str) -> Result<SceneFile, CommandError> {
+        let mut file = file::load(name)?;
+        if self.output.is_some()
+            && let Some(simulation) = &mut file.simulation
+            && let HandTorque::File(torque) = &mut simulation.torque
+        {
+            *torque = std::path::absolute(folder(name).join(&*torque))?;
+        }
+        Ok(file)
+    }
 }
 
 fn border(
@@ -155,42 +183,56 @@ fn border(
     Ok(if points.is_empty() { Answer::No } else { Answer::Yes })
 }
 
+impl Sought {
+    /// The answer as a comment of TOML.
+    fn comment(&self, found: &design::Answer<Vec<SceneFile>>) -> String {
+        let Self { which, name, unit, note } = self;
+        let answer = match found {
+            design::Answer::Limit(value, _) => match (*unit, *value) {
+                (SAMPLES, 1.0) => "1 sample".to_owned(),
+                (SAMPLES, samples) => format!("{samples} {SAMPLES}"),
+                (unit, value) => format!("{value:?} {unit}"),
+            },
+            design::Answer::Unlimited(_) => "any value certifies".to_owned(),
+            _ => "no value certifies".to_owned(),
+        };
+        let note = note.map_or_else(String::new, |note| format!("# {note}\n"));
+        format!("# {which} {name}: {answer}\n{note}")
+    }
+}
+
 /// Prints the answer, and the scenes as files that can be certified as they are: the answer is a
-/// comment in them.
+/// comment in them. Several scenes are no one file, and go into a folder.
 fn answer(
     arguments: &Arguments,
-    (which, name, unit): (&str, &str, &str),
-    files: &[SceneFile],
-    found: &design::Answer<Vec<Scene>>,
+    sought: &Sought,
+    found: &design::Answer<Vec<SceneFile>>,
 ) -> Result<Answer, CommandError> {
-    let (value, scenes) = match found {
-        design::Answer::Limit(value, scenes) => (Some(*value), scenes.as_slice()),
-        _ => (None, [].as_slice()),
+    let (value, files) = match found {
+        design::Answer::Limit(value, files) => (Some(*value), files.as_slice()),
+        design::Answer::Unlimited(files) => (None, files.as_slice()),
+        design::Answer::Nothing | design::Answer::NoSuchNumber => (None, [].as_slice()),
     };
-    let sentence = match found {
-        design::Answer::Limit(value, _) => format!("{which}{name}: {value:?} {unit}"),
-        design::Answer::Unlimited => format!("{which}{name}: any value certifies"),
-        _ => format!("{which}{name}: no value certifies"),
-    };
-    let possible = value.is_some() || *found == design::Answer::Unlimited;
-    let texts: Vec<String> = files
-        .iter()
-        .zip(scenes)
-        .map(|(file, scene)| format!("# {sentence}\n{}", write::toml(&file.name, scene)))
-        .collect();
-    let mut out = io::stdout().lock();
+    let comment = sought.comment(found);
+    let scenes: Vec<String> =
+        files.iter().map(|file| format!("{comment}{}", write::toml(file))).collect();
+    let possible = !scenes.is_empty();
     if let Some(folder) = &arguments.output {
-        save(folder, &texts)?;
+        save(folder, &scenes)?;
     }
+    let mut out = io::stdout().lock();
     if arguments.json {
-        let limited = value.is_some();
-        let report = Report { quantity: name, unit, value, limited, possible, scenes: texts };
+        let Sought { name: quantity, unit, .. } = *sought;
+        let report = Report { quantity, unit, value, limited: value.is_some(), possible, scenes };
         serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
         writeln!(out)?;
-    } else if arguments.output.is_some() || texts.len() != 1 {
-        writeln!(out, "{sentence}")?;
+    } else if let ([scene], None) = (&scenes[..], &arguments.output) {
+        write!(out, "{scene}")?;
     } else {
-        write!(out, "{}", texts[0])?;
+        write!(out, "{comment}")?;
+        if scenes.len() > 1 && arguments.output.is_none() {
+            writeln!(out, "# the {} scenes are written with --output FOLDER", scenes.len())?;
+        }
     }
     out.flush()?;
     Ok(if possible { Answer::Yes } else { Answer::No })

@@ -5,9 +5,19 @@
 //! neighbour among the numbers of `f64` is refused. So every answer is exact and comes as scenes
 //! that certify.
 
+mod edge;
+mod quantity;
+
 use firmware::certificate::Posed;
-use firmware::environment::{Environment, MAX_DELAY, Wall};
+use firmware::environment::MAX_DELAY;
 use firmware::scene::{Coupling, Scene};
+
+use crate::chain::Chain;
+use crate::file::SceneFile;
+
+pub use quantity::{Quantity, SAMPLES};
+
+use edge::{Edge, edge};
 
 /// What a design takes for granted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,72 +43,13 @@ pub enum Choice {
     Kept,
 }
 
-/// A number of the environment that a design can take as far as it goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Quantity {
-    /// Stiffness in N m/rad.
-    Stiffness,
-    /// Damping in N m s/rad.
-    Damping,
-    /// Delay in samples.
-    Delay,
-    /// Cancellation: the damping in N m s/rad that free mode takes away.
-    Cancellation,
-}
-
-impl Quantity {
-    /// Name and unit.
-    pub fn name_and_unit(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Stiffness => ("stiffness", "N m/rad"),
-            Self::Damping => ("damping", "N m s/rad"),
-            Self::Delay => ("delay", "samples"),
-            Self::Cancellation => ("cancellation", "N m s/rad"),
-        }
-    }
-
-    /// The scene with this much of it; `None` where its environment has no such number.
-    fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
-        let mut changed = *scene;
-        match (self, &mut changed.environment) {
-            (Self::Cancellation, Environment::FreeMode { residual, .. })
-            | (Self::Cancellation, Environment::FreeModeWall { residual, .. }) => {
-                *residual = scene.device.damping - value;
-            }
-            (Self::Delay, Environment::FreeMode { delay, .. }) => *delay = value as usize,
-            (Self::Delay, Environment::Rational(rational)) => rational.delay = value as usize,
-            (_, environment) => self.set_wall(wall_of(environment)?, value)?,
-        }
-        Some(changed)
-    }
-
-    fn set_wall(self, wall: &mut Wall, value: f64) -> Option<()> {
-        match self {
-            Self::Stiffness => wall.stiffness = value,
-            Self::Damping => wall.damping = value,
-            Self::Delay => wall.delay = value as usize,
-            Self::Cancellation => return None,
-        }
-        Some(())
-    }
-}
-
-fn wall_of(environment: &mut Environment) -> Option<&mut Wall> {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => Some(wall),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
-    }
-}
-
 /// How far a number goes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer<T> {
     /// To this value and no further; with it the scene, or the scenes, that certify.
     Limit(f64, T),
-    /// As far as one likes.
-    Unlimited,
+    /// As far as one likes; with the scene, or the scenes, as they were where those certify.
+    Unlimited(T),
     /// No value passes.
     Nothing,
     /// The environment has no such number.
@@ -141,7 +92,8 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
     };
     match edge(|value| passes(&at(value)), start, 2.0) {
         Edge::At(value) => Answer::Limit(value, at(value)),
-        Edge::Always => Answer::Unlimited,
+        Edge::Always if passes(&scene) => Answer::Unlimited(scene),
+        Edge::Always => Answer::Unlimited(at(start)),
         Edge::Never if passes(&at(0.0)) => Answer::Limit(0.0, at(0.0)),
         Edge::Never => Answer::Nothing,
     }
@@ -174,83 +126,74 @@ pub fn border(
     (0..count).filter_map(|index| point(value(index))).collect()
 }
 
-/// The least damping in N m s/rad that a device needs for all of these environments, with the
-/// standard coupling that goes with it. What a free mode cancels grows with the damping.
-pub fn device(scenes: &[Scene], terms: &Terms) -> Answer<Vec<Scene>> {
+/// The least damping in N m s/rad that the motor's mass needs on a device for all of these
+/// environments, with the standard coupling that goes with it. The rest of a chain stays as it is;
+/// a rigid device is nothing but its motor's mass. What a free mode cancels grows with the damping,
+/// and a passivity that was declared is that of another device.
+pub fn device(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
     let terms = Terms { coupling: Choice::Standard, ..*terms };
-    let at = |damping: f64| -> Vec<Scene> {
-        let with = |scene: &Scene| {
-            let mut scene = *scene;
-            (scene.device.damping, scene.device.passivity) = (damping, None);
-            prepared(&scene, &terms)
-        };
-        scenes.iter().map(with).collect()
+    let on = |file: &SceneFile, damping: f64| -> Option<(Chain, Scene)> {
+        let chain = file.chain.clone().with_motor_damping(damping).ok()?;
+        let device = chain.as_rigid().ok()?;
+        Some((chain, prepared(&Scene { device, ..file.scene }, &terms)))
     };
-    let start = scenes.iter().map(|scene| scene.device.damping).fold(f64::MIN_POSITIVE, f64::max);
-    answer(edge(|damping| at(damping).iter().all(passes), start, 0.5), at)
-}
-
-/// The longest period in s with which all of these environments may be rendered on their devices;
-/// a longest period that is tolerated grows with it. The law of each is as its scene has it, so a
-/// rational one keeps its coefficients whatever the period.
-pub fn period(scenes: &[Scene], terms: &Terms) -> Answer<Vec<Scene>> {
-    let at = |period: f64| -> Vec<Scene> {
-        let with = |scene: &Scene| {
-            let mut scene = *scene;
-            let worst = scene.timing.worst_period.map(|worst| worst / scene.timing.period);
-            scene.timing.period = period;
-            scene.timing.worst_period = worst.map(|ratio| ratio * period);
-            prepared(&scene, terms)
-        };
-        scenes.iter().map(with).collect()
+    let fits = |damping: f64| {
+        files.iter().all(|file| on(file, damping).is_some_and(|(_, scene)| passes(&scene)))
     };
-    let start = scenes.iter().map(|scene| scene.timing.period).fold(f64::INFINITY, f64::min);
-    answer(edge(|period| at(period).iter().all(passes), start, 2.0), at)
-}
-
-fn answer(edge: Edge, at: impl Fn(f64) -> Vec<Scene>) -> Answer<Vec<Scene>> {
-    match edge {
+    let at = |damping: f64| -> Vec<SceneFile> {
+        let with = |file: &SceneFile| {
+            let (chain, scene) = on(file, damping)?;
+            Some(SceneFile { chain, scene, ..file.clone() })
+        };
+        files.iter().filter_map(with).collect()
+    };
+    let most = files.iter().map(|file| file.scene.device.damping).fold(0.0, f64::max);
+    // A device of which nothing is known yet may be any.
+    let start = if most > 0.0 { most } else { 1.0 };
+    match edge(fits, start, 0.5) {
         Edge::At(value) => Answer::Limit(value, at(value)),
-        Edge::Always => Answer::Unlimited,
+        // The rest of the chain is enough.
+        Edge::Always if fits(0.0) => Answer::Limit(0.0, at(0.0)),
+        Edge::Always => Answer::Unlimited(at(start)),
         Edge::Never => Answer::Nothing,
     }
 }
 
-/// Where something ceases to pass.
-enum Edge {
-    At(f64),
-    Always,
-    Never,
-}
-
-/// Looks for the last value that passes in the direction of `outward`, a factor; values the other
-/// way pass all the more.
-fn edge(passes: impl Fn(f64) -> bool, start: f64, outward: f64) -> Edge {
-    /// Octaves in each direction: more than any two numbers of one machine are apart.
-    const OCTAVES: usize = 60;
-    let (mut inside, mut outside) = (start, start);
-    let mut octaves = 0;
-    while !passes(inside) {
-        (outside, inside) = (inside, inside / outward);
-        octaves += 1;
-        if octaves > OCTAVES {
-            return Edge::Never;
+/// The longest period in s with which all of these environments may be rendered on their devices;
+/// a longest period that is tolerated, and a simulation's latency, grow with it. The law of each is as its scene has it, so a
+/// rational one keeps its coefficients whatever the period.
+pub fn period(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+    let with = |scene: &Scene, period: f64| {
+        let mut scene = *scene;
+        let worst = scene.timing.worst_period.map(|worst| worst / scene.timing.period);
+        scene.timing.period = period;
+        scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
+        prepared(&scene, terms)
+    };
+    let fits = |period: f64| files.iter().all(|file| passes(&with(&file.scene, period)));
+    let at = |period: f64| -> Vec<SceneFile> {
+        let timed = |file: &SceneFile| {
+            let mut timed = SceneFile { scene: with(&file.scene, period), ..file.clone() };
+            if let Some(simulation) = &mut timed.simulation {
+                simulation.latency *= period / file.scene.timing.period;
+            }
+            timed
+        };
+        files.iter().map(timed).collect()
+    };
+    let as_they_were = || -> Vec<SceneFile> {
+        let kept =
+            |file: &SceneFile| SceneFile { scene: prepared(&file.scene, terms), ..file.clone() };
+        files.iter().map(kept).collect()
+    };
+    let start = files.iter().map(|file| file.scene.timing.period).fold(f64::INFINITY, f64::min);
+    match edge(fits, start, 2.0) {
+        Edge::At(value) => Answer::Limit(value, at(value)),
+        Edge::Always if as_they_were().iter().all(|file| passes(&file.scene)) => {
+            Answer::Unlimited(as_they_were())
         }
-    }
-    octaves = 0;
-    while inside == outside || passes(outside) {
-        (inside, outside) = (outside, outside * outward);
-        octaves += 1;
-        if octaves > OCTAVES {
-            return Edge::Always;
-        }
-    }
-    loop {
-        let middle = 0.5 * (inside + outside);
-        if middle == inside || middle == outside {
-            return Edge::At(inside);
-        }
-        if passes(middle) { inside = middle } else { outside = middle }
+        Edge::Always => Answer::Unlimited(at(start)),
+        Edge::Never => Answer::Nothing,
     }
 }
 

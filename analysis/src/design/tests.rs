@@ -1,5 +1,7 @@
 use super::*;
+use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
+use firmware::environment::{Environment, Wall};
 use firmware::scene::{Device, Timing};
 
 fn scene(environment: Environment) -> Scene {
@@ -15,6 +17,20 @@ fn scene(environment: Environment) -> Scene {
 fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
     let one_sided = false;
     Environment::DamperWall(Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided })
+}
+
+fn file(scene: Scene) -> SceneFile {
+    let chain = Chain::rigid(scene.device.inertia, scene.device.damping).unwrap();
+    let name = "designed".to_owned();
+    SceneFile { name, scene, chain, simulation: None, hand: None, encoder_step: None }
+}
+
+/// The scene, as it is read from what is written.
+fn read(file: &SceneFile) -> Scene {
+    let text = write::toml(file);
+    parse("designed.toml", Format::Toml, &text)
+        .unwrap_or_else(|error| panic!("{error}\n{text}"))
+        .scene
 }
 
 fn limit<T>(answer: Answer<T>) -> (f64, T) {
@@ -36,11 +52,11 @@ fn papers_wall_in_all_directions() {
     near(limit(largest(&paper, Quantity::Stiffness, &terms)).0, 24.0);
     near(limit(largest(&paper, Quantity::Damping, &terms)).0, 0.011);
     assert_eq!(limit(largest(&paper, Quantity::Delay, &terms)).0, 1.0);
-    near(limit(device(&[paper, scene(wall(30.0, 0.0, 1))], &terms)).0, 0.021);
-    near(limit(period(&[paper], &terms)).0, 0.012 / 11.0);
+    near(limit(device(&[file(paper), file(scene(wall(30.0, 0.0, 1)))], &terms)).0, 0.021);
+    near(limit(period(&[file(paper)], &terms)).0, 0.012 / 11.0);
     let careful = Terms { safety: 0.95, ..terms };
     near(limit(largest(&paper, Quantity::Stiffness, &careful)).0, 21.8);
-    near(limit(device(&[paper], &careful)).0, 0.021 / 0.95);
+    near(limit(device(&[file(paper)], &careful)).0, 0.021 / 0.95);
     let mut late = paper;
     late.timing.worst_period = Some(0.002);
     near(limit(largest(&late, Quantity::Stiffness, &terms)).0, 2.0);
@@ -50,10 +66,21 @@ fn papers_wall_in_all_directions() {
 fn what_has_no_limit_and_what_has_no_such_number() {
     let terms = Terms::default();
     let undelayed = scene(wall(22.0, 0.01, 0));
-    assert_eq!(largest(&undelayed, Quantity::Stiffness, &terms), Answer::Unlimited);
+    let Answer::Unlimited(found) = largest(&undelayed, Quantity::Stiffness, &terms) else {
+        panic!("a limit")
+    };
+    assert!(passes(&read(&file(found))) && found.environment == undelayed.environment);
+    // A wall that pulls does not certify as it is, but all that push do.
+    let pulling = scene(wall(-5.0, 0.01, 0));
+    let Answer::Unlimited(found) = largest(&pulling, Quantity::Stiffness, &terms) else {
+        panic!("a limit")
+    };
+    assert!(passes(&read(&file(found))));
     let free = scene(Environment::FreeMode { residual: 0.01, delay: 0 });
     assert_eq!(largest(&free, Quantity::Stiffness, &terms), Answer::NoSuchNumber);
     near(limit(largest(&free, Quantity::Cancellation, &terms)).0, 0.022);
+    let Answer::Unlimited(found) = period(&[file(free)], &terms) else { panic!("a limit") };
+    assert!(passes(&read(&found[0])) && found[0].scene.timing == free.timing);
 }
 
 #[test]
@@ -64,9 +91,7 @@ fn answers_are_files_that_certify_and_nothing_more_would() {
             Quantity::Stiffness,
             &Terms { safety: 0.9, ..Terms::default() },
         ));
-        let text = write::toml("stiffest", &found);
-        let read = parse("stiffest.toml", Format::Toml, &text).unwrap();
-        assert!(passes(&read.scene), "{text}");
+        assert!(passes(&read(&file(found))));
         let more = Quantity::Stiffness.set(&found, value.next_up()).unwrap();
         assert!(!passes(&more));
     }
@@ -84,4 +109,54 @@ fn border_of_stiffness_and_damping() {
     for &(stiffness, damping) in &points[..4] {
         near(stiffness * 0.0005 + damping, 0.022);
     }
+}
+
+/// A pole of free mode's environment, `be / (K T + be)` with `K T = 2 b` and `be = b - epsilon`,
+/// meets the circle at -1 where `4 b = 2 epsilon`.
+#[test]
+fn the_border_of_free_mode_is_where_a_pole_meets_the_circle() {
+    for residual in [0.001, 0.03, 7.0] {
+        let free = scene(Environment::FreeMode { residual, delay: 0 });
+        let (damping, found) = limit(device(&[file(free)], &Terms::default()));
+        assert!(damping > 0.5 * residual);
+        assert!((damping / (0.5 * residual) - 1.0).abs() < 1e-12, "{damping} for {residual}");
+        assert!(passes(&read(&found[0])));
+    }
+}
+
+/// A chain of two has `b_1 + b_2 c / (b_2 + c)` (theory, section 3.2), of which a design gives the
+/// first.
+#[test]
+fn a_chain_stays_as_it_is_but_for_its_motor() {
+    let masses = [0.02, 0.005].map(|damping| Mass { inertia: 1.1e-5, damping });
+    let links = vec![Link { stiffness: 40.0, damping: 0.015 }];
+    let chain = Chain::new(masses.to_vec(), links).unwrap();
+    let paper = scene(wall(22.0, 0.01, 1));
+    let device_of_chain = chain.as_rigid().unwrap();
+    let file = SceneFile {
+        scene: Scene { device: device_of_chain, ..paper },
+        chain: chain.clone(),
+        ..file(paper)
+    };
+    for safety in [1.0, 0.9] {
+        let terms = Terms { safety, ..Terms::default() };
+        let (damping, found) = limit(device(std::slice::from_ref(&file), &terms));
+        near(damping + 0.005 * 0.015 / 0.02, 0.021 / safety);
+        assert_eq!(found[0].chain, chain.clone().with_motor_damping(damping).unwrap());
+        assert!(passes(&read(&found[0])));
+        let less = chain.clone().with_motor_damping(damping.next_down()).unwrap();
+        let scene = Scene { device: less.as_rigid().unwrap(), ..file.scene };
+        assert!(!passes(&prepared(&scene, &terms)));
+    }
+    // Softer than what the rest of the chain holds already.
+    let soft = Scene { device: device_of_chain, ..scene(wall(1.0, 0.0, 1)) };
+    let (damping, found) = limit(device(&[SceneFile { scene: soft, ..file }], &Terms::default()));
+    assert!(damping == 0.0 && passes(&read(&found[0])));
+}
+
+#[test]
+fn a_device_of_which_nothing_is_known_is_designed_too() {
+    let mut unknown = scene(wall(22.0, 0.01, 1));
+    unknown.device.damping = 0.0;
+    near(limit(device(&[file(unknown)], &Terms::default())).0, 0.021);
 }

@@ -1,33 +1,68 @@
-//! A [`Scene`] written as the file that reads back as the same scene, to the last bit.
+//! A [`SceneFile`] written as the text that reads back as the same, to the last bit.
+
+mod moving;
 
 use std::fmt::Write;
 
 use firmware::environment::{Coefficients, Environment, Wall};
-use firmware::scene::{Coupling, Scene};
+use firmware::scene::{Coupling, Device};
 
-/// The text of a scene file in TOML.
-pub fn toml(name: &str, scene: &Scene) -> String {
+use super::scene::SceneFile;
+use crate::chain::{Chain, EncoderPlace};
+
+/// The text of a scene file in TOML: everything that the file says, and nothing that it did not.
+pub fn toml(file: &SceneFile) -> String {
+    let SceneFile { name, scene, chain, simulation, hand, encoder_step } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
-    let mut number = |key: &str, value: f64| lines.push(format!("{key} = {value:?}"));
-    number("inertia", scene.device.inertia);
-    number("damping", scene.device.damping);
-    if let Some(passivity) = scene.device.passivity {
-        number("passivity", passivity);
-    }
-    lines.push("[servo]".to_owned());
-    lines.push(format!("period = {:?}", scene.timing.period));
-    if let Some(worst) = scene.timing.worst_period {
-        lines.push(format!("worst_period = {worst:?}"));
-    }
+    device(&mut lines, chain, &scene.device);
+    lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
+    number(&mut lines, "worst_period", scene.timing.worst_period);
     if let Coupling::Spring { stiffness } = scene.coupling {
         lines.push(format!("[coupling]\nstiffness = {stiffness:?}"));
     }
     lines.push("[environment]".to_owned());
     environment(&mut lines, &scene.environment);
-    if let Some(limit) = scene.torque_limit {
-        lines.push(format!("[limits]\ntorque = {limit:?}"));
+    if let Some(simulation) = simulation {
+        moving::simulation(&mut lines, simulation);
+    }
+    if let Some(hand) = hand {
+        moving::hand(&mut lines, hand);
+    }
+    if scene.torque_limit.is_some() || encoder_step.is_some() {
+        lines.push("[limits]".to_owned());
+        number(&mut lines, "torque", scene.torque_limit);
+        number(&mut lines, "encoder_step", *encoder_step);
     }
     lines.join("\n") + "\n"
+}
+
+/// A key that need not be there.
+fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
+    lines.extend(value.map(|value| format!("{key} = {value:?}")));
+}
+
+/// A passivity is written where somebody declared it: not where it is what the chain has.
+fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device) {
+    let own = chain.as_rigid().ok().and_then(|own| own.passivity);
+    let declared = device.passivity.filter(|passivity| !passivity.is_nan());
+    let passivity = declared.filter(|&declared| Some(declared) != own);
+    if let [mass] = chain.masses() {
+        lines.push(format!("inertia = {:?}\ndamping = {:?}", mass.inertia, mass.damping));
+    }
+    number(lines, "passivity", passivity);
+    if chain.encoder() == EncoderPlace::Hand {
+        lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
+    }
+    number(lines, "actuator_lag", Some(chain.actuator_lag()).filter(|&lag| lag > 0.0));
+    if chain.masses().len() > 1 {
+        let damped = |table: &str, key: &str, value: f64, damping: f64| {
+            format!("[[device.{table}]]\n{key} = {value:?}\ndamping = {damping:?}")
+        };
+        let masses = chain.masses().iter();
+        lines.extend(masses.map(|mass| damped("mass", "inertia", mass.inertia, mass.damping)));
+        let links = chain.links().iter();
+        lines.extend(links.map(|link| damped("link", "stiffness", link.stiffness, link.damping)));
+    }
 }
 
 fn environment(lines: &mut Vec<String>, environment: &Environment) {
@@ -95,27 +130,81 @@ fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::{Format, parse};
+    use crate::file::{Format, Purpose, parse_for};
+
+    /// The file as it is read, written and read again.
+    fn again(text: &str) -> [SceneFile; 2] {
+        let first = parse_for(Purpose::Simulate, "a.toml", Format::Toml, text).unwrap();
+        let written = toml(&first);
+        let second = parse_for(Purpose::Simulate, "b.toml", Format::Toml, &written);
+        let second = second.unwrap_or_else(|error| panic!("{error}\n{written}"));
+        [first, second]
+    }
+
+    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\n";
+    const SPRING: &str = "[environment]\ntype = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n";
+
+    fn text(device: &str, rest: &str) -> String {
+        format!(
+            "name = \"a \\\"b\\\"\"\n[servo]\nperiod = 0.001\nworst_period = 0.003\n[device]\n\
+             {device}{rest}"
+        )
+    }
 
     #[test]
     fn what_is_written_reads_back_as_the_same_scene() {
-        let head = "name = \"a \\\"b\\\"\"\n[device]\ninertia = 2.2e-5\ndamping = 0.1\n\
-                    passivity = 0.07\n[servo]\nperiod = 0.001\nworst_period = 0.003\n";
-        for rest in [
-            "[coupling]\nstiffness = 44\n[environment]\ntype = \"delayed-spring\"\n\
-             stiffness = 0.1\ndelay = 3\n[limits]\ntorque = 0.7\n",
-            "[environment]\ntype = \"damper-wall\"\nstiffness = 1e-30\ndamping = -0.3\ndelay = 0\n\
+        for environment in [
+            "type = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n[coupling]\nstiffness = 44\n\
+             [limits]\ntorque = 0.7\n",
+            "type = \"damper-wall\"\nstiffness = 1e-30\ndamping = -0.3\ndelay = 0\n\
              filter = 0.3\nface = -0.2\none_sided = true\n",
-            "[environment]\ntype = \"free-mode\"\nresidual = 0.001\ndelay = 1\n",
-            "[environment]\ntype = \"free-mode-wall\"\nresidual = 0.001\nstiffness = 3\n\
-             damping = 0.2\ndelay = 1\n",
-            "[environment]\ntype = \"rational\"\nnumerator = [1, -0.3]\n\
-             denominator = [1, 0.1, 0.7]\ndelay = 2\nunit_zeros = 1\n",
+            "type = \"free-mode\"\nresidual = 0.001\ndelay = 1\n",
+            "type = \"free-mode-wall\"\nresidual = 0.001\nstiffness = 3\ndamping = 0.2\ndelay = 1\n",
+            "type = \"rational\"\nnumerator = [1, -0.3]\ndenominator = [1, 0.1, 0.7]\ndelay = 2\n\
+             unit_zeros = 1\n",
         ] {
-            let first = parse("a.toml", Format::Toml, &format!("{head}{rest}")).unwrap();
-            let text = toml(&first.name, &first.scene);
-            let second = parse("b.toml", Format::Toml, &text).unwrap();
-            assert_eq!((first.name, first.scene), (second.name, second.scene), "{text}");
+            let [first, second] = again(&text(RIGID, &format!("[environment]\n{environment}")));
+            assert_eq!(first, second);
+        }
+    }
+
+    #[test]
+    fn chains_stay_chains_with_what_was_declared_of_them_and_nothing_else() {
+        let chain = |more: &str| {
+            format!(
+                "{more}[[device.mass]]\ninertia = 1e-5\ndamping = 0.3\n[[device.mass]]\n\
+                 inertia = 2e-5\ndamping = 0.1\n[[device.link]]\nstiffness = 60\ndamping = 0.2\n"
+            )
+        };
+        for more in ["", "passivity = 0.3\n"] {
+            let [first, second] = again(&text(&chain(more), SPRING));
+            assert_eq!(first, second);
+            assert_eq!(toml(&first).contains("passivity"), !more.is_empty());
+        }
+        let [first, second] =
+            again(&text(&chain("encoder = \"hand\"\nactuator_lag = 1e-4\n"), SPRING));
+        // Its passivity is not a number, which equals nothing.
+        assert_eq!((&first.chain, toml(&first)), (&second.chain, toml(&second)));
+    }
+
+    #[test]
+    fn what_only_a_simulation_uses_is_kept() {
+        for torque in [
+            "torque = [0.1, -2e-9]",
+            "torque_file = \"a \\\"push\\\".csv\"",
+            "torque_sine = { amplitude = 0.1, omega = 60, phase = 0.2 }",
+            "torque_sine = { amplitude = 0.1, omega = 60, held = true }",
+            "torque_pulses = { amplitude = -0.1, every = 50, length = 7 }",
+            "missed = { every = 7 }",
+            "missed = { fraction = 0.1, seed = 3 }\nlatency = 0.0002\nfriction = 0.01",
+            "position = 0.1\nvelocity = -2",
+        ] {
+            let rest = format!(
+                "{SPRING}[simulation]\nsamples = 9\n{torque}\n[human]\ninertia = 0.1\n\
+                 stiffness = 3\n[limits]\nencoder_step = 1e-4\n"
+            );
+            let [first, second] = again(&text(RIGID, &rest));
+            assert_eq!(first, second);
         }
     }
 }
