@@ -13,9 +13,10 @@
 //! question without the root; [`crate::chain::Chain::excess_passivity`] is the answer.
 
 use nalgebra::{Complex, Matrix2};
+use serde::Serialize;
 
-use crate::chain::Chain;
 use crate::chain::two_port::TwoPort;
+use crate::chain::{Chain, ExcessPassivity};
 
 /// A complex 2x2 matrix: of two ports, the first towards the hand.
 pub type Matrix = Matrix2<Complex<f64>>;
@@ -73,6 +74,59 @@ impl GeneralizedPlant {
         let f = g[(0, 0)].norm_sqr() + g[(1, 1)].norm_sqr() + 2.0 * across.norm();
         (f, (g[(0, 0)] * g[(1, 1)] - across).norm())
     }
+}
+
+/// `mu` held against a `delta` that was found otherwise: 1 there but for what the square root makes
+/// of the last bit, and greater above. Both are the largest over frequencies from far below the
+/// device's rates to far above, and the one at which `delta` is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// Largest `mu` with `delta`.
+    pub at_delta: f64,
+    /// Largest `mu` with a `delta` that is greater by the part `by`.
+    pub above: f64,
+    /// The part.
+    pub by: f64,
+    /// Angular frequency in rad/s of the second.
+    pub omega: f64,
+}
+
+impl Check {
+    /// Of a device whose `delta` was found; `None` where it is 0, and where no `mu` is a number.
+    pub fn of(chain: &Chain, found: &ExcessPassivity) -> Option<Self> {
+        /// Far more than the noise of `mu`, however light the damping.
+        const BY: f64 = 0.1;
+        if found.value <= 0.0 {
+            return None;
+        }
+        let reached = found.reached.omega().filter(|&omega| omega > 0.0);
+        let largest = |delta: f64| {
+            let mu = |omega: f64| (GeneralizedPlant::at(chain, delta, omega).mu(), omega);
+            let all = frequencies(chain).chain(reached).map(mu).filter(|(mu, _)| mu.is_finite());
+            all.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let (at_delta, _) = largest(found.value)?;
+        let (above, omega) = largest((1.0 + BY) * found.value)?;
+        Some(Self { at_delta, above, by: BY, omega })
+    }
+}
+
+/// Angular frequencies in rad/s around the rates of a chain, evenly spaced on a logarithmic axis.
+fn frequencies(chain: &Chain) -> impl Iterator<Item = f64> {
+    const POINTS: u32 = 600;
+    /// How far beyond the slowest and the fastest rate.
+    const BEYOND: f64 = 1e3;
+    let rates = |inertia: f64| {
+        let grounds = chain.masses().iter().map(move |mass| mass.damping / inertia);
+        let springs = chain.links().iter().map(move |link| (link.stiffness / inertia).sqrt());
+        let dampers = chain.links().iter().map(move |link| link.damping / inertia);
+        grounds.chain(springs).chain(dampers).filter(|rate| *rate > 0.0)
+    };
+    let lightest = chain.masses().iter().map(|mass| mass.inertia).fold(f64::INFINITY, f64::min);
+    let slowest = rates(chain.inertia()).fold(f64::INFINITY, f64::min) / BEYOND;
+    let fastest = rates(lightest).fold(0.0, f64::max) * BEYOND;
+    let step = (fastest / slowest).ln() / f64::from(POINTS);
+    (0..=POINTS).map(move |index| slowest * (step * f64::from(index)).exp())
 }
 
 /// `M` of equation 8: closed above by `D` it is the reaction `-H` of the hand.

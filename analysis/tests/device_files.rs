@@ -56,6 +56,25 @@ fn a_chain_has_its_closed_form() {
     assert_eq!(found["reached"], "everywhere");
 }
 
+/// Equations 5 to 16 beside the closed form: 1 up to `delta` and greater above.
+#[test]
+fn mu_agrees_with_delta() {
+    let rigid = "[device]\ninertia = 2.2e-5\ndamping = 0.022\n";
+    let bent = CHAIN.replace("inertia = 0.02\n", "inertia = 0.03\n")
+        + "[[device.mass]]\ninertia = 0.01\ndamping = 0.05\n\
+           [[device.link]]\nstiffness = 900.0\ndamping = 0.5\n";
+    for device in [rigid, CHAIN, &bent] {
+        let mu = &answer(&haptic(&["device", "--json", "-"], device))["mu"];
+        let [at_delta, above] = ["at_delta", "above"].map(|key| mu[key].as_f64().unwrap());
+        assert!((at_delta - 1.0).abs() < 1e-7, "{mu}");
+        assert!(above > 1.0 + 1e-6, "{mu}");
+        let text = String::from_utf8(haptic(&["device", "-"], device).stdout).unwrap();
+        assert!(text.contains("up to delta, 1.0"), "{text}");
+    }
+    let undamped = "[device]\ninertia = 2.2e-5\ndamping = 0.0\n";
+    assert!(answer(&haptic(&["device", "--json", "-"], undamped))["mu"].is_null());
+}
+
 #[test]
 fn json_is_the_same_shape() {
     let chain = r#"{"device": {"mass": [{"inertia": 0.05, "damping": 0.5},

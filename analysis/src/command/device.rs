@@ -1,13 +1,13 @@
 //! `haptic device`: how much passivity does a device have?
 
-use std::io::{self, Write};
-
 use clap::Args;
 use serde::Serialize;
 
+use super::common::ForWhom;
 use super::{Answer, CommandError};
 use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
 use crate::file::{self, DeviceFile};
+use crate::mu::Check;
 use crate::quantity::significant;
 
 /// Arguments of `haptic device`.
@@ -16,9 +16,9 @@ pub struct Arguments {
     /// File with a device table, which may be a scene; TOML or JSON; `-` is standard input
     #[arg(value_name = "FILE")]
     pub file: String,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// What is known of a device.
@@ -47,6 +47,8 @@ pub struct Report {
     pub damping: f64,
     /// Time constant of the amplifier in s.
     pub actuator_lag: f64,
+    /// The paper's construction held against `delta`; `None` where there is no `delta` above 0.
+    pub mu: Option<Check>,
     /// The answer as a sentence.
     pub message: String,
 }
@@ -54,14 +56,7 @@ pub struct Report {
 /// Answers for a device; no if it has no passivity.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let report = report(&file::load_device(&arguments.file)?);
-    let mut out = io::stdout().lock();
-    if arguments.json {
-        serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
-        writeln!(out)?;
-    } else {
-        write!(out, "{}", text(&report))?;
-    }
-    out.flush()?;
+    arguments.answer.print(&report, text)?;
     Ok(if report.delta.is_some() { Answer::Yes } else { Answer::No })
 }
 
@@ -83,6 +78,7 @@ pub fn report(file: &DeviceFile) -> Report {
         inertia: chain.inertia(),
         damping: chain.damping(),
         actuator_lag: chain.actuator_lag(),
+        mu: found.ok().and_then(|found| Check::of(chain, &found)),
         message: message(chain, &found),
     }
 }
@@ -138,6 +134,14 @@ pub fn text(report: &Report) -> String {
         format!("{} N m s/rad to ground in all", significant(report.damping, 6)),
     ));
     rows.push(("collocated", if report.collocated { "yes" } else { "no" }.to_owned()));
+    if let Some(Check { omega, at_delta, above, by }) = report.mu {
+        let [at_delta, above] = [at_delta, above].map(|mu| significant(mu, 8));
+        let (omega, more) = (significant(omega, 4), significant(1.0 + by, 4));
+        rows.push((
+            "mu",
+            format!("{at_delta} up to delta, {above} with {more} delta, at {omega} rad/s"),
+        ));
+    }
     if report.actuator_lag > 0.0 {
         rows.push(("amplifier's lag", format!("{} s", report.actuator_lag)));
     }
