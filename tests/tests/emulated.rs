@@ -174,8 +174,9 @@ fn a_board_that_crashes_is_an_error() {
     assert!(matches!(missing, Err(EmulatorError::Program { .. })));
 }
 
+// Each with the most instructions that its servo's interrupt may take, where that is promised.
 macro_rules! emulated {
-    ($($test:ident: $scene:ident, $format:expr, $number:ty;)*) => {$(
+    ($($test:ident: $scene:ident, $format:expr, $number:ty, $most:expr;)*) => {$(
         #[test]
         fn $test() {
             let report = run::<_, $number>(
@@ -185,15 +186,18 @@ macro_rules! emulated {
                 &$scene::TRANSDUCERS,
             );
             check(&report, &$scene::CERTIFIED);
+            if let Some(most) = $most {
+                assert!(report.usual_instructions <= most, "{}", report.usual_instructions);
+            }
         }
     )*};
 }
 
 emulated! {
-    delayed_spring_in_f32: delayed_spring, NumberFormat::F32, f32;
-    delayed_spring_in_fixed_point: delayed_spring, NumberFormat::Fixed, delayed_spring::Fixed;
-    damper_wall_in_f32: damper_wall, NumberFormat::F32, f32;
-    damper_wall_in_fixed_point: damper_wall, NumberFormat::Fixed, damper_wall::Fixed;
-    free_mode_in_f32: free_mode, NumberFormat::F32, f32;
-    free_mode_in_fixed_point: free_mode, NumberFormat::Fixed, free_mode::Fixed;
+    delayed_spring_in_f32: delayed_spring, NumberFormat::F32, f32, None::<u64>;
+    delayed_spring_in_fixed_point: delayed_spring, NumberFormat::Fixed, delayed_spring::Fixed, None::<u64>;
+    damper_wall_in_f32: damper_wall, NumberFormat::F32, f32, Some(150);
+    damper_wall_in_fixed_point: damper_wall, NumberFormat::Fixed, damper_wall::Fixed, None::<u64>;
+    free_mode_in_f32: free_mode, NumberFormat::F32, f32, None::<u64>;
+    free_mode_in_fixed_point: free_mode, NumberFormat::Fixed, free_mode::Fixed, None::<u64>;
 }

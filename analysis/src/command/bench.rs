@@ -7,11 +7,14 @@ use std::process::Command;
 use clap::Args;
 use comfy_table::presets;
 use comfy_table::{CellAlignment, Table};
+use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 
 use super::{Answer, CommandError};
+use crate::bench::live::live_set;
 use crate::bench::{self, Figure};
+use crate::emulator::Report;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
@@ -47,6 +50,14 @@ const MAP_BUDGET: f64 = 1e5;
 const COMPILE_BUDGET: f64 = 50.0;
 /// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
 const CERTIFY_BUDGET: f64 = 3.4e6;
+/// Most instructions that the servo's whole interrupt may take, what the core reads and writes at
+/// encoder and converter included.
+const INTERRUPT_BUDGET: f64 = 150.0;
+/// Most per cent of a core that the servo may take.
+const CORE_BUDGET: f64 = 15.0;
+/// What a board's core does: 170 MHz, at 20 kHz, if an instruction took a cycle.
+const CORE_CLOCK: f64 = 170e6;
+const TICK_RATE: f64 = 20e3;
 /// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core,
 /// for the same job without a coupling.
 const C_CONTACT: f64 = 53.0;
@@ -190,13 +201,7 @@ fn on_target(
             let name = format!("{name}, {format}: tick, count to code, {state}, most");
             figures.push(Figure::new(name, stats.max as f64, "instructions", against, source));
         }
-        figures.push(Figure::new(
-            format!("{name}, {format}: tick, whole interrupt, mean"),
-            board.interrupt_instructions.mean,
-            "instructions",
-            None,
-            "",
-        ));
+        interrupt(&format!("{name}, {format}"), &board, is_measured_in_c, figures);
         if format == NumberFormat::F32 {
             figures.push(Figure::new(
                 format!("{name}: certificate on the target"),
@@ -205,6 +210,7 @@ fn on_target(
                 Some(CERTIFY_BUDGET),
                 "budget, 20 ms at 170 MHz",
             ));
+            live_sets(name, &elf, figures)?;
         }
     }
     let size = toolchain.size(name)?;
@@ -219,6 +225,63 @@ fn on_target(
     }
     Ok(())
 }
+
+/// The servo's interrupt and its parts. The parts are measured by themselves, outside of the
+/// interrupt, where the compiler can share less between them.
+fn interrupt(name: &str, board: &Report, has_budget: bool, figures: &mut Vec<Figure>) {
+    let budget = has_budget.then_some(INTERRUPT_BUDGET);
+    let whole = board.usual_instructions as f64;
+    let mut add = |what: &str, value: f64, against: Option<f64>, source| {
+        let against_source = if against.is_some() { source } else { "" };
+        let name = format!("{name}: {what}");
+        figures.push(Figure::new(name, value, "instructions", against, against_source));
+    };
+    add("whole interrupt, mean", board.interrupt_instructions.mean, budget, "budget");
+    add("whole interrupt, 999 of 1000 at most", whole, budget, "budget");
+    add("whole interrupt, most", board.interrupt_instructions.max as f64, None, "");
+    let parts = [
+        ("of it the tick, count to code, mean", board.compute_instructions.mean),
+        ("of it the energy monitor, mean", board.energy_instructions.mean),
+        ("of it the frame, mean", board.frame_instructions.mean),
+    ];
+    let rest = parts.iter().fold(board.interrupt_instructions.mean, |rest, (_, part)| rest - part);
+    for (what, mean) in parts {
+        add(what, mean, None, "");
+    }
+    add("of it time, state, requests, registers, mean", rest, None, "");
+    add("lockstep around it, mean", board.lockstep_instructions.mean, None, "");
+    figures.push(Figure::new(
+        format!("{name}: a 170 MHz core at 20 kHz, a cycle an instruction"),
+        100.0 * whole * TICK_RATE / CORE_CLOCK,
+        "%",
+        Some(CORE_BUDGET),
+        "budget",
+    ));
+}
+
+/// What a set takes that the board certifies, and one that it refuses.
+fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
+    for coupling in [LIVE_COUPLING, 2.0 * LIVE_COUPLING] {
+        let set = live_set(elf, &[(Parameter::CouplingStiffness, coupling)])?;
+        let name = format!("{name}: live set, {}", if set.taken { "taken" } else { "refused" });
+        let (value, budget) = (set.instructions as f64, Some(CERTIFY_BUDGET));
+        figures.push(Figure::new(
+            format!("{name}, below the servo"),
+            value,
+            "instructions",
+            budget,
+            "budget, 20 ms at 170 MHz",
+        ));
+        if let Some(left) = set.stack_left {
+            let name = format!("{name}, stack left");
+            figures.push(Figure::new(name, left.into(), "bytes", None, ""));
+        }
+    }
+    Ok(())
+}
+
+/// The standard coupling of the programs' device in N m/rad, which all of them are certified with.
+const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
     let mut table = Table::new();

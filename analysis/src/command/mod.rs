@@ -163,6 +163,9 @@ pub enum CommandError {
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
+    /// A set could not be measured on the emulated board.
+    #[error(transparent)]
+    Live(#[from] crate::bench::live::LiveError),
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),

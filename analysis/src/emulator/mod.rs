@@ -8,6 +8,7 @@ mod judge;
 mod log;
 mod pipes;
 mod report;
+pub mod world;
 
 use std::fs::File;
 use std::io;

@@ -6,8 +6,9 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use heapless::spsc::{Consumer, Producer, Queue};
 use static_cell::StaticCell;
 
-use super::meter::Scale;
+use super::meter::{Scale, now};
 use super::parts::Parts;
+use super::spread::{Histogram, Spread};
 use crate::board::place::Place;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
@@ -51,40 +52,23 @@ pub unsafe fn push(tick: Measured) {
     }
 }
 
+/// Time that was spent in the servo's interrupt and the lockstep around it, wrapping.
+static SPENT: AtomicU32 = AtomicU32::new(0);
+
+/// The interrupt has taken so much time.
+pub fn spend(time: u32) {
+    // Not an atomic addition: nothing that writes here interrupts this.
+    SPENT.store(SPENT.load(Ordering::Relaxed).wrapping_add(time), Ordering::Relaxed);
+}
+
+/// The time now, without what the servo's interrupt took of it.
+fn time_below() -> u32 {
+    cortex_m::interrupt::free(|_| now().wrapping_sub(SPENT.load(Ordering::Relaxed)))
+}
+
 /// There will be no more ticks.
 pub fn end() {
     ENDED.store(true, Ordering::Release);
-}
-
-/// Smallest, largest and sum of a number of instructions.
-#[derive(Clone, Copy)]
-pub struct Spread {
-    /// How many.
-    pub count: u32,
-    min: u32,
-    max: u32,
-    sum: u64,
-}
-
-impl Spread {
-    /// Of nothing.
-    pub const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
-
-    /// Takes another one.
-    pub fn add(&mut self, value: u32) {
-        self.count += 1;
-        self.min = self.min.min(value);
-        self.max = self.max.max(value);
-        self.sum += u64::from(value);
-    }
-
-    /// Tells the host, if there was any.
-    pub fn log(&self, name: &str) {
-        let Self { count, min, max, sum } = *self;
-        if count > 0 {
-            defmt::info!("spread={=str} count={} min={} max={} sum={}", name, count, min, max, sum);
-        }
-    }
 }
 
 /// Tells the host a certificate's enclosures by their bits, where they exist.
@@ -104,8 +88,10 @@ pub struct Log<P> {
     scale: Scale,
     parts: P,
     total: u32,
-    interrupt: Spread,
+    interrupt: Histogram,
     lockstep: Spread,
+    /// What is done below the interrupt at a time.
+    below: Spread,
 }
 
 impl<P: Parts> Log<P> {
@@ -118,8 +104,16 @@ impl<P: Parts> Log<P> {
         let (push, ticks) = QUEUE.init(Queue::new()).split();
         // SAFETY: nobody uses the place yet, as the caller promises.
         unsafe { TICKS.fill(push) };
-        let [interrupt, lockstep] = [Spread::EMPTY; 2];
-        Self { ticks, scale, parts, total: 0, interrupt, lockstep }
+        let (interrupt, [lockstep, below]) = (Histogram::EMPTY, [Spread::EMPTY; 2]);
+        Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
+    }
+
+    /// Does what is to be done below the interrupt, and measures it.
+    pub fn around(&mut self, work: impl FnOnce()) {
+        let start = time_below();
+        work();
+        let time = time_below().wrapping_sub(start);
+        self.below.add(self.scale.instructions(time));
     }
 
     /// Takes the ticks that there are; once the host has ended the run, ends the emulation.
@@ -135,7 +129,7 @@ impl<P: Parts> Log<P> {
         }
     }
 
-    /// A tick that was spent on a ramp, a swap or a fault is no usual one and is not summed up.
+    /// A tick that was spent on a ramp, a swap or a fault is not summed up.
     fn add(&mut self, tick: &Measured) {
         self.parts.take(tick, &self.scale);
         if tick.was_running {
@@ -151,9 +145,12 @@ impl<P: Parts> Log<P> {
     fn log(&mut self) {
         let dropped = DROPPED.load(Ordering::Relaxed);
         let overruns = super::pace::missed();
-        defmt::info!("ticks={} dropped={} overruns={}", self.interrupt.count, dropped, overruns);
+        let (ticks, usual) = (self.interrupt.spread.count(), self.interrupt.usual());
+        defmt::info!("ticks={} dropped={} overruns={}", ticks, dropped, overruns);
         self.parts.log();
-        self.interrupt.log("interrupt");
+        self.interrupt.spread.log("interrupt");
+        defmt::info!("usual={}", usual);
+        self.below.log("below");
         self.lockstep.log("lockstep");
     }
 }

@@ -21,6 +21,8 @@ pub mod pace;
 mod parts;
 pub mod registers;
 pub mod serial;
+#[cfg(feature = "log")]
+mod spread;
 mod start;
 pub(super) mod stop;
 mod sweep;

@@ -1,8 +1,9 @@
 //! What the parts of a tick cost, measured below the servo's priority by doing them again: the
 //! servo's interrupt is measured as it is flashed, without a meter inside.
 
-use super::log::{Measured, Spread};
+use super::log::Measured;
 use super::meter::{Scale, measure};
+use super::spread::Spread;
 use super::start::refuse;
 use crate::board::seat::FRAMES;
 use crate::boot::Program;

@@ -77,9 +77,13 @@ where
     pace::start(timer, period);
     // Does not sleep: with WFI the emulator's time runs on by two periods of SysTick at a time.
     loop {
+        #[cfg(not(feature = "log"))]
         link.poll();
         #[cfg(feature = "log")]
-        log.poll();
+        {
+            log.around(|| link.poll());
+            log.poll();
+        }
     }
 }
 

@@ -41,6 +41,7 @@ pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl 
             was_running: before == State::Running,
             tick: time,
             lockstep: meter::now().wrapping_sub(end).wrapping_add(start.wrapping_sub(begin)),
-        })
+        });
+        log::spend(meter::now().wrapping_sub(begin));
     };
 }

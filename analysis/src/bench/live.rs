@@ -1,0 +1,49 @@
+//! What it takes a running board to judge a set of parameters that a host sends.
+
+use std::path::Path;
+
+use firmware::certificate::Parameter;
+use firmware::wire::message::Outcome;
+use thiserror::Error;
+
+use crate::emulator::world::{Still, World};
+use crate::emulator::{Emulator, EmulatorError};
+use crate::link::{Address, Link, LinkError};
+
+/// What a set took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LiveSet {
+    /// Whether it was taken.
+    pub taken: bool,
+    /// Instructions below the servo, from the frame's last byte to the answer's first.
+    pub instructions: u64,
+    /// Bytes of the stack that were never used, before and after.
+    pub stack_left: Option<u32>,
+}
+
+/// Why a set could not be measured.
+#[derive(Debug, Error)]
+pub enum LiveError {
+    /// The emulated board.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The way to it.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+}
+
+/// Sends a set to a program on the emulated board, whose servo runs meanwhile.
+///
+/// # Errors
+/// Where the board or the way to it fails.
+pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, LiveError> {
+    let mut emulator = Emulator::boot(elf)?;
+    emulator.engage()?;
+    let world = World::start(emulator, Still(0));
+    let mut link = Link::open(&Address::Unix(world.port().to_owned()))?;
+    let outcome = link.set(changes.iter().copied().collect())?;
+    let stack_left = link.status()?.stack_left;
+    let report = world.end()?.finish()?;
+    let (taken, instructions) = (outcome == Outcome::Done, report.below_instructions.max);
+    Ok(LiveSet { taken, instructions, stack_left })
+}
