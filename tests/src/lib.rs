@@ -1,11 +1,12 @@
 //! What the tests of the whole share: an independent, exact reference for the certificate, random
 //! scenes, passive hands, and the sampled loop that they close.
 //!
-//! Nothing here uses the firmware's mathematics. The reference decides in rational arithmetic with
+//! No reference here uses the firmware's mathematics. It decides in rational arithmetic with
 //! remainder sequences; the firmware encloses in binary intervals with Bernstein polynomials.
 
 pub mod agreement;
 pub mod contact;
+pub mod debugger;
 pub mod exact;
 pub mod floats;
 pub mod hands;
@@ -13,6 +14,7 @@ pub mod index;
 pub mod plant;
 pub mod poly;
 pub mod remainders;
+pub mod replica;
 pub mod rules;
 pub mod scenes;
 pub mod vectors;

@@ -18,7 +18,7 @@ impl Judge {
     /// # Errors
     /// Where the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { guest: Guest::boot(elf)? })
+        Ok(Self { guest: Guest::boot(elf, &[])? })
     }
 
     /// Has the board judge a scene.

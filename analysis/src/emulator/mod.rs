@@ -56,6 +56,8 @@ const LONGEST_FADING: usize = 100_000;
 /// A running emulator.
 pub struct Emulator {
     guest: Guest,
+    /// Number of the last tick.
+    number: u16,
 }
 
 /// What can go wrong with an emulated board.
@@ -113,7 +115,16 @@ impl Emulator {
     /// Where the emulator cannot be started; a program that refuses to run is noticed at the first
     /// [`exchange`](Self::exchange).
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { guest: Guest::boot(elf)? })
+        Ok(Self { guest: Guest::boot(elf, &[])?, number: 0 })
+    }
+
+    /// The same, with a socket for a debugger beside the serial port: `debugger` in its folder.
+    ///
+    /// # Errors
+    /// As of [`boot`](Self::boot).
+    pub fn boot_for_debugger(elf: &Path) -> Result<Self, EmulatorError> {
+        let socket = ["-gdb", "unix:debugger,server=on,wait=off"];
+        Ok(Self { guest: Guest::boot(elf, &socket)?, number: 0 })
     }
 
     /// The same with another patience.
@@ -136,9 +147,19 @@ impl Emulator {
     /// # Errors
     /// Where the board has ended or does not answer.
     pub fn tick(&mut self, moved: Moved) -> Result<Shown, EmulatorError> {
-        let mut shown = [0; Shown::BYTES];
-        self.guest.exchange(&moved.to_bytes(), &mut shown)?;
-        Shown::from_bytes(shown).ok_or(EmulatorError::NoReply)
+        // Never 0, which is what a board has heard before the first.
+        self.number = self.number.checked_add(1).unwrap_or(1);
+        let mut question = &moved.to_bytes(self.number)[..];
+        loop {
+            let mut answer = [0; Shown::BYTES];
+            self.guest.exchange(question, &mut answer)?;
+            match Shown::from_bytes(answer) {
+                Some((shown, number)) if number == self.number => return Ok(shown),
+                // A board that faulted shows it again.
+                Some(_) => question = &[],
+                None => return Err(EmulatorError::NoReply),
+            }
+        }
     }
 
     /// The board's serial port: a socket, until the board ends.
@@ -187,7 +208,7 @@ struct Guest {
 }
 
 impl Guest {
-    fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+    fn boot(elf: &Path, more: &[&str]) -> Result<Self, EmulatorError> {
         let program = |source| EmulatorError::Program { path: elf.into(), source };
         let path = elf.canonicalize().map_err(program)?;
         let decoder = LogReader::of_program(std::fs::read(&path).map_err(program)?);
@@ -196,6 +217,7 @@ impl Guest {
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;
         let mut process = Command::new(QEMU)
             .args(BOARD)
+            .args(more)
             .arg("-kernel")
             .arg(path)
             .current_dir(folder.path())

@@ -1,5 +1,8 @@
 //! What an emulated board and the host that simulates its world tell each other in each tick, as
 //! bytes.
+//!
+//! Each tick has a number, which the board repeats: one that faults may show what it does twice
+//! rather than not at all.
 
 use crate::cycle::State;
 
@@ -9,7 +12,7 @@ pub struct Moved {
     /// The encoder's counter.
     pub count: u32,
     /// Whole periods that went by without a tick: 0 in time.
-    pub missed: u32,
+    pub missed: u16,
 }
 
 /// What the board has done by the end of the tick.
@@ -27,33 +30,34 @@ impl Moved {
     /// Length in bytes.
     pub const BYTES: usize = 8;
 
-    /// As bytes.
-    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
-        (self.count as u64 | (self.missed as u64) << 32).to_le_bytes()
+    /// As bytes, with the tick's number.
+    pub const fn to_bytes(self, number: u16) -> [u8; Self::BYTES] {
+        let bits = self.count as u64 | (self.missed as u64) << 32 | (number as u64) << 48;
+        bits.to_le_bytes()
     }
 
-    /// From bytes.
-    pub const fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
+    /// From bytes, with the tick's number.
+    pub const fn from_bytes(bytes: [u8; Self::BYTES]) -> (Self, u16) {
         let bits = u64::from_le_bytes(bytes);
-        Self { count: bits as u32, missed: (bits >> 32) as u32 }
+        (Self { count: bits as u32, missed: (bits >> 32) as u16 }, (bits >> 48) as u16)
     }
 }
 
 impl Shown {
     /// Length in bytes.
-    pub const BYTES: usize = 4;
+    pub const BYTES: usize = 6;
 
-    /// As bytes.
-    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
-        let [low, high] = self.code.to_le_bytes();
-        [low, high, self.amplifier as u8, self.state as u8]
+    /// As bytes, with the tick's number.
+    pub const fn to_bytes(self, number: u16) -> [u8; Self::BYTES] {
+        let ([a, b], [c, d]) = (self.code.to_le_bytes(), number.to_le_bytes());
+        [a, b, self.amplifier as u8, self.state as u8, c, d]
     }
 
-    /// From bytes; `None` for what [`Shown::to_bytes`] did not write.
-    pub fn from_bytes([low, high, amplifier, state]: [u8; Self::BYTES]) -> Option<Self> {
-        let code = u16::from_le_bytes([low, high]);
+    /// From bytes, with the tick's number; `None` for what [`Shown::to_bytes`] did not write.
+    pub fn from_bytes([a, b, amplifier, state, c, d]: [u8; Self::BYTES]) -> Option<(Self, u16)> {
+        let (code, number) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
         let state = State::ALL.into_iter().find(|known| *known as u8 == state)?;
-        (amplifier < 2).then_some(Self { code, amplifier: amplifier == 1, state })
+        (amplifier < 2).then_some((Self { code, amplifier: amplifier == 1, state }, number))
     }
 }
 
@@ -64,13 +68,13 @@ mod tests {
     #[test]
     fn comes_out_of_the_bytes_as_it_went_in() {
         let moved = Moved { count: 0xffff_fff0, missed: 3 };
-        assert_eq!(moved.to_bytes(), [0xf0, 0xff, 0xff, 0xff, 3, 0, 0, 0]);
-        assert_eq!(Moved::from_bytes(moved.to_bytes()), moved);
+        assert_eq!(moved.to_bytes(0x1234), [0xf0, 0xff, 0xff, 0xff, 3, 0, 0x34, 0x12]);
+        assert_eq!(Moved::from_bytes(moved.to_bytes(0xfedc)), (moved, 0xfedc));
         for state in State::ALL {
             let shown = Shown { code: 0x0123, amplifier: state.is_armed(), state };
-            assert_eq!(Shown::from_bytes(shown.to_bytes()), Some(shown));
+            assert_eq!(Shown::from_bytes(shown.to_bytes(0xabcd)), Some((shown, 0xabcd)));
         }
-        assert_eq!(Shown::from_bytes([0, 8, 2, 0]), None);
-        assert_eq!(Shown::from_bytes([0, 8, 1, 6]), None);
+        assert_eq!(Shown::from_bytes([0, 8, 2, 0, 0, 0]), None);
+        assert_eq!(Shown::from_bytes([0, 8, 1, 6, 0, 0]), None);
     }
 }

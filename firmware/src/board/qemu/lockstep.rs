@@ -6,7 +6,8 @@
 //! waits for its count, so host and board cannot drift apart. The host ends the run by closing
 //! `counts`.
 
-use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use core::slice::from_raw_parts_mut;
+use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU16, AtomicU32, Ordering};
 
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
@@ -27,8 +28,11 @@ struct Pipes {
 }
 
 static PIPES: Place<Pipes> = Place::empty();
-/// Whether the host waits for what the board shows.
-static ASKED: AtomicBool = AtomicBool::new(false);
+/// What the host has said last. In memory of its own, so that a fault at whatever instruction finds
+/// there what was read.
+static HEARD: [AtomicU8; Moved::BYTES] = [const { AtomicU8::new(0) }; Moved::BYTES];
+/// Number of the last tick that was shown.
+static SHOWN: AtomicU16 = AtomicU16::new(0);
 /// Whether the next count is to be the encoder's zero.
 static ZEROING: AtomicBool = AtomicBool::new(false);
 /// The host's count where the encoder's zero is.
@@ -65,17 +69,22 @@ pub(super) fn zero() {
 pub(super) unsafe fn receive() -> Option<u32> {
     // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
     let mut counts = unsafe { &PIPES.look().counts };
-    let mut bytes = [0; Moved::BYTES];
-    if counts.read_exact(&mut bytes).is_err() {
+    // SAFETY: the bytes of the atomics, which nobody else looks at meanwhile.
+    let bytes = unsafe { from_raw_parts_mut(HEARD.as_ptr().cast_mut().cast(), HEARD.len()) };
+    if counts.read_exact(bytes).is_err() {
         return None;
     }
-    ASKED.store(true, Ordering::Relaxed);
-    let Moved { count, missed } = Moved::from_bytes(bytes);
+    let (Moved { count, missed }, _) = heard();
     if ZEROING.swap(false, Ordering::Relaxed) {
         ZERO.store(count, Ordering::Relaxed);
     }
     lines::set_count(count.wrapping_sub(ZERO.load(Ordering::Relaxed)));
-    Some(missed)
+    Some(missed.into())
+}
+
+/// What the host has said last, and the number of that tick.
+fn heard() -> (Moved, u16) {
+    Moved::from_bytes(HEARD.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
 }
 
 /// Shows the host the board's lines, if it waits for that. A host that has gone away ends the run
@@ -84,10 +93,12 @@ pub(super) unsafe fn receive() -> Option<u32> {
 /// # Safety
 /// The pipes must be open if a host has asked.
 pub(super) unsafe fn show(state: State) {
-    if ASKED.swap(false, Ordering::Relaxed) {
+    let (_, number) = heard();
+    if number != SHOWN.load(Ordering::Relaxed) {
         let (code, amplifier) = lines::outputs();
         let shown = Shown { code, amplifier, state };
         // SAFETY: as in `receive`.
-        let _ = unsafe { &PIPES.look().codes }.write_all(&shown.to_bytes());
+        let _ = unsafe { &PIPES.look().codes }.write_all(&shown.to_bytes(number));
+        SHOWN.store(number, Ordering::Relaxed);
     }
 }

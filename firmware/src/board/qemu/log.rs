@@ -17,7 +17,7 @@ use crate::encoder::RawCount;
 use defmt_semihosting as _;
 
 /// Ticks that the queue holds (one less than its length): the log may fall this far behind.
-const LENGTH: usize = 33;
+const LENGTH: usize = 17;
 /// Ticks between two lines of the log.
 const EVERY: u32 = 1000;
 

@@ -35,24 +35,27 @@ impl Spread {
     }
 }
 
-/// How often each number of instructions was met, up to a largest.
+/// How often each number of instructions was met, from a smallest up to a largest.
 pub struct Histogram {
     /// All of them.
     pub spread: Spread,
-    often: [u16; LARGEST + 1],
+    often: [u16; NUMBERS],
 }
 
-/// More than a tick takes; what is larger counts as this.
-const LARGEST: usize = 255;
+/// Fewer than any scene's tick takes; what is smaller counts as this.
+const SMALLEST: u32 = 112;
+/// As many numbers as the ticks' lie among; what is larger counts as the largest of them.
+const NUMBERS: usize = 192;
 
 impl Histogram {
     /// Of nothing.
-    pub const EMPTY: Self = Self { spread: Spread::EMPTY, often: [0; LARGEST + 1] };
+    pub const EMPTY: Self = Self { spread: Spread::EMPTY, often: [0; NUMBERS] };
 
     /// Takes another one.
     pub fn add(&mut self, value: u32) {
         self.spread.add(value);
-        if let Some(often) = self.often.get_mut((value as usize).min(LARGEST)) {
+        let place = value.saturating_sub(SMALLEST) as usize;
+        if let Some(often) = self.often.get_mut(place.min(NUMBERS - 1)) {
             *often = often.saturating_add(1);
         }
     }
@@ -61,7 +64,7 @@ impl Histogram {
     pub fn usual(&self) -> u32 {
         let mut rest = self.often.iter().map(|often| u32::from(*often)).sum::<u32>();
         let allowed = rest / 1000;
-        for (value, often) in (0..).zip(&self.often) {
+        for (value, often) in (SMALLEST..).zip(&self.often) {
             rest -= u32::from(*often);
             if rest <= allowed {
                 return value;

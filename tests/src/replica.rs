@@ -1,0 +1,94 @@
+//! The board's cycle on this machine, which has to do in every tick what the emulated board does.
+
+use firmware::boot::{Booted, Program, Startup, boot};
+use firmware::certificate::Parameter;
+use firmware::cycle::{
+    Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, Notice, Requests, State,
+};
+use firmware::dac::DacCode;
+use firmware::encoder::RawCount;
+use firmware::fault::Retained;
+use firmware::servo::{Rendering, Renders, Simultaneous};
+use firmware::tuning::{self, Tunable};
+
+/// Timer counts in a period.
+const PERIOD: u32 = 1000;
+/// Frames that the queue holds; nobody reads them here.
+const FRAMES: usize = 2;
+
+/// A board that is in time.
+struct Board {
+    count: i32,
+    code: DacCode,
+}
+
+impl Hardware for Board {
+    fn count(&mut self) -> RawCount {
+        RawCount::from(self.count)
+    }
+    fn write(&mut self, code: DacCode) {
+        self.code = code;
+    }
+    fn amplifier(&mut self, _: bool) {}
+    fn passed(&mut self) -> u32 {
+        1
+    }
+    fn elapsed(&mut self) -> u32 {
+        PERIOD / 10
+    }
+    fn feed(&mut self) {}
+}
+
+impl Startup for Board {
+    fn zero(&mut self) {}
+    fn guard(&mut self) {}
+    fn kept(&mut self) -> [u32; Retained::WORDS] {
+        Retained::NOTHING
+    }
+    fn was_reset_by_watchdog(&mut self) -> bool {
+        false
+    }
+    fn period(&self) -> u32 {
+        PERIOD
+    }
+}
+
+/// A cycle in f32 on a board that is in time.
+pub struct Replica<E: Tunable<f32>> {
+    board: Board,
+    cycle: Cycle<E, f32, Simultaneous>,
+    requests: Requests<'static, Rendering<E, f32, Simultaneous>>,
+    inbox: Inbox<'static, Rendering<E, f32, Simultaneous>>,
+    frames: Frames<'static, FRAMES>,
+    program: Program<E>,
+}
+
+impl<E: Tunable<f32> + Renders<Simultaneous>> Replica<E> {
+    /// Boots a program, whose scene is certified.
+    pub fn boot(program: Program<E>) -> Self {
+        let mut board = Board { count: 0, code: DacCode::MID_SCALE };
+        // A replica for a test: its memory lives as long as the test.
+        let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
+        let (frames, _) = Box::leak(Box::new(FrameQueue::new())).split();
+        let Booted { cycle, .. } = boot(&program, &mut board, &requests).expect("it is certified");
+        Self { board, cycle, requests, inbox, frames, program }
+    }
+
+    /// Hands a set over, to be swapped in from the next tick on.
+    pub fn submit(&mut self, changes: &[(Parameter, f64)]) {
+        let Program { scene, transducers, rendering, .. } = &self.program;
+        let set = tuning::prepare(scene, changes, transducers, rendering).expect("it is certified");
+        self.program.scene = set.scene;
+        assert!(self.requests.submit(set.rendering).is_ok(), "one set at a time");
+    }
+
+    /// One tick: the code and the state.
+    pub fn tick(&mut self, count: i32) -> (u16, State) {
+        self.board.count = count;
+        self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
+        while let Some(notice) = self.requests.notice() {
+            assert!(matches!(notice, Notice::Armed | Notice::Applied), "{notice:?}");
+        }
+        (self.board.code.get(), self.cycle.state())
+    }
+}

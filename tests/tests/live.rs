@@ -1,0 +1,256 @@
+//! The emulated board while somebody talks to it, moves its encoder as no hand could, or stops its
+//! processor.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::{Arc, LazyLock, Mutex};
+use std::time::{Duration, Instant};
+
+use analysis::emulator::Emulator;
+use analysis::emulator::world::{Act, World};
+use analysis::link::{Address, Link};
+use analysis::program::damper_wall;
+use analysis::toolchain::{NumberFormat, Tools, prepare};
+use firmware::board::shown::{Moved, Shown};
+use firmware::boot::Program;
+use firmware::certificate::Parameter;
+use firmware::cycle::{Options, State};
+use firmware::fault::Fault;
+use firmware::servo::RenderingOptions;
+use firmware::wire::message::Outcome;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tests::debugger::Debugger;
+use tests::replica::Replica;
+
+static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
+    prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
+        .unwrap_or_else(|error| panic!("{error}"))
+        .build_scene("damper_wall", NumberFormat::F32)
+        .unwrap_or_else(|error| panic!("{error}"))
+});
+
+const MID_SCALE: u16 = 2048;
+/// Codes of the torque limit, 1 N m of 2 N m at full scale.
+const LIMIT: f64 = 1023.5;
+/// Ticks in which the clamp opens.
+const FADING: f64 = 100.0;
+/// The most counts that the program's device moves in a tick: 100 rad/s, and an edge.
+const LARGEST_STEP: u32 = 978;
+
+/// What a tick of the board was.
+type Tick = (Moved, Shown);
+
+/// A hand that goes in and out of the wall, with what was done to it so far and what is to be done
+/// next.
+#[derive(Clone, Default)]
+struct Hand {
+    count: Arc<Mutex<i32>>,
+    next: Arc<Mutex<VecDeque<Moved>>>,
+    ticks: Arc<Mutex<Vec<Tick>>>,
+    moves: bool,
+}
+
+impl Act for Hand {
+    fn next(&mut self) -> Moved {
+        if let Some(moved) = self.next.lock().unwrap().pop_front() {
+            *self.count.lock().unwrap() = moved.count.cast_signed();
+            return moved;
+        }
+        let mut count = self.count.lock().unwrap();
+        if self.moves {
+            // Slowly in and out, by more than the torque limit lets the wall push.
+            let tick = self.ticks.lock().unwrap().len() as f64;
+            *count = (700.0 * (0.01 * tick).sin()) as i32;
+        }
+        Moved { count: count.cast_unsigned(), missed: 0 }
+    }
+
+    fn see(&mut self, moved: Moved, shown: Shown) {
+        self.ticks.lock().unwrap().push((moved, shown));
+    }
+}
+
+impl Hand {
+    fn last(&self) -> Option<Shown> {
+        self.ticks.lock().unwrap().last().map(|(_, shown)| *shown)
+    }
+
+    /// Waits until the board shows what is asked for.
+    fn wait(&self, what: &str, is_so: impl Fn(&Shown) -> bool) {
+        let patience = Instant::now() + Duration::from_secs(60);
+        while !self.last().is_some_and(|shown| is_so(&shown)) {
+            assert!(Instant::now() < patience, "{what} within a minute; {:?}", self.last());
+            std::thread::sleep(Duration::from_micros(200));
+        }
+    }
+
+    /// Does something to the board and gives the ticks from there on, this one and some more.
+    fn provoke(&self, moved: Moved) -> Vec<Tick> {
+        let before = self.ticks.lock().unwrap().len();
+        self.next.lock().unwrap().push_back(moved);
+        while self.ticks.lock().unwrap().len() < before + 20 {
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        let ticks = self.ticks.lock().unwrap()[before..].to_vec();
+        ticks.into_iter().skip_while(|(done, _)| *done != moved).collect()
+    }
+}
+
+/// A running board in a world with this hand.
+fn board(hand: &Hand, mut emulator: Emulator) -> (World, Link) {
+    emulator.engage().unwrap();
+    let world = World::start(emulator, hand.clone());
+    let link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
+    (world, link)
+}
+
+/// A device that is deep enough in the wall for a torque, at rest.
+fn pressed() -> Hand {
+    Hand { count: Arc::new(Mutex::new(300)), ..Hand::default() }
+}
+
+/// Whatever the host sends, in every tick the board gives what the certified sets ask for.
+#[test]
+fn every_code_is_that_of_the_sets_that_were_taken() {
+    let mut emulator = Emulator::boot(&PROGRAM).unwrap();
+    let program = Program {
+        scene: damper_wall::SCENE,
+        transducers: damper_wall::TRANSDUCERS,
+        rendering: RenderingOptions::DEFAULT,
+        options: Options::DEFAULT,
+    };
+    let mut replica = Replica::boot(program);
+    let before = std::iter::from_fn(|| Some(emulator.tick(Moved { count: 0, missed: 0 }).unwrap()));
+    for shown in before.take_while(|shown| shown.state != State::Running) {
+        assert_eq!(replica.tick(0), (shown.code, shown.state));
+    }
+    assert_eq!(replica.tick(0), (MID_SCALE, State::Running));
+
+    let hand = Hand { moves: true, ..Hand::default() };
+    let world = World::start(emulator, hand.clone());
+    let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut taken = VecDeque::new();
+    let mut refused = 0;
+    for _ in 0..60 {
+        let set = [
+            (Parameter::Stiffness, random.random_range(1.0..44.0)),
+            (Parameter::Damping, random.random_range(0.0..0.02)),
+            (Parameter::Face, random.random_range(-0.01..0.01)),
+        ];
+        match link.set(set.into_iter().collect()).unwrap() {
+            Outcome::Done => taken.push_back(set),
+            Outcome::Refused(_) => refused += 1,
+        }
+        // One swap after the other, so that each begins with a fade.
+        hand.wait("it runs again", |shown| shown.state == State::Running);
+    }
+    let status = link.status().unwrap();
+    assert_eq!((status.missed, status.sets as usize), (0, taken.len()));
+    world.end().unwrap().finish().unwrap();
+    assert!(refused > 10 && taken.len() > 10, "{refused} refused, {} taken", taken.len());
+
+    let mut last = State::Running;
+    for (tick, (moved, shown)) in hand.ticks.lock().unwrap().iter().enumerate() {
+        if shown.state == State::FadingOut && last != State::FadingOut {
+            replica.submit(&taken.pop_front().expect("a swap for each set"));
+        }
+        let expected = replica.tick(moved.count.cast_signed());
+        assert_eq!((shown.code, shown.state), expected, "tick {tick}");
+        last = shown.state;
+    }
+    assert!(taken.is_empty(), "{} sets never ran", taken.len());
+}
+
+/// From the first tick on the clamp opens step by step, whatever the wall asks for.
+#[test]
+fn the_board_boots_in_an_order_in_which_nothing_can_move() {
+    let mut board = Emulator::boot(&PROGRAM).unwrap();
+    let first = board.tick(Moved { count: 5000, missed: 0 }).unwrap();
+    let armed = Shown { code: MID_SCALE, amplifier: true, state: State::FadingIn };
+    assert_eq!(first, armed, "where the device is, is its zero");
+    for tick in 1.. {
+        // Into the wall, faster than the clamp opens.
+        let count = 5000 + (20 * tick).min(600);
+        let shown = board.tick(Moved { count, missed: 0 }).unwrap();
+        let torque = f64::from(MID_SCALE) - f64::from(shown.code);
+        let level = LIMIT / FADING * f64::from(tick);
+        assert!((-0.01..=level + 0.51).contains(&torque), "tick {tick}: {torque} of {level}");
+        if shown.state == State::Running {
+            assert!(torque > 200.0 && f64::from(tick) >= FADING - 1.0, "tick {tick}: {torque}");
+            break;
+        }
+        assert_eq!((shown.amplifier, shown.state), (true, State::FadingIn));
+    }
+    board.finish().unwrap();
+}
+
+/// A fault takes the torque away in its own tick, stays until the servo is armed again, and says
+/// what it was.
+#[test]
+fn a_jump_of_the_encoder_and_a_missed_tick_stop_the_motor_until_it_is_armed() {
+    let hand = pressed();
+    let (world, mut link) = board(&hand, Emulator::boot(&PROGRAM).unwrap());
+    hand.wait("torque", |shown| shown.code < MID_SCALE - 100);
+    // The first tick in the wall was a step of 300 counts, which a hand can do.
+    let jumped = Moved { count: 300 + LARGEST_STEP + 1, missed: 0 };
+    let missed = Moved { count: jumped.count, missed: 2 };
+    for (moved, fault) in [
+        (jumped, Fault::EncoderJump { counts: LARGEST_STEP + 1, largest: LARGEST_STEP }),
+        (missed, Fault::MissedTick { missed: 2, tolerated: 0 }),
+    ] {
+        let ticks = hand.provoke(moved);
+        assert!(!ticks.is_empty());
+        let off = Shown { code: MID_SCALE, amplifier: false, state: State::Faulted };
+        assert!(ticks.iter().all(|(_, shown)| *shown == off), "{ticks:?}");
+        let status = link.status().unwrap();
+        assert_eq!(status.fault.and_then(|fault| fault.fault()), Some(fault));
+        assert_eq!(hand.last(), Some(off));
+        assert_eq!(link.arm().unwrap(), Outcome::Done);
+        hand.wait("torque again", |shown| {
+            shown.state == State::Running && shown.amplifier && shown.code < MID_SCALE - 100
+        });
+        assert_eq!(link.status().unwrap().fault, None);
+    }
+    // The largest step that a hand can do is none of them.
+    let far = Moved { count: jumped.count - LARGEST_STEP, missed: 0 };
+    assert!(hand.provoke(far).iter().all(|(_, shown)| shown.state == State::Running));
+    assert_eq!(link.disarm().unwrap(), Outcome::Done);
+    hand.wait("the amplifier is off", |shown| !shown.amplifier && shown.code == MID_SCALE);
+    world.end().unwrap().end().unwrap();
+}
+
+/// A processor that faults takes the torque away, remembers why through the reset, and does not arm
+/// itself.
+#[test]
+fn a_fault_of_the_processor_is_remembered_through_the_reset() {
+    let hand = pressed();
+    let emulator = Emulator::boot_for_debugger(&PROGRAM).unwrap();
+    let (world, link) = board(&hand, emulator);
+    hand.wait("torque", |shown| shown.code < MID_SCALE - 100);
+    drop(link);
+    let before = hand.ticks.lock().unwrap().len();
+    let mut debugger = Debugger::attach(&world.port().with_file_name("debugger")).unwrap();
+    // An address at which nothing can be executed.
+    debugger.jump(NOWHERE).unwrap();
+    debugger.detach().unwrap();
+    hand.wait("it has stopped", |shown| !shown.amplifier);
+    let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
+    let remembered = link.remembered().expect("it remembers").fault.fault();
+    assert!(
+        matches!(remembered, Some(Fault::HardFault { address: NOWHERE, status }) if status != 0),
+        "{remembered:?}"
+    );
+    let status = link.status().unwrap();
+    assert_eq!(status.fault.and_then(|fault| fault.fault()), remembered);
+    let after = hand.ticks.lock().unwrap()[before..].to_vec();
+    let stopped = after.iter().skip_while(|(_, shown)| shown.amplifier);
+    assert!(stopped.clone().all(|(_, shown)| !shown.amplifier && shown.code == MID_SCALE));
+    assert_eq!(link.arm().unwrap(), Outcome::Done);
+    hand.wait("it runs again", |shown| shown.state == State::Running && shown.amplifier);
+    world.end().unwrap().end().unwrap();
+}
+
+/// The chip's reserved addresses, even as addresses of code are.
+const NOWHERE: u32 = 0xe000_0000;
