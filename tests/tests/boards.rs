@@ -20,8 +20,9 @@ fn check(toolchain: &Toolchain, board: Board, name: &str) {
         .unwrap_or_else(|error| panic!("{name} for {board}: {error}"));
     let (sizes, memory) = (program.sizes, toolchain.memory().unwrap());
     // Not `println!`: sizes are to be seen of a test that passes, too.
+    let mut output = io::stdout();
     writeln!(
-        io::stdout(),
+        output,
         "board={board} program={name} flash={} of={} ram={} of={} fast={} of={} stack={}",
         sizes.flash(),
         memory.flash,
