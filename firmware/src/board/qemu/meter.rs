@@ -6,7 +6,6 @@
 //! never cycles: the emulator knows nothing of wait states or of the pipeline.
 
 use core::arch::{asm, naked_asm};
-use core::hint::black_box;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 pub use super::pace::now;
@@ -28,7 +27,7 @@ impl Scale {
     pub fn calibrate() -> Self {
         let (short, long) = (loop_time(LOOP), loop_time(2 * LOOP));
         let per_instruction = (long.wrapping_sub(short) / (2 * LOOP)).max(1);
-        let (_, empty) = measure(0, |nothing| nothing);
+        let empty = measure(0, |nothing| (nothing, nothing));
         let around = return_time() / per_instruction - 1;
         Self { per_instruction, overhead: empty / per_instruction, around }
     }
@@ -82,25 +81,25 @@ fn loop_time(turns: u32) -> u32 {
     now().wrapping_sub(start)
 }
 
-/// Does something with a number and gives the time that it took, with what the measurement takes of
-/// itself.
+/// Does something with a number that has two results, and gives the time that it took, with what the
+/// measurement takes of itself.
 ///
-/// The number is hidden from the optimiser after the first reading and the result is demanded
+/// The number is hidden from the optimiser after the first reading and the results are demanded
 /// before the second, so that no part of it can be moved out of the measured stretch. The servo's
 /// interrupt waits meanwhile, which is no longer than the interrupt itself.
 #[inline(always)]
-pub fn measure(number: u32, what: impl FnOnce(u32) -> u32) -> (u32, u32) {
+pub fn measure(number: u32, what: impl FnOnce(u32) -> (u32, u32)) -> u32 {
     cortex_m::interrupt::free(|_| {
         let start = now();
         let mut number = number;
         // SAFETY: no instruction; the operand is unchanged. It may touch memory as far as the
         // compiler knows, which keeps what the work needs where it is.
         unsafe { asm!("/* {0} */", inout(reg) number) };
-        let mut result = what(number);
-        // SAFETY: as above.
-        unsafe { asm!("/* {0} */", inout(reg) result) };
+        let (one, other) = what(number);
+        // SAFETY: no instruction; as above, with the results as inputs.
+        unsafe { asm!("/* {0} {1} */", in(reg) one, in(reg) other) };
         let end = now();
         compiler_fence(Ordering::SeqCst);
-        (black_box(result), end.wrapping_sub(start))
+        end.wrapping_sub(start)
     })
 }
