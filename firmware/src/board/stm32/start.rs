@@ -20,6 +20,7 @@ use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
+use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
 use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
@@ -39,15 +40,47 @@ pub type LinkPlace<E, N> = StaticCell<HostLink<E, N>>;
 /// A program's task that serves its [`HostLink`].
 pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>, SpawnError>;
 
+/// The static places of a program, whose types are its scene's.
+pub struct Places<E: Renderable<N> + 'static, N: Number> {
+    /// What the servo's interrupt works with.
+    pub servo: &'static ServoPlace<E, N>,
+    /// Where it meets the task below.
+    pub meeting: &'static Meeting<E, N, Mode>,
+    /// That task's end of the host's link.
+    pub link: &'static LinkPlace<E, N>,
+}
+
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
 pub fn run<E, N, S>(
     name: &'static str,
     program: Program<E>,
-    place: &'static ServoPlace<E, N>,
-    meeting: &'static Meeting<E, N, Mode>,
-    link: &'static LinkPlace<E, N>,
+    places: Places<E, N>,
     task: Task<E, N, S>,
 ) -> !
+where
+    E: Tunable<N> + Renders<Mode>,
+    N: Number,
+{
+    let link = install(name, program, places);
+    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
+    EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
+        Ok(token) => spawner.spawn(token),
+        // A task's place is taken only where it was spawned before, which nothing here does.
+        Err(_) => refuse(&"the task of the host's link runs already"),
+    })
+}
+
+/// Everything from reset to the first tick; gives what the task below the servo works with.
+///
+/// In a frame of its own, which is gone when that task judges a set: judging takes most of the
+/// stack, and must not find what was only needed here below itself.
+#[inline(never)]
+#[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
+fn install<E, N>(
+    name: &'static str,
+    program: Program<E>,
+    places: Places<E, N>,
+) -> &'static mut HostLink<E, N>
 where
     E: Tunable<N> + Renders<Mode>,
     N: Number,
@@ -59,24 +92,18 @@ where
     let program = Program { transducers, ..program };
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
-    let Ends { requests, inbox, frames, told } = ends(meeting);
+    let Ends { requests, inbox, frames, told } = ends(places.meeting);
     let Booted { cycle, margin, left } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.fill(Seat { cycle, hardware, inbox, frames }) };
+    unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     greet(name, left);
     let facts = Facts { name, timer_counts, left, stack_left: || Some(stack::left()) };
     let session = Session::new(program, margin, facts, requests, told);
-    let link = link.init(Link { port, session });
-    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
-    EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
-        Ok(token) => spawner.spawn(token),
-        // A task's place is taken only where it was spawned before, which nothing here does.
-        Err(_) => refuse(&"the task of the host's link runs already"),
-    })
+    places.link.init(Link { port, session })
 }
 
 impl<E: Tunable<N> + Renders<Mode>, N: Number> HostLink<E, N> {
@@ -199,7 +226,9 @@ macro_rules! board_program {
                 options: $crate::cycle::Options::DEFAULT,
             };
             let name = env!("CARGO_BIN_NAME");
-            $crate::board::stm32::run(name, program, &PLACE, &MEETING, &LINK, serve)
+            let places =
+                $crate::board::stm32::Places { servo: &PLACE, meeting: &MEETING, link: &LINK };
+            $crate::board::stm32::run(name, program, places, serve)
         }
     };
 }
