@@ -419,8 +419,13 @@ proptest! {
                     prop_assert_eq!(outcome, Outcome::Refused(rejection.to_string()));
                 }
             }
-            bench.run(200);
+            bench.run(400);
             let OneSided { face, wall } = scene.environment;
+            // Near its limit (equation 27) a wall is certified and rings at half the sample rate for
+            // as long as one likes: its torque at rest is still to come.
+            if wall.stiffness * 0.001 / 2.0 + wall.damping.abs() > 0.9 * 0.022 {
+                continue;
+            }
             let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - face;
             let torque = (wall.stiffness * depth / (1.0 + wall.stiffness / 44.0)).clamp(0.0, 1.0);
             let offset = f64::from(bench.hardware.code.offset());
