@@ -53,6 +53,7 @@ pub mod minimum;
 pub mod progress;
 pub mod quantity;
 pub mod report;
+pub mod tradeoff;
 
 /// The scene file of the README, as this library reads it.
 ///

@@ -11,6 +11,7 @@ pub mod nyquist;
 pub mod picture;
 pub mod strips;
 pub mod trace;
+pub mod tradeoff;
 
 use std::ops::Range;
 use std::path::PathBuf;

@@ -24,6 +24,12 @@ pub enum Method {
     Tustin,
 }
 
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Exact, Self::Euler, Self::SemiImplicit, Self::Rk4, Self::Tustin];
+}
+
 /// Row of the sine behind the states and the held inputs; its cosine is the next.
 const SINE: usize = INPUTS;
 /// Rows behind the states.

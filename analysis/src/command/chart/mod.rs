@@ -5,6 +5,7 @@ pub mod limits;
 pub mod map;
 pub mod nyquist;
 pub mod trace;
+pub mod tradeoff;
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -22,9 +23,19 @@ pub struct Arguments {
     pub kind: Kind,
 }
 
-/// Which picture.
+/// Which picture, or pictures.
 #[derive(Debug, Subcommand)]
 pub enum Kind {
+    /// A picture that goes to one file.
+    #[command(flatten)]
+    Single(Single),
+    /// Speed against accuracy of methods, measured: tables, pictures, and what nothing beats
+    Tradeoff(tradeoff::Arguments),
+}
+
+/// Which picture.
+#[derive(Debug, Subcommand)]
+pub enum Single {
     /// The curves of (T z/(z-1)) E(z) of one or more scenes, with the line -delta
     Nyquist(nyquist::Arguments),
     /// What is certified, stable and unstable, over stiffness and damping of a scene's wall
@@ -45,7 +56,7 @@ pub struct OutputArguments {
     pub output: PathBuf,
 }
 
-impl Kind {
+impl Single {
     fn output(&self) -> &OutputArguments {
         match self {
             Self::Nyquist(arguments) => &arguments.output,
@@ -60,13 +71,17 @@ impl Kind {
 /// Draws the picture and writes it. The name of its file is looked at first, so that nobody waits
 /// for a picture that cannot be kept.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let output = Output::new(&arguments.kind.output().output)?;
-    let picture = match &arguments.kind {
-        Kind::Nyquist(arguments) => nyquist::draw(arguments)?,
-        Kind::Map(arguments) => map::draw(arguments)?,
-        Kind::Limits(arguments) => limits::draw(arguments)?,
-        Kind::Trace(arguments) => return trace::run(arguments, &output),
-        Kind::Identify(arguments) => identify::draw(arguments)?,
+    let kind = match &arguments.kind {
+        Kind::Single(kind) => kind,
+        Kind::Tradeoff(arguments) => return tradeoff::run(arguments),
+    };
+    let output = Output::new(&kind.output().output)?;
+    let picture = match kind {
+        Single::Nyquist(arguments) => nyquist::draw(arguments)?,
+        Single::Map(arguments) => map::draw(arguments)?,
+        Single::Limits(arguments) => limits::draw(arguments)?,
+        Single::Trace(arguments) => return trace::run(arguments, &output),
+        Single::Identify(arguments) => identify::draw(arguments)?,
     };
     output.write(&picture)?;
     Ok(Answer::Yes)

@@ -1,0 +1,206 @@
+//! Speed against accuracy: for each case and each error a panel with all methods in it, families
+//! told apart by mark and colour, and the front of those that no other beats, with their names.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::*;
+use crate::tradeoff::{Axis, Method, Tradeoff};
+
+mod labels;
+mod marks;
+
+use labels::{Block, Labels};
+use marks::Mark;
+
+/// Width and height of a panel in pixels.
+const PANEL: (u32, u32) = (520, 400);
+/// Height of a line of the key in pixels.
+const ROW: i32 = 22;
+/// Width of an entry of the key in pixels.
+const ENTRY: i32 = 240;
+/// Room inside a panel around its points, as a part of a decade.
+const ROOM: f64 = 0.35;
+/// Size of the text in a panel.
+const SMALL: i32 = units(13);
+
+type Logarithmic<'a, 'b> = ChartContext<
+    'a,
+    SVGBackend<'b>,
+    Cartesian2d<
+        plotters::coord::combinators::LogCoord<f64>,
+        plotters::coord::combinators::LogCoord<f64>,
+    >,
+>;
+
+/// Draws a table.
+///
+/// # Errors
+/// Where no method has a cost and an error, or the drawing fails.
+pub fn tradeoff(table: &Tradeoff) -> Result<Picture, ChartError> {
+    let (cases, errors) = (table.cases(), table.subject.errors);
+    let costs = range(table, &table.subject.cost, |method| method.cost());
+    let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
+    let width = (PANEL.0 * errors.len() as u32).max(SIZE.0);
+    let per_row = (width as i32 / ENTRY).max(1);
+    let rows = (table.families().len() as i32 + per_row - 1) / per_row + 1;
+    let panels = (PANEL.1 * cases.len() as u32) as i32;
+    let size = (width, (TITLE_ROOM + panels + ROW * rows + 10) as u32);
+    draw_sized(size, |area| {
+        let area = area.margin(units(TOP), 0, 0, 0).titled(table.subject.title, text(TITLE))?;
+        let (plots, below) = area.split_vertically(units(panels));
+        let plots = plots.split_evenly((cases.len(), errors.len()));
+        for (index, plot) in plots.iter().enumerate() {
+            let (case, error) = (cases[index / errors.len()], index % errors.len());
+            Panel { table, case, error }.paint(plot, costs.clone())?;
+        }
+        write_key(&below, table, per_row)
+    })
+}
+
+/// Decades that hold all values of a column; `None` where there is nothing to draw.
+fn range(
+    table: &Tradeoff,
+    axis: &Axis,
+    value: impl Fn(&Method) -> Option<f64>,
+) -> Option<Range<f64>> {
+    let values = table.methods.iter().filter_map(value).map(|value| value.max(axis.floor));
+    let logs = values.map(f64::log10).filter(|log| log.is_finite());
+    let (low, high) = logs
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), log| (low.min(log), high.max(log)));
+    (low <= high).then(|| 10_f64.powf(low - ROOM)..10_f64.powf(high + ROOM))
+}
+
+struct Panel<'t> {
+    table: &'t Tradeoff,
+    case: &'t str,
+    error: usize,
+}
+
+impl Panel<'_> {
+    fn axis(&self) -> &Axis {
+        &self.table.subject.errors[self.error]
+    }
+
+    /// The methods that have a place in the picture, with their families' numbers.
+    fn places(&self, top: f64) -> Vec<(usize, (f64, f64))> {
+        let families = self.table.families();
+        let place = |method: &Method| {
+            let family = families.iter().position(|&family| family == method.family)?;
+            Some((family, self.place(method, top)?))
+        };
+        self.table.of(self.case).filter_map(place).collect()
+    }
+
+    /// Where a method is drawn; one that fails is drawn at the edge that is the worst.
+    fn place(&self, method: &Method, top: f64) -> Option<(f64, f64)> {
+        let (cost, error) = (method.cost()?, method.error(self.error)?);
+        let cost = cost.max(self.table.subject.cost.floor);
+        let error = if error.is_finite() { error.max(self.axis().floor) } else { top };
+        cost.is_finite().then_some((cost, error))
+    }
+
+    fn paint(&self, area: &Area<'_>, costs: Range<f64>) -> Drawn<()> {
+        let (axis, cost) = (self.axis(), &self.table.subject.cost);
+        let errors = range(self.table, axis, |method| method.error(self.error));
+        let mut errors = errors.unwrap_or(0.1..1.0);
+        let fails = self.table.methods.iter().any(|m| m.error(self.error) == Some(f64::INFINITY));
+        let top = errors.end;
+        if fails {
+            errors.end *= 10_f64.powf(2.0 * ROOM);
+        }
+        let mut chart = ChartBuilder::on(area)
+            .margin(MARGIN)
+            .margin_top(2 * MARGIN)
+            .x_label_area_size(X_LABELS)
+            .y_label_area_size(Y_LABELS)
+            .build_cartesian_2d(costs.log_scale(), errors.clone().log_scale())?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID.stroke_width(UNITS))
+            .axis_style(pen(1))
+            .set_all_tick_mark_size(units(5))
+            .x_labels(8)
+            .y_labels(10)
+            .x_desc(cost.label)
+            .y_desc(axis.label)
+            .x_label_formatter(&axis_number)
+            .y_label_formatter(&axis_number)
+            .label_style(text(SMALL))
+            .draw()?;
+        self.paint_methods(&mut chart, top)?;
+        let middle = (area.dim_in_pixel().0 as i32 + Y_LABELS) / 2;
+        let caption = anchored(HPos::Center, VPos::Center);
+        area.draw(&Text::new(self.case.to_owned(), (middle, MARGIN), caption))
+    }
+
+    fn paint_methods(&self, chart: &mut Logarithmic<'_, '_>, top: f64) -> Drawn<()> {
+        let area = chart.plotting_area();
+        let (x, y) = area.get_base_pixel();
+        let pixel = |place: &(f64, f64)| {
+            let (px, py) = area.map_coordinate(place);
+            (px - x, py - y)
+        };
+        let plain = area.strip_coord_spec();
+        let (width, height) = plain.dim_in_pixel();
+        let mut labels = Labels::within(Block::new((0, 0), (width as i32, height as i32)));
+        let places = self.places(top);
+        for family in 0..self.table.families().len() {
+            let line = places.iter().filter(|place| place.0 == family).map(|p| pixel(&p.1));
+            let thin = Mark::of(family).colour().mix(0.5).stroke_width(UNITS);
+            plain.draw(&PathElement::new(line.collect::<Vec<_>>(), thin))?;
+        }
+        let front = self.table.front(self.case, self.error);
+        let stairs = stairs(front.iter().filter_map(|m| self.place(m, top)).map(|p| pixel(&p)));
+        dash::Dash::of(1).draw(&plain, &stairs, 1)?;
+        for (family, place) in &places {
+            Mark::of(*family).draw(&plain, pixel(place))?;
+            labels.keep_clear(pixel(place), Mark::SIZE);
+        }
+        let levels = [(self.axis().floor, self.axis().at_floor), (top, "fails")];
+        for (level, word) in levels {
+            if places.iter().any(|place| place.1.1 == level) {
+                let y = pixel(&(1.0, level)).1;
+                dash::Dash::of(2).draw(&plain, &[(0, y), (width as i32, y)], 1)?;
+                labels.write(&plain, (0, y), word, SMALL)?;
+            }
+        }
+        for method in front {
+            let Some(place) = self.place(method, top) else { continue };
+            labels.write(&plain, pixel(&place), &method.name, SMALL)?;
+        }
+        Ok(())
+    }
+}
+
+/// From the cheapest to the best: across until the next method can be paid, then to its error.
+fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
+    let mut line: Vec<(i32, i32)> = Vec::new();
+    for place in front {
+        if let Some(&(_, before)) = line.last() {
+            line.push((place.0, before));
+        }
+        line.push(place);
+    }
+    line
+}
+
+fn write_key(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
+    let style = || anchored(HPos::Left, VPos::Center);
+    let place = |index: usize| {
+        let (row, column) = (index as i32 / per_row, index as i32 % per_row);
+        (units(30 + column * ENTRY), units(ROW * row + ROW / 2))
+    };
+    let families = table.families();
+    for (index, family) in families.iter().enumerate() {
+        let (x, y) = place(index);
+        Mark::of(index).draw(area, (x, y))?;
+        area.draw(&Text::new((*family).to_owned(), (x + units(14), y), style()))?;
+    }
+    let rows = (families.len() as i32 + per_row - 1) / per_row;
+    let y = units(ROW * rows + ROW / 2);
+    dash::Dash::of(1).draw(area, &[(units(20), y), (units(60), y)], 1)?;
+    let words = "front: no other method of the table is both cheaper and better";
+    area.draw(&Text::new(words, (units(70), y), style()))
+}

@@ -1,0 +1,187 @@
+//! Methods of integration by their steps in a tick: how fast they are, how far off the motion is,
+//! and how far off the verdict (theory, section 9).
+
+mod stepper;
+
+use std::hint::black_box;
+
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::{Axis, Method as Row, NUMBER, Subject, Tradeoff, fastest};
+use crate::chain::{Link, Mass};
+use crate::device::{Hand, Motion};
+use crate::simulation::method::Method;
+use crate::simulation::plant::Plant;
+use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
+use crate::stability::critical_stiffness;
+use crate::table::Column;
+
+use stepper::Stepper;
+
+/// What is compared.
+pub static SUBJECT: Subject = Subject {
+    name: "simulation",
+    title: "Simulation: methods of integration by their steps in a sample of 1 ms",
+    cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
+    errors: &[
+        // As exact as `tests/simulation_reference.rs` finds the reference to be, in sixty digits.
+        Axis::least(&["angle_error"], "largest error of the angle (part of its largest)")
+            .floored(1e-12, "not to be told from the reference"),
+        // As exact as the borders of stability are found.
+        Axis::least(&["verdict_error"], "error of the largest stable stiffness (part)")
+            .floored(1e-9, "not to be told from the truth"),
+    ],
+    others: &[
+        Column { names: &["substeps"], bound: NUMBER },
+        Column { names: &["largest_stable_stiffness"], bound: NUMBER },
+    ],
+};
+
+/// Steps in a tick.
+const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
+/// Samples of a motion.
+const SAMPLES: usize = 1000;
+/// Rounds of the measurement, of which the fastest counts.
+const ROUNDS: usize = 31;
+/// An angle this many times as far off as it is large says nothing of the motion.
+const LOST: f64 = 1e3;
+
+/// A motion to be computed: a spring that is neither delayed nor coupled, on a device that is
+/// released at a millirad.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What moves.
+    pub name: &'static str,
+    /// The motion.
+    pub experiment: Experiment,
+    stiffness: f64,
+}
+
+/// The device of theory, section 9; and as two masses whose resonance is at 1183 rad/s, in a hand.
+pub fn cases() -> [Case; 2] {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let masses = [Mass { inertia: 0.05, damping: 0.5 }, Mass { inertia: 0.02, damping: 0.0 }];
+    let links = [Link { stiffness: 20e3, damping: 0.27 }];
+    let hand = Hand { inertia: 0.0, damping: 1.0, stiffness: 100.0 };
+    let case = |name, plant, stiffness| Case {
+        name,
+        experiment: released(plant, device, stiffness),
+        stiffness,
+    };
+    [
+        case("mass and damper", Plant::rigid(device), 300.0),
+        case("two masses in a hand", Plant::chain(&masses, &links).held(hand), 300.0),
+    ]
+}
+
+fn released(plant: Plant, device: Device, stiffness: f64) -> Experiment {
+    let wall =
+        Wall { stiffness, damping: 0.0, filter: None, delay: 0, face: 0.0, one_sided: false };
+    let scene = Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Rigid,
+        environment: Environment::DelayedSpring(wall),
+        torque_limit: None,
+    };
+    let start = Motion { position: 1e-3, velocity: 0.0 };
+    Experiment { plant, start, samples: SAMPLES, ..Experiment::still(&scene) }
+}
+
+/// Measures all methods on all motions.
+///
+/// # Errors
+/// Where a motion cannot be computed.
+pub fn measure() -> Result<Tradeoff, SimulationError> {
+    let mut methods = Vec::new();
+    for case in cases() {
+        let truth = Truth::of(&case)?;
+        let strides = strides();
+        let work = |&stride: &Stride| {
+            let case = &case;
+            move || drop(black_box(run(black_box(case), stride, SAMPLES)))
+        };
+        let times = fastest(ROUNDS, &mut strides.iter().map(work).collect::<Vec<_>>());
+        for (stride, time) in strides.into_iter().zip(times) {
+            methods.push(truth.row(&case, stride, time)?);
+        }
+    }
+    Ok(Tradeoff { subject: &SUBJECT, methods })
+}
+
+/// What is measured of each case.
+fn strides() -> Vec<Stride> {
+    let of = |method| {
+        let substeps = if method == Method::Exact { &SUBSTEPS[..1] } else { &SUBSTEPS[..] };
+        substeps.iter().map(move |&substeps| Stride { method, substeps })
+    };
+    Method::ALL.into_iter().flat_map(of).collect()
+}
+
+/// What a case's figures are compared with.
+struct Truth {
+    motion: Trajectory,
+    critical: Option<f64>,
+}
+
+impl Truth {
+    fn of(case: &Case) -> Result<Self, SimulationError> {
+        let exact = Stride::default();
+        let motion = simulate(&case.experiment, exact)?;
+        Ok(Self { motion, critical: critical_stiffness(&case.experiment, exact)? })
+    }
+
+    /// A method's figures, of which the time in s for all samples is given.
+    fn row(&self, case: &Case, stride: Stride, time: f64) -> Result<Row, SimulationError> {
+        let critical = critical_stiffness(&case.experiment, stride)?;
+        let verdict = match (critical, self.critical) {
+            (Some(found), Some(truth)) => (found / truth - 1.0).abs(),
+            _ => f64::INFINITY,
+        };
+        let (family, short) = names(stride.method);
+        let name = match stride.method {
+            Method::Exact => short.to_owned(),
+            _ => format!("{short}, {}", stride.substeps),
+        };
+        let angles = run(case, stride, SAMPLES);
+        let figures = [
+            Some(SAMPLES as f64 / time),
+            Some(self.angle_error(&angles)),
+            Some(verdict),
+            Some(f64::from(stride.substeps)),
+            critical,
+        ];
+        Ok(Row { values: figures.to_vec(), ..Row::new(case.name, family, name, &[]) })
+    }
+
+    fn angle_error(&self, angles: &[f64]) -> f64 {
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+        let size = largest(&mut self.motion.position.iter().copied());
+        let differences = angles.iter().zip(&self.motion.position).map(|(is, should)| is - should);
+        // What is no number compares with nothing.
+        let is_lost = angles.iter().any(|angle| !angle.is_finite());
+        let error = largest(&mut differences.into_iter()) / size;
+        if is_lost || error > LOST { f64::INFINITY } else { error }
+    }
+}
+
+/// A method's name and its short one.
+fn names(method: Method) -> (&'static str, &'static str) {
+    match method {
+        Method::Exact => ("exact exponential", "exact"),
+        Method::Euler => ("explicit Euler", "Euler"),
+        Method::SemiImplicit => ("semi-implicit Euler", "semi-implicit"),
+        Method::Rk4 => ("Runge-Kutta of order 4", "RK4"),
+        Method::Tustin => ("Tustin", "Tustin"),
+    }
+}
+
+/// The angles at the samples.
+fn run(case: &Case, stride: Stride, samples: usize) -> Vec<f64> {
+    match case.experiment.plant.order() {
+        2 => Stepper::<2>::new(case, stride).run(case, samples),
+        _ => Stepper::<4>::new(case, stride).run(case, samples),
+    }
+}
