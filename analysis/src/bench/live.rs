@@ -17,6 +17,8 @@ pub struct LiveSet {
     pub taken: bool,
     /// Instructions below the servo, from the frame's last byte to the answer's first.
     pub instructions: u64,
+    /// Most instructions of the servo's interrupt meanwhile, requests for it included.
+    pub interrupt: u64,
     /// Bytes of the stack that were never used, before and after.
     pub stack_left: Option<u32>,
 }
@@ -44,6 +46,10 @@ pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, Liv
     let outcome = link.set(changes.iter().copied().collect())?;
     let stack_left = link.status()?.stack_left;
     let report = world.end()?.finish()?;
-    let (taken, instructions) = (outcome == Outcome::Done, report.below_instructions.max);
-    Ok(LiveSet { taken, instructions, stack_left })
+    Ok(LiveSet {
+        taken: outcome == Outcome::Done,
+        instructions: report.below_instructions.max,
+        interrupt: report.interrupt_instructions.max,
+        stack_left,
+    })
 }

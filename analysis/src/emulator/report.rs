@@ -24,9 +24,6 @@ pub struct Report {
     pub free_instructions: Option<Stats>,
     /// Instructions of the servo's whole interrupt, from its first to its last.
     pub interrupt_instructions: Stats,
-    /// What 999 of 1000 of these do not exceed; the others are ticks that were asked for something,
-    /// or found something that happens once.
-    pub usual_instructions: u64,
     /// Instructions of what is done at a time below the interrupt; a set of parameters is judged
     /// in one piece.
     pub below_instructions: Stats,
@@ -112,7 +109,6 @@ impl Report {
             contact_instructions: contact,
             free_instructions: free,
             interrupt_instructions: Stats::joined(interrupt, None),
-            usual_instructions: lines.number("usual", "usual")?,
             below_instructions: Stats::joined(lines.stats("spread=below"), None),
             energy_instructions: Stats::joined(lines.stats("spread=energy"), None),
             frame_instructions: Stats::joined(lines.stats("spread=frame"), None),
@@ -209,8 +205,7 @@ info certify_time=3200 stack_used=900 stack_size=1000
 info ticks=4 dropped=1 overruns=2
 info spread=contact count=1 min=50 max=50 sum=50
 info spread=free count=3 min=40 max=42 sum=122
-info spread=interrupt count=2 min=100 max=102 sum=202
-info usual=101";
+info spread=interrupt count=2 min=100 max=102 sum=202";
         lines.lines().map(str::to_owned).collect()
     }
 
@@ -223,7 +218,6 @@ info usual=101";
         let compute = Stats { count: 4, min: 40, max: 50, mean: 43.0 };
         assert_eq!(report.compute_instructions, compute);
         assert_eq!(report.interrupt_instructions.mean, 101.0);
-        assert_eq!(report.usual_instructions, 101);
         assert_eq!(report.compiler.alpha, Some((1, 2)));
         assert_eq!(report.compiler.alpha_coupled, None);
         assert_eq!(report.board.alpha_coupled, Some((u64::MAX, 5)));

@@ -157,23 +157,4 @@ macro_rules! certify_for {
     )*};
 }
 
-certify_for! {
-    [const N: usize] DelayedSpring<N>;
-    [const N: usize] Placed<DelayedSpring<N>>;
-    [const N: usize] OneSided<DelayedSpring<N>>;
-    [const N: usize] DamperWall<N>;
-    [const N: usize] Placed<DamperWall<N>>;
-    [const N: usize] OneSided<DamperWall<N>>;
-    [const N: usize] FilteredWall<N>;
-    [const N: usize] Placed<FilteredWall<N>>;
-    [const N: usize] OneSided<FilteredWall<N>>;
-    [const N: usize] FreeMode<N>;
-    [const N: usize] FreeModeWall<DelayedSpring<N>>;
-    [const N: usize] FreeModeWall<DamperWall<N>>;
-    [const N: usize] FreeModeWall<FilteredWall<N>>;
-    [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>;
-    [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>;
-    [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>;
-    [] Rational;
-    [] Environment;
-}
+for_every_environment!(certify_for);

@@ -148,7 +148,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             return;
         }
         // From here on every tick would come here; the next one that does is far away.
-        self.link_deadline = self.tick.wrapping_add(i32::MAX.cast_unsigned());
+        self.link_deadline = self.tick.wrapping_add(Pace::LONGEST);
         if self.link == LinkPolicy::Ignore {
             return;
         }

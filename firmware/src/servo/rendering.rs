@@ -113,15 +113,15 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
     }
 }
 
-/// Ticks up to which a wrapping counter of them tells the future from the past.
-const LONGEST: u32 = i32::MAX.cast_unsigned();
-
 impl Pace {
+    /// Ticks up to which a wrapping counter of them tells the future from the past.
+    pub(crate) const LONGEST: u32 = i32::MAX.cast_unsigned();
+
     /// Whole periods in `time` s, at least one and at most as many as can be told from a past that
     /// long ago.
     pub(crate) fn ticks(&self, time: f64) -> u32 {
         // The cast gives the nearest of what does not fit.
-        ((time / self.period) as u32).clamp(1, LONGEST)
+        ((time / self.period) as u32).clamp(1, Self::LONGEST)
     }
 
     /// Whether the encoder cannot have moved by `step` counts within a period.

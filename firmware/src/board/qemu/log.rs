@@ -8,7 +8,7 @@ use static_cell::StaticCell;
 
 use super::meter::{Scale, now};
 use super::parts::Parts;
-use super::spread::{Histogram, Spread};
+use super::spread::Spread;
 use crate::board::place::Place;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
@@ -88,7 +88,7 @@ pub struct Log<P> {
     scale: Scale,
     parts: P,
     total: u32,
-    interrupt: Histogram,
+    interrupt: Spread,
     lockstep: Spread,
     /// What is done below the interrupt at a time.
     below: Spread,
@@ -104,7 +104,7 @@ impl<P: Parts> Log<P> {
         let (push, ticks) = QUEUE.init(Queue::new()).split();
         // SAFETY: nobody uses the place yet, as the caller promises.
         unsafe { TICKS.fill(push) };
-        let (interrupt, [lockstep, below]) = (Histogram::EMPTY, [Spread::EMPTY; 2]);
+        let [interrupt, lockstep, below] = [Spread::EMPTY; 3];
         Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
     }
 
@@ -145,11 +145,10 @@ impl<P: Parts> Log<P> {
     fn log(&mut self) {
         let dropped = DROPPED.load(Ordering::Relaxed);
         let overruns = super::pace::missed();
-        let (ticks, usual) = (self.interrupt.spread.count(), self.interrupt.usual());
+        let ticks = self.interrupt.count();
         defmt::info!("ticks={} dropped={} overruns={}", ticks, dropped, overruns);
         self.parts.log();
-        self.interrupt.spread.log("interrupt");
-        defmt::info!("usual={}", usual);
+        self.interrupt.log("interrupt");
         self.below.log("below");
         self.lockstep.log("lockstep");
     }
