@@ -92,7 +92,10 @@ impl Program {
 
 macro_rules! programs {
     ($($module:ident, $script:path, $mode:ty;)*) => {
-        /// All programs, in the order in which they are shown.
+        /// Names of all programs, in the order in which they are shown.
+        pub const NAMES: &[&str] = &[$(stringify!($module)),*];
+
+        /// All programs, in the same order.
         pub const ALL: &[Program] = &[$(Program {
             name: stringify!($module),
             scene: $module::SCENE.as_data(),

@@ -1,13 +1,12 @@
 //! The board's cycle on this machine, which has to do in every tick what the emulated board does.
 
-use firmware::boot::{Booted, Program, Startup, boot};
+use firmware::boot::{Booted, Program, boot};
 use firmware::certificate::Parameter;
 use firmware::cycle::{
-    Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, Notice, Requests, State,
+    Cycle, FrameQueue, Frames, InTime, Inbox, Lines, Mailbox, Notice, Requests, State,
 };
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
-use firmware::fault::Retained;
 use firmware::servo::{Rendering, Renders, Simultaneous};
 use firmware::tuning::{self, Tunable};
 
@@ -16,46 +15,25 @@ const PERIOD: u32 = 1000;
 /// Frames that the queue holds; nobody reads them here.
 const FRAMES: usize = 2;
 
-/// A board that is in time.
+/// The board's lines, as the test sets and reads them.
 struct Board {
     count: i32,
     code: DacCode,
 }
 
-impl Hardware for Board {
+impl Lines for Board {
     fn count(&mut self) -> RawCount {
         RawCount::from(self.count)
     }
+
     fn write(&mut self, code: DacCode) {
         self.code = code;
-    }
-    fn amplifier(&mut self, _: bool) {}
-    fn passed(&mut self) -> u32 {
-        1
-    }
-    fn elapsed(&mut self) -> u32 {
-        PERIOD / 10
-    }
-    fn feed(&mut self) {}
-}
-
-impl Startup for Board {
-    fn zero(&mut self) {}
-    fn guard(&mut self) {}
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
-        Retained::NOTHING
-    }
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        false
-    }
-    fn period(&self) -> u32 {
-        PERIOD
     }
 }
 
 /// A cycle in f32 on a board that is in time.
 pub struct Replica<E: Tunable<f32>> {
-    board: Board,
+    board: InTime<Board>,
     cycle: Cycle<E, f32, Simultaneous>,
     requests: Requests<'static, Rendering<E, f32, Simultaneous>>,
     inbox: Inbox<'static, Rendering<E, f32, Simultaneous>>,
@@ -66,7 +44,8 @@ pub struct Replica<E: Tunable<f32>> {
 impl<E: Tunable<f32> + Renders<Simultaneous>> Replica<E> {
     /// Boots a program, whose scene is certified.
     pub fn boot(program: Program<E>) -> Self {
-        let mut board = Board { count: 0, code: DacCode::MID_SCALE };
+        let lines = Board { count: 0, code: DacCode::MID_SCALE };
+        let mut board = InTime::new(lines, PERIOD);
         // A replica for a test: its memory lives as long as the test.
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, _) = Box::leak(Box::new(FrameQueue::new())).split();
@@ -84,11 +63,11 @@ impl<E: Tunable<f32> + Renders<Simultaneous>> Replica<E> {
 
     /// One tick: the code and the state.
     pub fn tick(&mut self, count: i32) -> (u16, State) {
-        self.board.count = count;
+        self.board.lines.count = count;
         self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
         while let Some(notice) = self.requests.notice() {
             assert!(matches!(notice, Notice::Armed | Notice::Applied), "{notice:?}");
         }
-        (self.board.code.get(), self.cycle.state())
+        (self.board.lines.code.get(), self.cycle.state())
     }
 }

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use analysis::toolchain::{Board, NumberFormat, Toolchain, Tools, prepare, probe};
+use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
 fn chip(board: Board) -> &'static str {
@@ -14,10 +14,7 @@ fn chip(board: Board) -> &'static str {
     }
 }
 
-fn check(toolchain: &Toolchain, board: Board, name: &str) {
-    let program = toolchain
-        .build_for(board, name, NumberFormat::F32)
-        .unwrap_or_else(|error| panic!("{name} for {board}: {error}"));
+fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
     let (sizes, memory) = (program.sizes, toolchain.memory().unwrap());
     // Not `println!`: sizes are to be seen of a test that passes, too.
     let mut output = io::stdout();
@@ -63,10 +60,13 @@ fn toolchain() -> Toolchain {
 fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
+    let programs: Vec<_> = programs.iter().map(String::as_str).collect();
     assert_eq!(programs, ["damper_wall", "delayed_spring", "free_mode", "identify"]);
     for board in Board::ALL {
-        for program in &programs {
-            check(&toolchain, board, program);
+        let built = toolchain.build_for(board, &programs, NumberFormat::F32);
+        let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
+        for (name, program) in programs.iter().zip(&built) {
+            check(&toolchain, board, name, program);
         }
     }
 }

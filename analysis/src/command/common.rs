@@ -64,7 +64,7 @@ impl Steps {
 /// For whom an answer is.
 #[derive(Debug, Args)]
 pub struct ForWhom {
-    /// Print one JSON object
+    /// Print JSON
     #[arg(long)]
     pub json: bool,
 }

@@ -22,7 +22,7 @@ use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{self, Input, Outcome, play};
 use crate::simulation::{Experiment, Stride, simulate};
-use crate::toolchain::{self, Toolchain, Tools};
+use crate::toolchain::{self, Tools};
 use crate::verdict::{self, Report, Verdict};
 use crate::worst_hand::{self, Held};
 
@@ -88,9 +88,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;
     let mut all_well = true;
-    for program in program::ALL {
+    let spinner = progress::spinner(&format!("building {}", program::NAMES.join(", ")));
+    let built = toolchain.build_scenes(program::NAMES, arguments.format.into())?;
+    spinner.finish_and_clear();
+    for (program, elf) in program::ALL.iter().zip(&built) {
         let report = verdict::judge(program.name, &program.scene);
-        let outcome = emulate(&toolchain, program, arguments)?;
+        let outcome = emulate(program, elf, arguments)?;
         write!(out, "{}", section(program, &report, &outcome))?;
         draw_run(folder, program, &outcome)?;
         all_well &= report.verdict == Verdict::Certified && outcome.run.difference.is_none();
@@ -116,14 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     Ok(if all_well { Answer::Yes } else { Answer::No })
 }
 
-fn emulate(
-    toolchain: &Toolchain,
-    program: &Program,
-    arguments: &Arguments,
-) -> Result<Outcome, CommandError> {
-    let spinner = progress::spinner(&format!("building {}", program.name));
-    let elf = toolchain.build_scene(program.name, arguments.format.into())?;
-    spinner.finish_and_clear();
+fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outcome, CommandError> {
     let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
     let ticks = arguments.ticks;
     let bar = progress::bar(ticks as u64, program.name);
@@ -131,7 +127,7 @@ fn emulate(
     let outcome = play(
         Input::Hand(Box::new(program.device())),
         controller.as_mut(),
-        Some(&elf),
+        Some(elf),
         ticks,
         stepper,
     )?;

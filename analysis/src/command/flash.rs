@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
     let (board, name) = (arguments.board, arguments.program.as_str());
     let spinner = progress::spinner(&format!("building {name} for {board}"));
-    let program = toolchain.build_for(board, name, arguments.format.into())?;
+    let program = toolchain.build_for(board, &[name], arguments.format.into())?.swap_remove(0);
     spinner.finish_and_clear();
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);

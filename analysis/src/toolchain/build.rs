@@ -115,12 +115,21 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
-/// One build: what, and with which features.
-struct Job<'a> {
-    name: &'a str,
-    features: &'a str,
-    /// Name of the built file.
-    file: String,
+/// Which build of a program: with which features, and what is added to its name for the file.
+struct Variant {
+    features: String,
+    suffix: String,
+}
+
+impl Variant {
+    /// A scene's program in a number format.
+    fn scene(features: &str, format: NumberFormat, suffix: &str) -> Self {
+        let features = match format {
+            NumberFormat::F32 => features.to_owned(),
+            NumberFormat::Fixed => format!("{features},fixed-point"),
+        };
+        Self { features, suffix: format!("-{format}{suffix}") }
+    }
 }
 
 impl Toolchain {
@@ -158,28 +167,44 @@ impl Toolchain {
     /// # Errors
     /// Where there is no such scene, or it does not compile.
     pub fn build_scene(&self, name: &str, format: NumberFormat) -> Result<PathBuf, BuildError> {
-        self.scene(name, format, "board-qemu,log", "")
+        Ok(self.build_scenes(&[name], format)?.swap_remove(0))
     }
 
-    /// Builds a scene's program in `f32` without log and measurements, and gives its size.
+    /// Builds several as [`build_scene`](Self::build_scene) does, at the same time, and gives their
+    /// files in the same order.
     ///
     /// # Errors
-    /// Where there is no such scene, or it does not compile.
-    pub fn size(&self, name: &str) -> Result<Sizes, BuildError> {
-        Ok(Program::at(self.scene(name, NumberFormat::F32, "board-qemu", "-bare")?)?.sizes)
+    /// Where one of them does not exist or does not compile.
+    pub fn build_scenes(
+        &self,
+        names: &[&str],
+        format: NumberFormat,
+    ) -> Result<Vec<PathBuf>, BuildError> {
+        self.scenes_programs(names, &Variant::scene("board-qemu,log", format, ""))
     }
 
-    /// Builds a program for a board that can be flashed.
+    /// Builds scenes' programs in `f32` without log and measurements, and gives their sizes.
     ///
     /// # Errors
-    /// Where there is no such program, or it does not compile or does not fit.
+    /// Where one of them does not exist or does not compile.
+    pub fn sizes(&self, names: &[&str]) -> Result<Vec<Sizes>, BuildError> {
+        let bare = Variant::scene("board-qemu", NumberFormat::F32, "-bare");
+        let files = self.scenes_programs(names, &bare)?;
+        files.into_iter().map(|file| Ok(Program::at(file)?.sizes)).collect()
+    }
+
+    /// Builds programs for a board that can be flashed.
+    ///
+    /// # Errors
+    /// Where one of them does not exist, does not compile or does not fit.
     pub fn build_for(
         &self,
         board: Board,
-        name: &str,
+        names: &[&str],
         format: NumberFormat,
-    ) -> Result<Program, BuildError> {
-        Program::at(self.scene(name, format, board.name(), &format!("-{board}"))?)
+    ) -> Result<Vec<Program>, BuildError> {
+        let variant = Variant::scene(board.name(), format, &format!("-{board}"));
+        self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 
     /// Builds a program for a board as somebody does who types `cargo build --release`, and keeps
@@ -219,36 +244,39 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
-        let (name, features) = ("judge", "board-qemu,log");
-        self.build(&Job { name, features, file: name.into() })
+        let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };
+        Ok(self.build(&["judge"], &variant)?.swap_remove(0))
     }
 
-    fn scene(
+    fn scenes_programs(
         &self,
-        name: &str,
-        format: NumberFormat,
-        features: &str,
-        suffix: &str,
-    ) -> Result<PathBuf, BuildError> {
+        names: &[&str],
+        variant: &Variant,
+    ) -> Result<Vec<PathBuf>, BuildError> {
         let scenes = self.scenes()?;
-        if !scenes.iter().any(|scene| scene == name) {
-            return Err(BuildError::NoScene { name: name.into(), scenes });
+        match names.iter().find(|name| !scenes.iter().any(|scene| scene == *name)) {
+            Some(name) => Err(BuildError::NoScene { name: (*name).into(), scenes }),
+            None => self.build(names, variant),
         }
-        let features = match format {
-            NumberFormat::F32 => features.to_owned(),
-            NumberFormat::Fixed => format!("{features},fixed-point"),
-        };
-        let file = format!("{name}-{format}{suffix}");
-        self.build(&Job { name, features: &features, file })
     }
 
-    fn build(&self, job: &Job<'_>) -> Result<PathBuf, BuildError> {
+    /// One call of cargo for all programs: it links on all cores.
+    fn build(&self, names: &[&str], variant: &Variant) -> Result<Vec<PathBuf>, BuildError> {
         // Cargo puts each build of a program, whatever its features, in the same place; the lock
         // keeps it there until it is copied.
         let _alone = self.workspace.lock("build")?;
-        self.compile(job.name, &job.arguments())?;
+        let flash = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
+        let programs = names.iter().flat_map(|name| ["--bin", name]);
+        let with = ["--features", &variant.features];
+        self.compile(
+            &names.join(", "),
+            &flash.into_iter().chain(programs).chain(with).collect::<Vec<_>>(),
+        )?;
         let folder = self.target_folder().join(TARGET).join("flash");
-        self.workspace.keep(&folder.join(job.name), &job.file)
+        let keep = |name: &&str| {
+            self.workspace.keep(&folder.join(name), &format!("{name}{}", variant.suffix))
+        };
+        names.iter().map(keep).collect()
     }
 
     fn compile(&self, program: &str, arguments: &[&str]) -> Result<(), BuildError> {
@@ -313,14 +341,6 @@ impl Program {
             Ok(sizes) => Ok(Self { path, sizes }),
             Err(source) => Err(BuildError::Size { path, source }),
         }
-    }
-}
-
-impl Job<'_> {
-    fn arguments(&self) -> [&str; 10] {
-        let build = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
-        let [a, b, c, d, e, f] = build;
-        [a, b, c, d, e, f, "--bin", self.name, "--features", self.features]
     }
 }
 

@@ -1,13 +1,10 @@
 //! The simulated hardware of a board.
 
-use firmware::boot::Startup;
-use firmware::cycle::Hardware;
+use firmware::cycle::Lines;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
-use firmware::fault::Retained;
 use firmware::servo::OutputTiming;
 
-use super::TIMER_COUNTS;
 use crate::rig::Plant;
 
 /// The device with its encoder, its converter and its timer.
@@ -29,7 +26,7 @@ impl Board {
     }
 }
 
-impl Hardware for Board {
+impl Lines for Board {
     fn count(&mut self) -> RawCount {
         if let Some(held) = self.held.replace(self.next) {
             self.plant.hold(if self.is_on { held } else { DacCode::MID_SCALE }.get());
@@ -48,33 +45,5 @@ impl Hardware for Board {
 
     fn amplifier(&mut self, on: bool) {
         self.is_on = on;
-    }
-
-    fn passed(&mut self) -> u32 {
-        1
-    }
-
-    fn elapsed(&mut self) -> u32 {
-        0
-    }
-
-    fn feed(&mut self) {}
-}
-
-impl Startup for Board {
-    fn zero(&mut self) {}
-
-    fn guard(&mut self) {}
-
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
-        Retained::NOTHING
-    }
-
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        false
-    }
-
-    fn period(&self) -> u32 {
-        TIMER_COUNTS
     }
 }

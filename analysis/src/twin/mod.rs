@@ -14,7 +14,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use firmware::boot::{self, Program};
-use firmware::cycle::{FrameQueue, Mailbox};
+use firmware::cycle::{FrameQueue, InTime, Mailbox};
 use firmware::number::Number;
 use firmware::servo::{OutputMode, RenderError, Renders};
 use firmware::tuning::Tunable;
@@ -70,7 +70,8 @@ impl Twin {
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
         let thread = thread::spawn(move || {
-            serve::<E, N, M>(name, program, Board::new(plant, M::TIMING), listener, clock, &over)
+            let board = InTime::new(Board::new(plant, M::TIMING), TIMER_COUNTS);
+            serve::<E, N, M>(name, program, board, listener, clock, &over)
         });
         Ok(Self { address, ended, thread: Some(thread) })
     }
@@ -107,7 +108,7 @@ impl Drop for Twin {
 fn serve<E, N, M>(
     name: &'static str,
     program: Program<E>,
-    mut board: Board,
+    mut board: InTime<Board>,
     mut listener: Listener,
     clock: Clock,
     over: &AtomicBool,

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use firmware::boot::Program;
 use firmware::certificate::Parameter;
-use firmware::cycle::{Cycle, FrameQueue, Frames, Hardware, Inbox, Mailbox, Options};
+use firmware::cycle::{Cycle, FrameQueue, Frames, InTime, Inbox, Lines, Mailbox, Options};
 use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
@@ -117,6 +117,9 @@ impl Reader<'_> {
     }
 }
 
+/// Timer counts in a period.
+const PERIOD: u32 = 1000;
+
 /// A device that moves as it is told.
 #[derive(Clone)]
 struct Still {
@@ -124,36 +127,29 @@ struct Still {
     code: DacCode,
 }
 
-impl Hardware for Still {
+impl Lines for Still {
     fn count(&mut self) -> RawCount {
         RawCount::from(self.count)
     }
+
     fn write(&mut self, code: DacCode) {
         self.code = code;
     }
-    fn amplifier(&mut self, _: bool) {}
-    fn passed(&mut self) -> u32 {
-        1
-    }
-    fn elapsed(&mut self) -> u32 {
-        0
-    }
-    fn feed(&mut self) {}
 }
 
 /// A servo with what belongs to its interrupt.
 struct Running<'a, E: Tunable<f32>> {
     cycle: Cycle<E, f32, Latched>,
-    device: Still,
+    device: InTime<Still>,
     inbox: Inbox<'a, Rendering<E, f32, Latched>>,
     frames: Frames<'a, FRAMES>,
 }
 
 impl<E: Tunable<f32>> Running<'_, E> {
     fn tick(&mut self, count: i16) -> DacCode {
-        self.device.count = count;
+        self.device.lines.count = count;
         self.cycle.run(&mut self.device, &mut self.inbox, &mut self.frames);
-        self.device.code
+        self.device.lines.code
     }
 }
 
@@ -170,8 +166,8 @@ where
     let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::new());
     let ((requests, inbox), (frames, reader)) = (mailbox.split(), queue.split());
     requests.arm();
-    let device = Still { count: 0, code: DacCode::MID_SCALE };
-    let cycle = Cycle::new(first, options, 1000, None);
+    let device = InTime::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
+    let cycle = Cycle::new(first, options, PERIOD, None);
     let mut servo = Running { cycle, device, inbox, frames };
     let facts = Facts { name: "any", timer_counts: 1000, left: None, stack_left: || None };
     let mut session = Session::new(program, None, facts, requests, reader);

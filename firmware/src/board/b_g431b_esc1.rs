@@ -10,7 +10,7 @@
 use embassy_stm32::dac::DacChannel;
 use embassy_stm32::gpio::{Output, Speed};
 use embassy_stm32::peripherals::USART2;
-use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
+use embassy_stm32::rcc::PllPreDiv;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::Timer;
 use embassy_stm32::timer::qei::Qei;
@@ -19,7 +19,7 @@ use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::converter::Converter;
 use super::stm32::line::{Active, Line};
-use super::stm32::{Connected, quadrature, serial};
+use super::stm32::{Connected, clock_170, quadrature, serial};
 
 /// Its name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
@@ -51,23 +51,9 @@ bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
 });
 
-/// 170 MHz, the chip's most, from the board's 8 MHz crystal: the internal oscillator would be off by
-/// a per cent, and with it every damping.
+/// 170 MHz from the board's 8 MHz crystal.
 pub fn clocks() -> Config {
-    let mut config = Config::default();
-    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Oscillator });
-    config.rcc.pll = Some(Pll {
-        source: PllSource::HSE,
-        prediv: PllPreDiv::DIV2,
-        mul: PllMul::MUL85,
-        divp: None,
-        divq: None,
-        divr: Some(PllRDiv::DIV2),
-    });
-    config.rcc.sys = Sysclk::PLL1_R;
-    // Above 150 MHz the core needs the higher voltage.
-    config.rcc.boost = true;
-    config
+    clock_170::from_crystal(Hertz(8_000_000), PllPreDiv::DIV2)
 }
 
 /// Gives each pin its purpose; the amplifier is off.

@@ -6,7 +6,7 @@
 use embassy_stm32::dac::DacChannel;
 use embassy_stm32::gpio::{Output, Speed};
 use embassy_stm32::peripherals::USART2;
-use embassy_stm32::rcc::{Hse, HseMode, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
+use embassy_stm32::rcc::PllPreDiv;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::Timer;
 use embassy_stm32::timer::qei::Qei;
@@ -15,7 +15,7 @@ use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::converter::Converter;
 use super::stm32::line::{Active, Line};
-use super::stm32::{Connected, quadrature, serial};
+use super::stm32::{Connected, clock_170, quadrature, serial};
 
 /// Its name as a feature and for `haptic flash`.
 pub const NAME: &str = "nucleo-g474re";
@@ -44,23 +44,9 @@ bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
 });
 
-/// 170 MHz, the chip's most, from the 24 MHz crystal X3 that the board comes with: the internal
-/// oscillator would be off by a per cent, and with it every damping.
+/// 170 MHz from the 24 MHz crystal X3 that the board comes with.
 pub fn clocks() -> Config {
-    let mut config = Config::default();
-    config.rcc.hse = Some(Hse { freq: Hertz(24_000_000), mode: HseMode::Oscillator });
-    config.rcc.pll = Some(Pll {
-        source: PllSource::HSE,
-        prediv: PllPreDiv::DIV6,
-        mul: PllMul::MUL85,
-        divp: None,
-        divq: None,
-        divr: Some(PllRDiv::DIV2),
-    });
-    config.rcc.sys = Sysclk::PLL1_R;
-    // Above 150 MHz the core needs the higher voltage.
-    config.rcc.boost = true;
-    config
+    clock_170::from_crystal(Hertz(24_000_000), PllPreDiv::DIV6)
 }
 
 /// Gives each pin its purpose; the amplifier is off.

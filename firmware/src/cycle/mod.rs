@@ -13,6 +13,7 @@ mod attend;
 mod frame;
 mod frame_queue;
 mod hardware;
+mod in_time;
 mod mailbox;
 mod options;
 mod state;
@@ -21,6 +22,7 @@ mod trouble;
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
 pub use hardware::Hardware;
+pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{LinkPolicy, Options};
 pub use state::{Notice, State, Status};
@@ -30,7 +32,7 @@ use crate::energy::EnergyMonitor;
 use crate::environment::Renderable;
 use crate::fault::Fault;
 use crate::number::Number;
-use crate::servo::{OutputMode, Rendering};
+use crate::servo::{OutputMode, Pace, Rendering};
 use crate::torque::LimitReason;
 use trouble::Behind;
 
@@ -69,7 +71,7 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     trouble: Option<Fault>,
     calm: u32,
     link: LinkPolicy,
-    /// Ticks of silence after which the host counts as lost.
+    /// Ticks of silence after which the host counts as lost, if it can.
     link_timeout: u32,
     /// The tick in which the host counts as lost.
     link_deadline: u32,
@@ -87,7 +89,10 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         period: u32,
         left: Option<Fault>,
     ) -> Self {
-        let link_timeout = rendering.pace().ticks(options.link_timeout);
+        let link_timeout = match options.link {
+            LinkPolicy::Ignore => Pace::LONGEST,
+            LinkPolicy::Hold | LinkPolicy::Release => rendering.pace().ticks(options.link_timeout),
+        };
         Self {
             rendering,
             energy: EnergyMonitor::default(),

@@ -2,12 +2,13 @@
 
 pub mod target;
 
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
+use super::common::ForWhom;
 use super::{Answer, CommandError};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::quantity::significant;
@@ -28,9 +29,9 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
     /// Write the table of the device there, ready for a scene file
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
@@ -119,15 +120,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
         std::fs::write(path, device_table(&found)).map_err(unwritable)?;
     }
-    let mut out = io::stdout().lock();
-    if arguments.json {
-        serde_json::to_writer(&mut out, &report(&found, &notes, origin.as_ref()))
-            .map_err(io::Error::from)?;
-        writeln!(out)?;
-    } else {
-        write!(out, "{}", text(&found, &notes, origin.as_ref()))?;
-    }
-    out.flush()?;
+    let report = report(&found, &notes, origin.as_ref());
+    arguments.answer.print(&report, |_| text(&found, &notes, origin.as_ref()))?;
     let differs = origin.and_then(|origin| origin.difference);
     if let Some(difference) = differs {
         eprintln!("{difference}");

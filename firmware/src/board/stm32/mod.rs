@@ -3,6 +3,8 @@
 //!
 //! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
 
+#[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
+pub mod clock_170;
 pub mod converter;
 #[cfg(feature = "fast-memory")]
 mod fast;
