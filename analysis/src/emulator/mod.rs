@@ -7,6 +7,7 @@
 mod judge;
 mod log;
 mod pipes;
+mod player;
 mod report;
 pub mod world;
 
@@ -21,6 +22,7 @@ use firmware::cycle::State;
 use tempfile::TempDir;
 
 pub use judge::Judge;
+pub use player::Player;
 pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
 
 use log::LogReader;

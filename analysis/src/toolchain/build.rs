@@ -244,8 +244,21 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
+        self.measuring("judge")
+    }
+
+    /// Builds the program that plays scenes for [`Player`](crate::emulator::Player).
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_player(&self) -> Result<PathBuf, BuildError> {
+        self.measuring("player")
+    }
+
+    /// Builds a program without a scene for the emulated board.
+    fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
         let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };
-        Ok(self.build(&["judge"], &variant)?.swap_remove(0))
+        Ok(self.build(&[name], &variant)?.swap_remove(0))
     }
 
     fn scenes_programs(

@@ -5,6 +5,7 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod play;
 pub mod question;
 pub mod report;
 pub mod shown;

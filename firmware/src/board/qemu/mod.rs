@@ -19,6 +19,8 @@ pub mod meter;
 pub mod pace;
 #[cfg(feature = "log")]
 mod parts;
+#[cfg(feature = "log")]
+pub mod player;
 pub mod registers;
 pub mod serial;
 #[cfg(feature = "log")]
