@@ -38,6 +38,7 @@ pub mod twin;
 
 // What scenes would do, certified or not, and how far one may go.
 pub mod design;
+pub mod failures;
 pub mod limits;
 pub mod map;
 pub mod response;

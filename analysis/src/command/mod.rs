@@ -7,6 +7,7 @@ pub mod common;
 pub mod demo;
 pub mod design;
 pub mod device;
+pub mod failures;
 pub mod flash;
 pub mod identify;
 pub mod report;
@@ -86,6 +87,8 @@ pub enum Command {
     Design(design::Arguments),
     /// In which passive hand does a scene oscillate?
     WorstHand(worst_hand::Arguments),
+    /// Where do other methods fail, and what did the certificate say before?
+    Failures(failures::Arguments),
 }
 
 /// The answer of a command that could be asked.
@@ -207,6 +210,9 @@ pub enum CommandError {
     /// A scene that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A case of failure could not be shown.
+    #[error(transparent)]
+    Failure(#[from] crate::failures::FailureError),
     /// A design asks for what the environment does not have.
     #[error("the environment of {scene} has no {quantity}")]
     NoSuchQuantity {
@@ -271,6 +277,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
         Command::WorstHand(arguments) => worst_hand::run(&arguments),
+        Command::Failures(arguments) => failures::run(&arguments),
     };
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

@@ -30,14 +30,16 @@ impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
 
 /// The plant, with dry friction or without.
 #[derive(Debug)]
-enum Machine {
+pub(crate) enum Machine {
+    /// Without.
     Smooth(Box<Smooth>),
+    /// With.
     Rubbing(Box<Rubbing>),
 }
 
 /// A plant whose ticks are all one matrix.
 #[derive(Debug)]
-struct Smooth {
+pub(crate) struct Smooth {
     tick: Tick,
     period: f64,
     state: DVector<f64>,
@@ -104,7 +106,8 @@ fn ticks(missed: Missed) -> Box<dyn Ticks> {
 }
 
 impl Machine {
-    fn new(experiment: &Experiment, stride: Stride) -> Self {
+    /// The plant of an experiment at its start.
+    pub(crate) fn new(experiment: &Experiment, stride: Stride) -> Self {
         let (plant, stepping) = (&experiment.plant, experiment.stepping(stride));
         let omega = experiment.drive.omega();
         let state = plant.moving(experiment.start.position, experiment.start.velocity);
@@ -117,14 +120,16 @@ impl Machine {
         Self::Smooth(Box::new(Smooth { tick, period: stepping.period, state, next }))
     }
 
-    fn state(&self) -> &DVector<f64> {
+    /// Its states.
+    pub(crate) fn state(&self) -> &DVector<f64> {
         match self {
             Self::Smooth(smooth) => &smooth.state,
             Self::Rubbing(rubbing) => rubbing.state(),
         }
     }
 
-    fn tick(&mut self, k: usize, drive: &Drive, torques: [f64; 2]) {
+    /// One tick with the motor torques before and after the latency, in N m.
+    pub(crate) fn tick(&mut self, k: usize, drive: &Drive, torques: [f64; 2]) {
         match self {
             Self::Smooth(smooth) => smooth.tick(k, drive, torques),
             Self::Rubbing(rubbing) => rubbing.tick(k, drive, torques),

@@ -53,6 +53,7 @@ use crate::quantity::significant;
 use closed::ClosedLoop;
 use drive::Drive;
 use general::General;
+pub(crate) use general::Machine;
 use kernel::Linear;
 use method::Method;
 use missed::Missed;

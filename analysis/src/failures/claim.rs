@@ -1,0 +1,90 @@
+//! What somebody or something says about a loop, and whether that is so.
+
+use firmware::certificate::{Rejection, assess, certify};
+use firmware::scene::Scene;
+use serde::Serialize;
+
+use crate::quantity::significant;
+
+/// Does it come to rest?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Says {
+    /// Yes.
+    Safe,
+    /// No.
+    Unsafe,
+    /// Neither, which never means yes.
+    Undecided,
+}
+
+impl Says {
+    /// In one word.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Safe => "safe",
+            Self::Unsafe => "unsafe",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// Safe or not.
+    pub const fn of(is_safe: bool) -> Self {
+        if is_safe { Self::Safe } else { Self::Unsafe }
+    }
+}
+
+/// How a claim is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Failure {
+    /// It says safe, and is not.
+    Dangerous,
+    /// It says unsafe, and is safe.
+    Needless,
+}
+
+/// What is said about a loop, by whom, and why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Claim {
+    /// The method.
+    pub by: String,
+    /// Its answer.
+    pub says: Says,
+    /// The number that the answer rests on, if there is one: which, and in which unit, is in
+    /// [`Claim::because`].
+    pub figure: Option<f64>,
+    /// Why, in a sentence with numbers.
+    pub because: String,
+}
+
+impl Claim {
+    /// A claim that rests on a number; `because` has `{}` where that number goes.
+    pub fn new(by: impl Into<String>, says: Says, figure: f64, because: &str) -> Self {
+        let because = because.replacen("{}", &significant(figure, 6), 1);
+        Self { by: by.into(), says, figure: Some(figure), because }
+    }
+
+    /// What the certificate says about a scene: the index that it found, or its refusal.
+    pub fn certificate(scene: &Scene) -> Self {
+        let assessment = assess(scene);
+        let index = assessment.alpha_coupled.or(assessment.alpha);
+        let (says, because) = match certify(scene) {
+            Ok(_) => (Says::Safe, "certified".to_owned()),
+            Err(rejection @ Rejection::Undecided { .. }) => {
+                (Says::Undecided, rejection.to_string())
+            }
+            Err(rejection) => (Says::Unsafe, rejection.to_string()),
+        };
+        Self { by: "certificate".into(), says, figure: index.map(|alpha| alpha.hi()), because }
+    }
+
+    /// How it is wrong, if it is.
+    pub fn failure(&self, truth: Says) -> Option<Failure> {
+        match (self.says, truth) {
+            (Says::Safe, Says::Unsafe) => Some(Failure::Dangerous),
+            (Says::Unsafe, Says::Safe) => Some(Failure::Needless),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
+
+use firmware::board::play::Arithmetic;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use super::claim::{Claim, Says};
+use super::fate::End;
+use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, trial, wall_of};
+use super::trial::Trial;
+use super::{FailureError, Study};
+use crate::limits::error_gain;
+use crate::simulation::drive::Drive;
+use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::stability::{closed_loop, eigenvalues, radius};
+
+/// Torque in N m with which the hand leans on the wall.
+const LEANS: f64 = 0.2;
+/// Samples of a trial.
+const SAMPLES: usize = 5000;
+
+/// Fixed point with 16 bits behind the point, on a device without friction.
+pub fn fixed_point() -> Result<Study, FailureError> {
+    let scene = paper();
+    let step = (-16.0_f64).exp2();
+    let bound = error_gain(&scene).map_err(SimulationError::from)? * 0.5 * step;
+    let because = "certified; half a step of Q16.16 may hum by {} N m unless friction holds it";
+    let certificate = Claim::new("certificate", Says::Unsafe, bound, because);
+    // Encoder and converter as fine as they get: their steps hum, too.
+    let counts_per_turn = f64::from(1 << 22);
+    let fine = Transducers { counts_per_turn, full_scale_torque: 0.3, ..PADDLES };
+    let trial = |what, friction, expected| Trial {
+        arithmetic: Arithmetic::Q16,
+        ..leaning(what, &scene, fine, expected, friction)
+    };
+    let hums = trial("no friction", 0.0, End::Hums);
+    let needed = bound + friction_for_rest(&scene, &fine);
+    let rests = trial("the friction that the bound asks for", needed, End::Rests);
+    let hum = hums.simulated()?;
+    let because = "the servo's arithmetic, alone, moves the device to and fro by {} rad";
+    let truth = Claim::new("Q16.16", Says::of(hum.end() == End::Rests), hum.last, because);
+    Ok(Study { claims: vec![linear(&scene)?], certificate, truth, trials: vec![hums, rests] })
+}
+
+/// The encoder's steps, without friction and with as much as section 8 asks for.
+pub fn encoder() -> Result<Study, FailureError> {
+    let scene = paper();
+    let needed = friction_for_rest(&scene, &PADDLES);
+    let because = "certified; at rest it may hum unless the device has {} N m of friction";
+    let certificate = Claim::new("certificate", Says::Unsafe, needed, because);
+    let hums = leaning("no friction", &scene, PADDLES, End::Hums, 0.0);
+    let rests = leaning("K Delta/2 + B Delta/T of friction", &scene, PADDLES, End::Rests, needed);
+    let hum = hums.simulated()?;
+    let because = "the encoder's steps, alone, move the device to and fro by {} rad";
+    let truth = Claim::new("encoder", Says::of(hum.end() == End::Rests), hum.last, because);
+    Ok(Study { claims: vec![linear(&scene)?], certificate, truth, trials: vec![hums, rests] })
+}
+
+/// The paper's wall.
+fn paper() -> Scene {
+    coupled(PADDLE, wall_of(22.0, 0.01, 1))
+}
+
+fn leaning(
+    what: &'static str,
+    scene: &Scene,
+    transducers: Transducers,
+    expected: End,
+    friction: f64,
+) -> Trial {
+    let mut trial = trial(what, scene, transducers, expected).pushed(0.0, SAMPLES);
+    trial.experiment.friction = friction;
+    trial.experiment.drive = Drive::Held(vec![LEANS; SAMPLES]);
+    trial.experiment.encoder_step = Some(std::f64::consts::TAU / transducers.counts_per_turn);
+    trial
+}
+
+/// The eigenvalues of the loop in real numbers.
+fn linear(scene: &Scene) -> Result<Claim, FailureError> {
+    let closed = closed_loop(&Experiment::still(scene), Stride::default())?;
+    let radius = radius(&eigenvalues(&closed.matrix)?);
+    let because = "in real numbers the largest eigenvalue has the modulus {}";
+    Ok(Claim::new("linear analysis", Says::of(radius < 1.0), radius, because))
+}

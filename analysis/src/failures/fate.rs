@@ -1,0 +1,99 @@
+//! What becomes of a motion.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::quantity::significant;
+
+/// What becomes of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// It ends.
+    Rests,
+    /// It goes on, smaller than it began.
+    Hums,
+    /// It becomes larger than it was.
+    Grows,
+}
+
+impl End {
+    /// In one word.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Rests => "rests",
+            Self::Hums => "hums",
+            Self::Grows => "grows",
+        }
+    }
+}
+
+/// How far something moved to and fro, at the start and at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Fate {
+    /// Largest less smallest position in the first tenth of the samples, in rad.
+    pub first: f64,
+    /// The same in the last tenth; infinite where it has left the range of numbers.
+    pub last: f64,
+}
+
+impl Fate {
+    /// Of positions in rad, all of those that were asked for or as many as there are numbers for.
+    pub fn of(positions: &[f64], asked: usize) -> Self {
+        let tenth = (asked / 10).max(1).min(positions.len());
+        let first = swing(&positions[..tenth]);
+        let complete = positions.len() >= asked;
+        let last = if complete { swing(&positions[asked - tenth..asked]) } else { f64::INFINITY };
+        Self { first, last }
+    }
+
+    /// What became of it.
+    pub fn end(&self) -> End {
+        /// Part of the first swing that is no motion any more.
+        const STILL: f64 = 1e-6;
+        // Written so that what is not a number grows.
+        if self.last <= STILL * self.first {
+            End::Rests
+        } else if self.last <= self.first {
+            End::Hums
+        } else {
+            End::Grows
+        }
+    }
+}
+
+impl fmt::Display for Fate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, last) = (significant(self.first, 3), significant(self.last, 3));
+        write!(f, "{}: {first} to {last} rad", self.end().as_str())
+    }
+}
+
+/// Largest less smallest; infinite if one of them is not finite.
+fn swing(positions: &[f64]) -> f64 {
+    if !positions.iter().all(|position| position.is_finite()) {
+        return f64::INFINITY;
+    }
+    let largest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let smallest = positions.iter().copied().fold(f64::INFINITY, f64::min);
+    (largest - smallest).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motions_are_told_apart() {
+        let motion = |factor: f64| -> Vec<f64> {
+            (0..1000).map(|k| factor.powi(k) * f64::from(k % 2)).collect()
+        };
+        let end = |positions: &[f64]| Fate::of(positions, 1000).end();
+        assert_eq!(end(&motion(0.98)), End::Rests);
+        assert_eq!(end(&motion(0.9995)), End::Hums);
+        assert_eq!(end(&motion(1.001)), End::Grows);
+        assert_eq!(end(&motion(0.98)[..999]), End::Grows);
+        assert_eq!(end(&[f64::NAN; 1000]), End::Grows);
+    }
+}

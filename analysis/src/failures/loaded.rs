@@ -1,0 +1,80 @@
+//! The device around a servo with everything that a simulation may have: masses in a hand, dry
+//! friction, missed ticks, an encoder's counts and a converter's codes.
+
+use firmware::dac::DacCode;
+use firmware::servo::Transducers;
+
+use crate::device::SimulatedEncoder;
+use crate::rig::Plant;
+use crate::simulation::drive::Drive;
+use crate::simulation::plant::POSITION;
+use crate::simulation::{Experiment, Machine, SimulationError, Stride};
+
+/// A device that keeps a record of where it was.
+pub struct LoadedDevice {
+    machine: Machine,
+    drive: Drive,
+    encoder: SimulatedEncoder,
+    torque_per_code: f64,
+    missed: Box<dyn Iterator<Item = bool>>,
+    torque: f64,
+    /// Position in rad at each tick, missed or not.
+    pub positions: Vec<f64>,
+}
+
+impl LoadedDevice {
+    /// The device of an experiment at its start, with the encoder and the motor of the servo.
+    ///
+    /// # Errors
+    /// Where it is too fast for its motion over a period to be computed.
+    pub fn new(
+        experiment: &Experiment,
+        transducers: &Transducers,
+    ) -> Result<Self, SimulationError> {
+        let stride = Stride::default();
+        // Refuses what has no motion.
+        experiment.tick(stride)?;
+        let mut missed = experiment.missed.ticks();
+        // The first tick is never missed.
+        missed.next();
+        let full_scale = transducers.full_scale_torque;
+        Ok(Self {
+            machine: Machine::new(experiment, stride),
+            drive: experiment.drive.clone(),
+            encoder: SimulatedEncoder::new(transducers.counts_per_turn),
+            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
+            missed: Box::new(missed),
+            torque: 0.0,
+            positions: Vec::new(),
+        })
+    }
+
+    /// Position in rad.
+    pub fn position(&self) -> f64 {
+        self.machine.state()[POSITION]
+    }
+
+    /// Lets the motor apply `torque` in N m over a tick, and over those after it that are missed.
+    pub fn apply(&mut self, torque: f64) {
+        let mut before = std::mem::replace(&mut self.torque, torque);
+        loop {
+            self.positions.push(self.position());
+            self.machine.tick(self.positions.len() - 1, &self.drive, [before, torque]);
+            before = torque;
+            if !self.missed.next().unwrap_or(false) {
+                return;
+            }
+        }
+    }
+}
+
+impl Plant for LoadedDevice {
+    fn count(&mut self) -> Option<i32> {
+        Some(self.encoder.read(self.position()))
+    }
+
+    fn hold(&mut self, code: u16) {
+        let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
+        self.apply(codes * self.torque_per_code);
+    }
+}

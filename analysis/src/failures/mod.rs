@@ -1,0 +1,118 @@
+//! Where methods fail: what each says about a loop, what is true, and what the certificate had said
+//! before.
+//!
+//! A case is a question about one loop. Methods that others use answer it, and so do the certificate
+//! and something that does not err on it; the loop is then run, in simulation and with the emulated
+//! board as its servo.
+
+pub mod claim;
+pub mod converters;
+pub mod fate;
+pub mod grid;
+pub mod integration;
+pub mod loaded;
+pub mod missed;
+pub mod observer;
+pub mod report;
+pub mod roots;
+pub mod rules;
+pub mod setting;
+pub mod trial;
+pub mod walls;
+
+use thiserror::Error;
+
+use claim::{Claim, Failure};
+use trial::{Trial, TrialError};
+
+use crate::chain::{ChainError, NoPassivity};
+use crate::simulation::SimulationError;
+
+/// Why a case has no answers.
+#[derive(Debug, Error)]
+pub enum FailureError {
+    /// A loop cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A loop cannot be run.
+    #[error(transparent)]
+    Trial(#[from] TrialError),
+    /// A device has no passivity.
+    #[error(transparent)]
+    NoPassivity(#[from] NoPassivity),
+    /// There is no such device.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// A wall has no largest stiffness.
+    #[error("the certificate knows no largest stiffness of this wall")]
+    NoLimit,
+}
+
+/// A question about one loop.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What is asked, in a few words.
+    pub question: &'static str,
+    study: fn() -> Result<Study, FailureError>,
+}
+
+/// What was said, and what is so.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// The methods that others use.
+    pub claims: Vec<Claim>,
+    /// The certificate.
+    pub certificate: Claim,
+    /// What does not err on this loop.
+    pub truth: Claim,
+    /// Loops that show it: the one in question, then one that the certificate allows.
+    pub trials: Vec<Trial>,
+}
+
+impl Case {
+    /// Asks everybody.
+    ///
+    /// # Errors
+    /// Where the loop cannot be had.
+    pub fn study(&self) -> Result<Study, FailureError> {
+        (self.study)()
+    }
+
+    /// The case of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|case| case.name == name)
+    }
+}
+
+impl Study {
+    /// The claims that are wrong, and how.
+    pub fn failures(&self) -> impl Iterator<Item = (&Claim, Failure)> {
+        self.claims.iter().filter_map(|claim| Some((claim, claim.failure(self.truth.says)?)))
+    }
+}
+
+macro_rules! cases {
+    ($($name:literal, $question:literal, $study:path;)*) => {
+        /// All cases, in the order in which they are shown.
+        pub const ALL: &[Case] =
+            &[$(Case { name: $name, question: $question, study: $study }),*];
+    };
+}
+
+cases! {
+    "explicit-euler", "a certified wall on two masses", integration::explicit_euler;
+    "semi-implicit-euler", "a spring of 1500 N m/rad", integration::semi_implicit_euler;
+    "runge-kutta", "a spring of 2450 N m/rad on two masses in a hand", integration::runge_kutta;
+    "continuous-time", "a spring of 5000 N m/rad", rules::continuous_time;
+    "negative-spring", "a spring of -200 N m/rad", rules::negative_spring;
+    "damped-rule", "a late wall whose damping is the device's", rules::damped_rule;
+    "grid", "a resonance of the wrong sign", grid::grid;
+    "pole-outside", "a filter with a pole at 1 + 2^-20", roots::outside;
+    "pole-inside", "a filter with a pole at 1 - 2^-20", roots::inside;
+    "passivity-observer", "a certified wall and an observer", observer::passivity_observer;
+    "fixed-point", "the paper's wall in Q16.16", converters::fixed_point;
+    "encoder", "the paper's wall behind an encoder", converters::encoder;
+    "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
+}

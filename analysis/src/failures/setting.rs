@@ -1,0 +1,90 @@
+//! What the cases have in common: two devices, walls, and what a board would have around them.
+
+use firmware::board::play::Arithmetic;
+use firmware::encoder::CounterWidth;
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+use super::fate::End;
+use super::trial::Trial;
+use crate::device::Motion;
+use crate::simulation::{Experiment, wall};
+
+/// Period of all cases in s.
+pub const PERIOD: f64 = 1e-3;
+
+/// A heavy knob (theory, end of section 8): undelayed and rigid it takes a spring of 1000 N m/rad.
+pub const KNOB: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+
+/// The paper's paddle: undelayed and rigid it takes a spring of 44 N m/rad.
+pub const PADDLE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+
+/// Encoder and motor of the knob.
+pub const KNOBS: Transducers = Transducers {
+    counts_per_turn: 65_536.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 40.0,
+    largest_speed: Transducers::NO_HAND_IS_FASTER,
+};
+
+/// Encoder and motor of the paddle.
+pub const PADDLES: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 2.0,
+    largest_speed: Transducers::NO_HAND_IS_FASTER,
+};
+
+/// A wall that is felt on both sides: stiffness in N m/rad, damping in N m s/rad, delay in samples.
+pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
+    let (filter, face, one_sided) = (None, 0.0, false);
+    Environment::DamperWall(Wall { stiffness, damping, filter, delay, face, one_sided })
+}
+
+/// A scene without a coupling.
+pub fn rigid(device: Device, environment: Environment) -> Scene {
+    let timing = Timing { period: PERIOD, worst_period: None };
+    Scene { device, timing, coupling: Coupling::Rigid, environment, torque_limit: None }
+}
+
+/// A scene behind the standard coupling `2 delta / T`.
+pub fn coupled(device: Device, environment: Environment) -> Scene {
+    let scene = rigid(device, environment);
+    let stiffness = crate::limits::standard_coupling(&scene);
+    Scene { coupling: Coupling::Spring { stiffness }, ..scene }
+}
+
+/// Friction in N m that ends the hum of a wall (theory, section 8): `K Delta / 2 + B Delta / T` for
+/// the encoder's step `Delta`, and half a step of the converter, which is an error of the force.
+pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
+    let Some(wall) = wall(scene) else { return 0.0 };
+    let step = std::f64::consts::TAU / transducers.counts_per_turn;
+    let converter = 0.5 * transducers.full_scale_torque
+        / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+    (0.5 * wall.stiffness.abs() + wall.damping.abs() / scene.timing.period) * step + converter
+}
+
+/// A trial of a scene on its rigid device, with the friction that its board needs for rest.
+pub fn trial(what: &'static str, scene: &Scene, transducers: Transducers, expected: End) -> Trial {
+    let experiment =
+        Experiment { friction: friction_for_rest(scene, &transducers), ..Experiment::still(scene) };
+    Trial { what, experiment, transducers, arithmetic: Arithmetic::F32, claimed: None, expected }
+}
+
+impl Trial {
+    /// The same pushed off with `velocity` rad/s, for so many samples.
+    pub fn pushed(mut self, velocity: f64, samples: usize) -> Self {
+        self.experiment.start = Motion { position: 0.0, velocity };
+        self.experiment.samples = samples;
+        self
+    }
+
+    /// The same told that the device is so many times as passive as it is, which is how a board can
+    /// be made to run what it would refuse.
+    pub fn believing(mut self, times: f64) -> Self {
+        let device = self.experiment.scene.device;
+        self.claimed = Some(times * device.passivity.unwrap_or(device.damping));
+        self
+    }
+}

@@ -1,0 +1,179 @@
+//! A loop that is run: simulated without converters, and on the emulated board with them.
+
+use firmware::board::play::{Arithmetic, Curtain, Play};
+use firmware::certificate::{Certified, Rejection};
+use firmware::encoder::CounterWidth;
+use firmware::environment::Environment;
+use firmware::number::Number;
+use firmware::scene::{Device, Scene};
+use firmware::servo::{Servo, Transducers};
+use fixed::types::I16F16;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::fate::{End, Fate};
+use super::loaded::LoadedDevice;
+use crate::controller::{Controller, controller};
+use crate::emulator::{EmulatorError, Player};
+use crate::rig::{Alone, Run, run};
+use crate::simulation::{Experiment, SimulationError, Stride, simulate};
+
+/// Why there is no proof.
+#[derive(Debug, Error)]
+pub enum TrialError {
+    /// The loop cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The board failed.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The board refuses, or takes, what the host does not.
+    #[error("host and board disagree on whether this scene may run: {0}")]
+    Disagreement(String),
+    /// The servo cannot be had in this arithmetic.
+    #[error(transparent)]
+    Servo(#[from] firmware::servo::BuildError),
+}
+
+/// A loop that is run.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// What is tried, in a few words.
+    pub what: &'static str,
+    /// Scene, device, hand, friction, missed ticks.
+    pub experiment: Experiment,
+    /// Encoder and motor of the board.
+    pub transducers: Transducers,
+    /// What the board computes in.
+    pub arithmetic: Arithmetic,
+    /// Passivity in N m s/rad that the board is told the device had: more than it has, since no
+    /// board can be made to run what is refused in any other way.
+    pub claimed: Option<f64>,
+    /// What will become of it.
+    pub expected: End,
+}
+
+/// What a board did with a scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Played {
+    /// It does not run it, whatever passivity is claimed.
+    Refused,
+    /// It ran it, all its codes being those of the same servo on the host.
+    Ran(Fate),
+}
+
+impl Played {
+    /// Whether that is what was to come of a trial: a board that refuses lets nothing grow.
+    pub fn shows(&self, expected: End) -> bool {
+        match self {
+            Self::Refused => expected != End::Rests,
+            Self::Ran(fate) => fate.end() == expected,
+        }
+    }
+}
+
+impl Trial {
+    /// What becomes of the loop in `f64`, without converters but for what the experiment has.
+    ///
+    /// # Errors
+    /// Where it cannot be simulated.
+    pub fn simulated(&self) -> Result<Fate, TrialError> {
+        let positions = match self.arithmetic {
+            Arithmetic::F32 => simulate(&self.experiment, Stride::default())?.position,
+            Arithmetic::Q16 => self.without_converter::<I16F16>()?,
+        };
+        Ok(Fate::of(&positions, self.experiment.samples))
+    }
+
+    /// The same with the servo's own arithmetic and an encoder so fine that it does not matter.
+    fn without_converter<N: Number>(&self) -> Result<Vec<f64>, TrialError> {
+        let certified = self.certified()?;
+        let fine = fine(&self.transducers);
+        let mut servo = Servo::<Environment, N>::new(&certified, &fine)?;
+        let mut device = LoadedDevice::new(&self.experiment, &fine)?;
+        while device.positions.len() < self.experiment.samples {
+            let count = crate::rig::Plant::count(&mut device).unwrap_or_default();
+            servo.tick(count.into());
+            device.apply(-servo.torque_nm());
+        }
+        device.positions.truncate(self.experiment.samples);
+        Ok(device.positions)
+    }
+
+    /// What becomes of the loop of which the emulated board is the servo. The board is compared
+    /// with the servo on this machine in every tick.
+    ///
+    /// # Errors
+    /// Where the board fails, or disagrees with this machine.
+    pub fn emulated(&self, player: &mut Player) -> Result<Played, TrialError> {
+        let play = self.play();
+        let (curtain, here) = (player.open(&play)?, self.certified());
+        let certified = match (curtain, here) {
+            (Curtain::Open, Ok(certified)) => certified,
+            (Curtain::Refused, Err(_)) => return Ok(Played::Refused),
+            (curtain, _) => return Err(TrialError::Disagreement(format!("{curtain:?}"))),
+        };
+        let mut servo = self.controller(&certified)?;
+        let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
+        let ticks = play.ticks as usize;
+        let run = run(&mut device, servo.as_mut(), Some(player), ticks, || {})?;
+        match run.difference {
+            Some(difference) => Err(TrialError::Disagreement(difference.to_string())),
+            None => Ok(Played::Ran(Fate::of(&device.positions, self.experiment.samples))),
+        }
+    }
+
+    /// The same without a board: the host's servo alone, codes and counts and all.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had.
+    pub fn alone(&self) -> Result<(Run, Fate), TrialError> {
+        let mut servo = self.controller(&self.certified()?)?;
+        let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
+        let ticks = self.ticks();
+        let run = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
+        let run = run.unwrap_or_else(|never| match never {});
+        Ok((run, Fate::of(&device.positions, self.experiment.samples)))
+    }
+
+    /// The scene as the board is told it.
+    pub fn told(&self) -> Scene {
+        let scene = self.experiment.scene;
+        let passivity = self.claimed.or(scene.device.passivity);
+        Scene { device: Device { passivity, ..scene.device }, ..scene }
+    }
+
+    fn certified(&self) -> Result<Certified<Scene>, TrialError> {
+        let refused = |rejection: Rejection| TrialError::Disagreement(rejection.to_string());
+        self.told().certify().map_err(refused)
+    }
+
+    fn play(&self) -> Play {
+        Play {
+            scene: self.told(),
+            transducers: self.transducers,
+            arithmetic: self.arithmetic,
+            ticks: self.ticks() as u32,
+        }
+    }
+
+    /// Ticks that are not missed.
+    fn ticks(&self) -> usize {
+        let Experiment { missed, samples, .. } = &self.experiment;
+        missed.ticks().take(*samples).filter(|is_missed| !is_missed).count()
+    }
+
+    fn controller(&self, certified: &Certified<Scene>) -> Result<Box<dyn Controller>, TrialError> {
+        Ok(match self.arithmetic {
+            Arithmetic::F32 => controller::<Environment, f32>(certified, &self.transducers)?,
+            Arithmetic::Q16 => controller::<Environment, I16F16>(certified, &self.transducers)?,
+        })
+    }
+}
+
+/// The same with an encoder of `2^26` counts a turn: steps of 1e-7 rad.
+fn fine(transducers: &Transducers) -> Transducers {
+    let counts_per_turn = f64::from(1_u32 << 26);
+    Transducers { counts_per_turn, counter: CounterWidth::Bits32, ..*transducers }
+}

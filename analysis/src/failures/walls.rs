@@ -1,0 +1,68 @@
+//! Both sides of the line: walls at 0.99 of the certified limit, which come to rest, and at 1.01 of
+//! it, with the hand in which they do not.
+
+use firmware::scene::Scene;
+
+use super::FailureError;
+use super::fate::End;
+use super::setting::{PADDLE, PADDLES, coupled, rigid, trial, wall_of};
+use super::trial::Trial;
+use crate::chain::Chain;
+use crate::limits::{Limit, largest_stiffness, with_wall};
+use crate::worst_hand::{Held, plant, search};
+
+/// Delays in samples.
+pub const DELAYS: std::ops::RangeInclusive<usize> = 0..=4;
+
+/// Most samples in which a wall has to grow.
+const LONGEST: f64 = 150_000.0;
+
+/// A wall of one delay.
+#[derive(Clone, Debug)]
+pub struct Wall {
+    /// Delay in samples.
+    pub delay: usize,
+    /// Largest certified stiffness in N m/rad.
+    pub limit: f64,
+    /// The hand in which it is worst at 1.01 of that.
+    pub hand: Held,
+    /// At 0.99, in no hand and in that one.
+    pub below: [Trial; 2],
+    /// At 1.01 in that hand.
+    pub above: Trial,
+}
+
+/// A wall of that delay on the paddle: behind the standard coupling, but for the undelayed one,
+/// whose stiffness has a limit only without.
+///
+/// # Errors
+/// Where it has no limit, or no hand is found.
+pub fn wall(delay: usize) -> Result<Wall, FailureError> {
+    let scene = match delay {
+        0 => rigid(PADDLE, wall_of(0.0, 0.0, delay)),
+        _ => coupled(PADDLE, wall_of(0.0, 0.0, delay)),
+    };
+    let Limit::AtMost(limit) = largest_stiffness(&scene) else { return Err(FailureError::NoLimit) };
+    let [below, above] = [0.99, 1.01].map(|part| with_wall(&scene, part * limit, None));
+    let device = Chain::rigid(PADDLE.inertia, PADDLE.damping)?;
+    let hand = search(&above, &device)?.worst;
+    let held = |what, scene: &Scene, expected| {
+        let mut trial = trial(what, scene, PADDLES, expected);
+        trial.experiment.plant = plant(&device, 1.0, &hand.hand);
+        trial
+    };
+    // Without friction, which would hide that little: long enough for three times the motion.
+    let samples = (2.0 / hand.spectral_radius.ln()).clamp(1000.0, LONGEST) as usize;
+    let mut above = held("1.01 of the limit, in the worst hand", &above, End::Grows);
+    above.experiment.friction = 0.0;
+    Ok(Wall {
+        delay,
+        limit,
+        hand,
+        below: [
+            trial("0.99 of the limit", &below, PADDLES, End::Rests).pushed(1.0, 4000),
+            held("0.99 of the limit, in the worst hand", &below, End::Rests).pushed(0.1, 10_000),
+        ],
+        above: above.pushed(1.0, samples).believing(2.0),
+    })
+}
