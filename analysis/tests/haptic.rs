@@ -170,3 +170,29 @@ fn scene_files_and_programs_run_on_the_host() {
     let other = ["run", "damper_wall", "--target", "qemu", "--counts-per-rev", "4096"];
     assert_eq!(haptic(&other, b"").status.code(), Some(2));
 }
+
+#[test]
+fn failures_are_rows_and_objects_by_name() {
+    let output = haptic(&["failures", "--case", "semi-implicit-euler", "--csv"], b"");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows[0], "case,by,says,failure,figure,because");
+    assert!(rows[1].starts_with(
+        "semi-implicit-euler,\"semi-implicit Euler, 1 step a tick\",safe,dangerous,199000"
+    ));
+    assert_eq!(rows.len(), 1 + 3 + 2);
+    let output = haptic(&["failures", "--case", "missed-ticks", "--json"], b"");
+    let [answer] = &lines(&output)[..] else { panic!("one object") };
+    let case = &answer["cases"][0];
+    assert_eq!(
+        (&case["name"], &case["claims"][0]["failure"]),
+        (&"missed-ticks".into(), &"dangerous".into())
+    );
+    assert_eq!(case["certificate"]["says"], "unsafe");
+    assert_eq!(case["trials"][1]["simulated"]["last"], 0.0);
+    assert_eq!(answer["walls"].as_array().unwrap().len(), 0);
+    let output = haptic(&["failures", "--case", "luck"], b"");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(complaint(output).contains("luck"));
+}

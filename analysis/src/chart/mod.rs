@@ -2,6 +2,7 @@
 //! they can be read in print.
 
 pub mod dash;
+pub mod failures;
 pub mod growth;
 pub mod hatch;
 pub mod identify;

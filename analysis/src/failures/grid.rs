@@ -36,7 +36,7 @@ pub fn grid() -> Result<Study, FailureError> {
     });
     let closed = closed_loop(&Experiment::still(&scene), Stride::default())?;
     let radius = radius(&eigenvalues(&closed.matrix)?);
-    let because = "in no hand at all the largest eigenvalue has the modulus 1 + {}";
+    let because = "in no hand at all the largest eigenvalue is {} beyond the circle";
     let truth = Claim::new("exact exponential", Says::of(radius < 1.0), radius - 1.0, because);
     // A spring with which the device resonates where the minimum is.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);

@@ -58,8 +58,10 @@ pub fn semi_implicit_euler() -> Result<Study, FailureError> {
 /// Runge-Kutta of fourth order in one step a tick: two masses in a hand.
 pub fn runge_kutta() -> Result<Study, FailureError> {
     const STIFFNESS: f64 = 2450.0;
-    // Friction hides what grows slowly; a finer encoder needs less of it.
-    let fine = Transducers { counts_per_turn: f64::from(1 << 22), ..KNOBS };
+    // Friction hides what grows slowly; a finer encoder needs less of it. The motor is strong enough
+    // for a motion that friction does not hide.
+    let counts_per_turn = f64::from(1 << 22);
+    let fine = Transducers { counts_per_turn, full_scale_torque: 100.0, ..KNOBS };
     let chain = two_masses();
     let scene = rigid(chain.as_rigid()?, wall_of(STIFFNESS, 0.0, 0));
     let plant = Plant::of(&chain).held(HAND);
@@ -70,9 +72,9 @@ pub fn runge_kutta() -> Result<Study, FailureError> {
     ];
     let truth = by_limit(&experiment, Method::Exact, 1, STIFFNESS)?;
     let mut trials = vec![
-        trial("2450 N m/rad", &scene, fine, End::Grows).pushed(5.0, 6000).believing(3.0),
+        trial("2450 N m/rad", &scene, fine, End::Grows).pushed(2.0, 15_000).believing(3.0),
         trial("900 N m/rad", &rigid(scene.device, wall_of(900.0, 0.0, 0)), fine, End::Rests)
-            .pushed(5.0, 6000),
+            .pushed(2.0, 15_000),
     ];
     for trial in &mut trials {
         trial.experiment.plant = plant.clone();

@@ -13,6 +13,7 @@ pub mod integration;
 pub mod loaded;
 pub mod missed;
 pub mod observer;
+pub mod region;
 pub mod report;
 pub mod roots;
 pub mod rules;

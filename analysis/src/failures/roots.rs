@@ -53,7 +53,7 @@ fn study(pole: f64) -> Result<Study, FailureError> {
     let scene = scene(pole);
     let companion = companion(&denominator(pole));
     let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();
-    let because = "the outermost root of the denominator has the modulus 1 + {}";
+    let because = "the outermost root of the denominator is {} beyond the circle";
     let claim =
         |by: &str, modulus: f64| Claim::new(by, Says::of(modulus < 1.0), modulus - 1.0, because);
     let claims = vec![

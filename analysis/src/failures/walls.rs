@@ -5,7 +5,7 @@ use firmware::scene::Scene;
 
 use super::FailureError;
 use super::fate::End;
-use super::setting::{PADDLE, PADDLES, coupled, rigid, trial, wall_of};
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, rigid, trial, wall_of};
 use super::trial::Trial;
 use crate::chain::Chain;
 use crate::limits::{Limit, largest_stiffness, with_wall};
@@ -14,6 +14,8 @@ use crate::worst_hand::{Held, plant, search};
 /// Delays in samples.
 pub const DELAYS: std::ops::RangeInclusive<usize> = 0..=4;
 
+/// How fast in rad/s a wall in a hand is pushed that has to come to rest.
+const SLOW: f64 = 0.1;
 /// Most samples in which a wall has to grow.
 const LONGEST: f64 = 150_000.0;
 
@@ -51,9 +53,13 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
         trial.experiment.plant = plant(&device, 1.0, &hand.hand);
         trial
     };
+    let below_in_hand = held("0.99 of it, in the worst hand", &below, End::Rests);
+    // As long as friction needs to stop that much inertia, and some seconds.
+    let momentum = SLOW * (PADDLE.inertia + hand.hand.inertia);
+    let seconds = 3.0 * momentum / below_in_hand.experiment.friction + 4.0;
     // Without friction, which would hide that little: long enough for three times the motion.
     let samples = (2.0 / hand.spectral_radius.ln()).clamp(1000.0, LONGEST) as usize;
-    let mut above = held("1.01 of the limit, in the worst hand", &above, End::Grows);
+    let mut above = held("1.01 of it, in the worst hand", &above, End::Grows);
     above.experiment.friction = 0.0;
     Ok(Wall {
         delay,
@@ -61,7 +67,7 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
         hand,
         below: [
             trial("0.99 of the limit", &below, PADDLES, End::Rests).pushed(1.0, 4000),
-            held("0.99 of the limit, in the worst hand", &below, End::Rests).pushed(0.1, 10_000),
+            below_in_hand.pushed(SLOW, (seconds / PERIOD) as usize),
         ],
         above: above.pushed(1.0, samples).believing(2.0),
     })

@@ -1,5 +1,6 @@
 //! `haptic chart`: pictures of scenes, one module each.
 
+pub mod failures;
 pub mod identify;
 pub mod limits;
 pub mod map;
@@ -46,6 +47,8 @@ pub enum Single {
     Trace(trace::Arguments),
     /// The responses of a measured device in their disk, with the device that was fitted to them
     Identify(identify::Arguments),
+    /// What methods of integration call stable, over the steps that they take in a tick
+    Failures(failures::Arguments),
 }
 
 /// Where a picture goes.
@@ -64,6 +67,7 @@ impl Single {
             Self::Limits(arguments) => &arguments.output,
             Self::Trace(arguments) => &arguments.output,
             Self::Identify(arguments) => &arguments.output,
+            Self::Failures(arguments) => &arguments.output,
         }
     }
 }
@@ -82,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Single::Limits(arguments) => limits::draw(arguments)?,
         Single::Trace(arguments) => return trace::run(arguments, &output),
         Single::Identify(arguments) => identify::draw(arguments)?,
+        Single::Failures(_) => failures::draw()?,
     };
     output.write(&picture)?;
     Ok(Answer::Yes)

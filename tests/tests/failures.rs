@@ -1,0 +1,226 @@
+//! Where methods fail, and both sides of the certificate's line: every claim that has to be wrong is,
+//! ours is not, and the loops do what was said with the emulated board as their servo.
+//!
+//! The numbers are computed here once more, by other means.
+
+use std::f64::consts::TAU;
+
+use analysis::emulator::Player;
+use analysis::failures::claim::{Failure, Says};
+use analysis::failures::report::{CaseReport, walls};
+use analysis::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
+use analysis::failures::trial::Played;
+use analysis::failures::{ALL, Case, roots, walls as wall};
+use analysis::toolchain::{Tools, prepare};
+use firmware::environment::{Environment, Rational};
+use firmware::scene::{Coupling, Scene};
+use std::cmp::Ordering;
+use tests::exact::{Q, of_f64};
+use tests::hands::Hand;
+use tests::plant::{Controller, Plant};
+use tests::poly::Poly;
+use tests::remainders::is_schur;
+use tests::rules::Exact;
+
+fn board() -> Player {
+    let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    Player::boot(&toolchain.build_player().unwrap_or_else(|error| panic!("{error}"))).unwrap()
+}
+
+/// The claims of each case that are wrong: those that say safe, and those that say unsafe.
+const WRONG: &[(&str, usize, usize)] = &[
+    ("explicit-euler", 0, 2),
+    ("semi-implicit-euler", 2, 0),
+    ("runge-kutta", 1, 0),
+    ("continuous-time", 1, 0),
+    ("negative-spring", 1, 0),
+    ("damped-rule", 1, 0),
+    ("grid", 4, 0),
+    ("pole-outside", 1, 0),
+    ("pole-inside", 0, 1),
+    ("passivity-observer", 0, 2),
+    ("fixed-point", 1, 0),
+    ("encoder", 1, 0),
+    ("missed-ticks", 1, 0),
+];
+
+/// Cases of which a board runs nothing, or refuses what is asked whatever it is told of the device.
+const REFUSED: [&str; 2] = ["negative-spring", "grid"];
+
+#[test]
+fn methods_fail_and_the_certificate_had_said_so() {
+    let mut player = Some(board());
+    assert_eq!(ALL.len(), WRONG.len());
+    for (case, (name, dangerous, needless)) in ALL.iter().zip(WRONG) {
+        assert_eq!(case.name, *name);
+        let report = case.report(&mut player).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let wrong = |failure| report.claims.iter().filter(|j| j.failure == Some(failure)).count();
+        assert_eq!(wrong(Failure::Dangerous), *dangerous, "{name}");
+        assert_eq!(wrong(Failure::Needless), *needless, "{name}");
+        // The certificate is never wrong, and never silent about what is not safe.
+        let (ours, truth) = (report.certificate.says, report.truth.says);
+        assert!(report.certificate.failure(truth).is_none(), "{name}");
+        assert!(truth == Says::Safe || ours != Says::Safe, "{name}");
+        for seen in &report.trials {
+            assert!(seen.is_as_expected(), "{name}: {seen:?}");
+            let refused = seen.emulated == Some(Played::Refused);
+            assert!(!refused || REFUSED.contains(name), "{name}: {seen:?}");
+        }
+        assert!(report.holds(), "{name}");
+    }
+    player.unwrap().finish().unwrap();
+}
+
+fn report(name: &str) -> CaseReport {
+    Case::find(name).unwrap().report(&mut None).unwrap()
+}
+
+fn figure(report: &CaseReport, by: &str) -> f64 {
+    let judged = report.claims.iter().find(|judged| judged.claim.by == by);
+    judged.unwrap_or_else(|| panic!("{by}")).claim.figure.unwrap()
+}
+
+fn near(is: f64, should: f64, part: f64) {
+    assert!((is - should).abs() <= part * should.abs(), "{is} instead of {should}");
+}
+
+/// Position and velocity of the knob after a tick under a spring, by semi-implicit Euler, as two
+/// columns; its eigenvalues from trace and determinant.
+fn semi_implicit_grows(stiffness: f64, substeps: u32) -> bool {
+    let h = PERIOD / f64::from(substeps);
+    let tick = |mut x: f64, mut v: f64| {
+        let torque = -stiffness * x;
+        for _ in 0..substeps {
+            v += h * (torque - KNOB.damping * v) / KNOB.inertia;
+            x += h * v;
+        }
+        (x, v)
+    };
+    let ((a, c), (b, d)) = (tick(1.0, 0.0), tick(0.0, 1.0));
+    let (trace, determinant) = (a + d, a * d - b * c);
+    // Jury's conditions.
+    determinant.abs() > 1.0 || trace.abs() > 1.0 + determinant
+}
+
+#[test]
+fn the_limits_that_methods_show_are_their_recursions() {
+    let report = report("semi-implicit-euler");
+    for substeps in [1, 2, 10] {
+        let (mut low, mut high) = (1.0, 1e6);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if semi_implicit_grows(middle, substeps) { high = middle } else { low = middle }
+        }
+        let steps = if substeps == 1 { "step" } else { "steps" };
+        let by = format!("semi-implicit Euler, {substeps} {steps} a tick");
+        near(figure(&report, &by), low, 1e-6);
+    }
+    near(figure(&report, "semi-implicit Euler, 1 step a tick"), 199_000.0, 1e-9);
+    // The determinant of the exact tick reaches 1.
+    let a = KNOB.damping * PERIOD / KNOB.inertia;
+    let gone = -(-a).exp_m1();
+    let force = (PERIOD - gone * KNOB.inertia / KNOB.damping) / KNOB.damping;
+    let cross = gone * KNOB.inertia / KNOB.damping * (gone / KNOB.damping) - (1.0 - gone) * force;
+    near(report.truth.figure.unwrap(), gone / cross, 1e-9);
+}
+
+fn q(value: f64) -> Q {
+    of_f64(value).unwrap()
+}
+
+/// A linear scene of springs and rational environments in exact numbers.
+fn exact(scene: &Scene) -> Exact {
+    let (numerator, denominator) = match scene.environment {
+        Environment::DamperWall(wall) => {
+            assert_eq!(wall.damping, 0.0);
+            (Poly::ascending(vec![q(wall.stiffness)]), Poly::integers(&[1]).raised(wall.delay))
+        }
+        Environment::Rational(Rational { numerator, denominator, delay, unit_zeros }) => {
+            let poly = |values: &[f64]| {
+                Poly::descending(&values.iter().map(|&value| q(value)).collect::<Vec<_>>())
+            };
+            let zeros = (0..unit_zeros)
+                .fold(Poly::integers(&[1]), |product, _| product.times(&Poly::integers(&[-1, 1])));
+            (poly(numerator.as_slice()).times(&zeros), poly(denominator.as_slice()).raised(delay))
+        }
+        _ => panic!("no other environment is asked about"),
+    };
+    Exact {
+        numerator,
+        denominator,
+        period: q(scene.timing.period),
+        delta: q(scene.device.passivity.unwrap_or(scene.device.damping)),
+        coupling: match scene.coupling {
+            Coupling::Rigid => None,
+            Coupling::Spring { stiffness } => Some(q(stiffness)),
+        },
+    }
+}
+
+#[test]
+fn what_grids_and_roots_miss_is_decided_in_rational_arithmetic() {
+    let study = Case::find("grid").unwrap().study().unwrap();
+    let resonance = exact(&study.trials[0].experiment.scene);
+    assert!(!resonance.passes_exact() && !resonance.passes_paper());
+    let alpha = resonance.alpha().unwrap();
+    assert_eq!(alpha.compare(&q(100.0 * PADDLE.damping)), Ordering::Greater);
+    assert_eq!(alpha.compare(&q(101.0 * PADDLE.damping)), Ordering::Less);
+    for (pole, is_inside) in [(1.0 + roots::BESIDE, false), (1.0 - roots::BESIDE, true)] {
+        let denominator = exact(&roots::scene(pole)).denominator;
+        assert!(denominator.at(&q(pole)) == q(0.0), "no coefficient is rounded");
+        assert_eq!(is_schur(&denominator), is_inside);
+    }
+}
+
+#[test]
+fn an_observer_asks_for_what_no_motor_has() {
+    let report = report("passivity-observer");
+    let [always, guarded] = &report.claims[..] else { panic!("two observers") };
+    assert!(always.claim.because.starts_with("the torque is not a number"), "{always:?}");
+    assert!(guarded.claim.figure.unwrap() > 100.0 * PADDLES.full_scale_torque, "{guarded:?}");
+}
+
+#[test]
+fn walls_rest_below_the_limit_and_not_above_it() {
+    let mut player = Some(board());
+    let reports = walls(&mut player).unwrap();
+    player.unwrap().finish().unwrap();
+    assert_eq!(reports.len(), 5);
+    for report in &reports {
+        let delay = report.delay as f64;
+        let ticks = if report.delay == 0 { 0.5 } else { delay - 0.5 };
+        near(report.limit, PADDLE.damping / (PERIOD * ticks), 1e-9);
+        assert!(report.holds(), "{report:?}");
+        let hand = report.hand.hand;
+        let numbers = [hand.inertia, hand.damping, hand.stiffness];
+        assert!(hand.link.is_none() && numbers.iter().all(|number| *number >= 0.0), "{hand:?}");
+        // The loop in that hand once more, by the tests' own exponential and eigenvalues.
+        let (mass, damping) = (PADDLE.damping * PERIOD, PADDLE.damping);
+        let plant = Plant::new(&Hand {
+            inertia: (PADDLE.inertia + hand.inertia) / mass,
+            damping: hand.damping / damping,
+            stiffness: hand.stiffness * PERIOD / damping,
+            segments: Vec::new(),
+        });
+        let wall = wall::wall(report.delay).unwrap();
+        for (trial, grows) in
+            wall.below.iter().map(|below| (below, false)).chain([(&wall.above, true)])
+        {
+            let controller = Controller::new(&exact(&trial.experiment.scene)).unwrap();
+            let radius = controller.spectral_radius(&plant).unwrap();
+            assert_eq!(radius > 1.0, grows, "{} samples late: {radius}", report.delay);
+        }
+        // What is to rest has the friction of section 8, and a converter's half step.
+        let friction = 0.5 * 0.99 * report.limit * TAU / PADDLES.counts_per_turn
+            + 0.5 * PADDLES.full_scale_torque / 2047.0;
+        for below in &wall.below {
+            near(below.experiment.friction, friction, 1e-9);
+        }
+        let boards = report.trials.iter().filter_map(|seen| seen.emulated.as_ref());
+        let refused = boards.filter(|played| **played == Played::Refused).count();
+        // One sample late, the controller alone oscillates above the limit: no board can be told
+        // of a device on which it would not.
+        assert_eq!(refused, usize::from(report.delay == 1));
+    }
+}
