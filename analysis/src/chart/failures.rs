@@ -170,13 +170,7 @@ fn write_key(area: &Area<'_>) -> Drawn<()> {
         let (x, y) = cell(index as i32 + 2);
         dash.draw(area, &[(x, y), (x + units(60), y)], width)?;
     }
-    let methods = METHODS.map(|method| match method {
-        Method::SemiImplicit => "semi-implicit Euler",
-        Method::Rk4 => "Runge-Kutta, fourth order",
-        Method::Tustin => "Tustin",
-        Method::Euler => "explicit Euler",
-        Method::Exact => "exact exponential",
-    });
+    let methods = METHODS.map(Method::name);
     let words =
         ["called stable, but unstable", "called unstable, but stable", "the truth", "certified"];
     for (index, words) in words.into_iter().chain(methods).enumerate() {

@@ -5,6 +5,8 @@ use firmware::scene::Scene;
 use serde::Serialize;
 
 use crate::quantity::significant;
+use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::stability::{closed_loop, eigenvalues, radius};
 
 /// Does it come to rest?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -63,6 +65,31 @@ impl Claim {
     pub fn new(by: impl Into<String>, says: Says, figure: f64, because: &str) -> Self {
         let because = because.replacen("{}", &significant(figure, 6), 1);
         Self { by: by.into(), says, figure: Some(figure), because }
+    }
+
+    /// What the eigenvalues of a loop say, as a method of integration shows them.
+    ///
+    /// # Errors
+    /// Where there is no loop, or its eigenvalues are not found.
+    pub fn eigenvalues(
+        by: impl Into<String>,
+        experiment: &Experiment,
+        stride: Stride,
+    ) -> Result<Self, SimulationError> {
+        let closed = closed_loop(experiment, stride)?;
+        Ok(Self::modulus(by, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
+    }
+
+    /// What a modulus says that has to be inside the unit circle; `of` is what has it.
+    pub fn modulus(by: impl Into<String>, of: &str, modulus: f64) -> Self {
+        let (is_inside, beside) = (modulus < 1.0, significant((modulus - 1.0).abs(), 6));
+        let side = if is_inside { "inside" } else { "outside" };
+        Self {
+            by: by.into(),
+            says: Says::of(is_inside),
+            figure: Some(modulus),
+            because: format!("the {of} is {beside} {side} the unit circle"),
+        }
     }
 
     /// What the certificate says about a scene: the index that it found, or its refusal.

@@ -12,7 +12,6 @@ use super::{FailureError, Study};
 use crate::limits::error_gain;
 use crate::simulation::drive::Drive;
 use crate::simulation::{Experiment, SimulationError, Stride};
-use crate::stability::{closed_loop, eigenvalues, radius};
 
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
@@ -36,10 +35,8 @@ pub fn fixed_point() -> Result<Study, FailureError> {
     let hums = trial("no friction", 0.0, End::Hums);
     let needed = bound + friction_for_rest(&scene, &fine);
     let rests = trial("the friction that the bound asks for", needed, End::Rests);
-    let hum = hums.simulated()?;
-    let because = "the servo's arithmetic, alone, moves the device to and fro by {} rad";
-    let truth = Claim::new("Q16.16", Says::of(hum.end() == End::Rests), hum.last, because);
-    Ok(Study { claims: vec![linear(&scene)?], certificate, truth, trials: vec![hums, rests] })
+    let truth = Claim::simulated("simulation in Q16.16", &hums)?;
+    Ok(Study { claims: ideal(&scene)?, certificate, truth, trials: vec![hums, rests] })
 }
 
 /// The encoder's steps, without friction and with as much as section 8 asks for.
@@ -50,10 +47,8 @@ pub fn encoder() -> Result<Study, FailureError> {
     let certificate = Claim::new("certificate", Says::Unsafe, needed, because);
     let hums = leaning("no friction", &scene, PADDLES, End::Hums, 0.0);
     let rests = leaning("K Delta/2 + B Delta/T of friction", &scene, PADDLES, End::Rests, needed);
-    let hum = hums.simulated()?;
-    let because = "the encoder's steps, alone, move the device to and fro by {} rad";
-    let truth = Claim::new("encoder", Says::of(hum.end() == End::Rests), hum.last, because);
-    Ok(Study { claims: vec![linear(&scene)?], certificate, truth, trials: vec![hums, rests] })
+    let truth = Claim::simulated("simulation with the encoder", &hums)?;
+    Ok(Study { claims: ideal(&scene)?, certificate, truth, trials: vec![hums, rests] })
 }
 
 /// The paper's wall.
@@ -75,10 +70,12 @@ fn leaning(
     trial
 }
 
-/// The eigenvalues of the loop in real numbers.
-fn linear(scene: &Scene) -> Result<Claim, FailureError> {
-    let closed = closed_loop(&Experiment::still(scene), Stride::default())?;
-    let radius = radius(&eigenvalues(&closed.matrix)?);
-    let because = "in real numbers the largest eigenvalue has the modulus {}";
-    Ok(Claim::new("linear analysis", Says::of(radius < 1.0), radius, because))
+/// The loop without steps: its eigenvalues, and its simulation.
+fn ideal(scene: &Scene) -> Result<Vec<Claim>, FailureError> {
+    let mut smooth = leaning("no steps", scene, PADDLES, End::Rests, 0.0);
+    smooth.experiment.encoder_step = None;
+    Ok(vec![
+        Claim::eigenvalues("linear analysis", &Experiment::still(scene), Stride::default())?,
+        Claim::simulated("simulation in real numbers", &smooth)?,
+    ])
 }

@@ -20,13 +20,14 @@ pub mod rules;
 pub mod setting;
 pub mod trial;
 pub mod walls;
+pub mod zigzag;
 
 use thiserror::Error;
 
 use claim::{Claim, Failure};
 use trial::{Trial, TrialError};
 
-use crate::chain::{ChainError, NoPassivity};
+use crate::chain::ChainError;
 use crate::simulation::SimulationError;
 
 /// Why a case has no answers.
@@ -38,9 +39,6 @@ pub enum FailureError {
     /// A loop cannot be run.
     #[error(transparent)]
     Trial(#[from] TrialError),
-    /// A device has no passivity.
-    #[error(transparent)]
-    NoPassivity(#[from] NoPassivity),
     /// There is no such device.
     #[error(transparent)]
     Chain(#[from] ChainError),
@@ -105,7 +103,7 @@ macro_rules! cases {
 cases! {
     "explicit-euler", "a certified wall on two masses", integration::explicit_euler;
     "semi-implicit-euler", "a spring of 1500 N m/rad", integration::semi_implicit_euler;
-    "runge-kutta", "a spring of 2450 N m/rad on two masses in a hand", integration::runge_kutta;
+    "runge-kutta", "a spring of 2750 N m/rad on two masses in a hand", integration::runge_kutta;
     "continuous-time", "a spring of 5000 N m/rad", rules::continuous_time;
     "negative-spring", "a spring of -200 N m/rad", rules::negative_spring;
     "damped-rule", "a late wall whose damping is the device's", rules::damped_rule;
@@ -115,5 +113,6 @@ cases! {
     "passivity-observer", "a certified wall and an observer", observer::passivity_observer;
     "fixed-point", "the paper's wall in Q16.16", converters::fixed_point;
     "encoder", "the paper's wall behind an encoder", converters::encoder;
+    "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
     "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
 }

@@ -1,13 +1,11 @@
 //! Up to which stiffness a method calls a spring stable, over the steps that it takes in a tick.
 
 use super::FailureError;
-use super::integration::{HAND, two_masses};
-use super::setting::{KNOB, rigid, wall_of};
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::method::Method;
-use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Stride};
 use crate::stability::critical_stiffness;
+use crate::tradeoff::simulation;
 
 /// The methods that are looked at, the one that errs the most first.
 pub const METHODS: [Method; 4] = [Method::SemiImplicit, Method::Rk4, Method::Tustin, Method::Euler];
@@ -36,13 +34,8 @@ impl Region {
     /// # Errors
     /// Where an eigenvalue is not found.
     pub fn all() -> Result<[Self; 2], FailureError> {
-        let scene = rigid(KNOB, wall_of(1.0, 0.0, 0));
-        let knob = Self::of("mass and damper", &Experiment::still(&scene))?;
-        let chain = two_masses();
-        let scene = rigid(chain.as_rigid()?, wall_of(1.0, 0.0, 0));
-        let plant = Plant::of(&chain).held(HAND);
-        let held = Experiment { plant, ..Experiment::still(&scene) };
-        Ok([knob, Self::of("two masses in a hand", &held)?])
+        let [knob, held] = simulation::cases();
+        Ok([Self::of(knob.name, &knob.experiment)?, Self::of(held.name, &held.experiment)?])
     }
 
     fn of(device: &'static str, experiment: &Experiment) -> Result<Self, FailureError> {

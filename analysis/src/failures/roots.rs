@@ -53,12 +53,10 @@ fn study(pole: f64) -> Result<Study, FailureError> {
     let scene = scene(pole);
     let companion = companion(&denominator(pole));
     let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();
-    let because = "the outermost root of the denominator is {} beyond the circle";
-    let claim =
-        |by: &str, modulus: f64| Claim::new(by, Says::of(modulus < 1.0), modulus - 1.0, because);
+    let root = "outermost root of the denominator";
     let claims = vec![
-        claim("companion matrix", radius(&plain)),
-        claim("companion matrix, balanced", radius(&eigenvalues(&companion)?)),
+        Claim::modulus("companion matrix", root, radius(&plain)),
+        Claim::modulus("companion matrix, balanced", root, radius(&eigenvalues(&companion)?)),
     ];
     let growth = growth(pole);
     let because = "factor by factor its output is {} of what it was, 2^20 samples later";

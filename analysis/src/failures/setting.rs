@@ -1,6 +1,9 @@
 //! What the cases have in common: two devices, walls, and what a board would have around them.
 
+use std::f64::consts::TAU;
+
 use firmware::board::play::Arithmetic;
+use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -55,14 +58,18 @@ pub fn coupled(device: Device, environment: Environment) -> Scene {
     Scene { coupling: Coupling::Spring { stiffness }, ..scene }
 }
 
-/// Friction in N m that ends the hum of a wall (theory, section 8): `K Delta / 2 + B Delta / T` for
-/// the encoder's step `Delta`, and half a step of the converter, which is an error of the force.
+/// Friction in N m that ends the hum of a wall (theory, section 8): that of the encoder, and half a
+/// step of the converter, which is an error of the torque.
 pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
+    let codes = f64::from(DacCode::CODES_TO_FULL_SCALE);
+    encoder_friction(scene, transducers) + 0.5 * transducers.full_scale_torque / codes
+}
+
+/// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad.
+pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
     let Some(wall) = wall(scene) else { return 0.0 };
-    let step = std::f64::consts::TAU / transducers.counts_per_turn;
-    let converter = 0.5 * transducers.full_scale_torque
-        / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
-    (0.5 * wall.stiffness.abs() + wall.damping.abs() / scene.timing.period) * step + converter
+    let step = TAU / transducers.counts_per_turn;
+    (0.5 * wall.stiffness + wall.damping / scene.timing.period) * step
 }
 
 /// A trial of a scene on its rigid device, with the friction that its board needs for rest.

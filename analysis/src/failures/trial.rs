@@ -11,6 +11,7 @@ use fixed::types::I16F16;
 use serde::Serialize;
 use thiserror::Error;
 
+use super::claim::{Claim, Says};
 use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
 use crate::controller::{Controller, controller};
@@ -169,6 +170,18 @@ impl Trial {
             Arithmetic::F32 => controller::<Environment, f32>(certified, &self.transducers)?,
             Arithmetic::Q16 => controller::<Environment, I16F16>(certified, &self.transducers)?,
         })
+    }
+}
+
+impl Claim {
+    /// What becomes of a loop in simulation.
+    ///
+    /// # Errors
+    /// Where it cannot be simulated.
+    pub fn simulated(by: &str, trial: &Trial) -> Result<Self, TrialError> {
+        let fate = trial.simulated()?;
+        let says = Says::of(fate.end() == End::Rests);
+        Ok(Self::new(by, says, fate.last, "at the end it moves to and fro by {} rad"))
     }
 }
 

@@ -28,6 +28,17 @@ impl Method {
     /// All of them.
     pub const ALL: [Self; 5] =
         [Self::Exact, Self::Euler, Self::SemiImplicit, Self::Rk4, Self::Tustin];
+
+    /// Its name in the literature.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact exponential",
+            Self::Euler => "explicit Euler",
+            Self::SemiImplicit => "semi-implicit Euler",
+            Self::Rk4 => "Runge-Kutta of order 4",
+            Self::Tustin => "Tustin",
+        }
+    }
 }
 
 /// Row of the sine behind the states and the held inputs; its cosine is the next.
