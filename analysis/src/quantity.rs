@@ -13,7 +13,7 @@
 pub fn significant(value: f64, digits: usize) -> String {
     let precision = digits.saturating_sub(1);
     let exponential = format!("{value:.precision$e}");
-    let rounded: f64 = exponential.parse().unwrap_or(value);
+    let rounded = rounded(value, digits);
     let exponent = if rounded == 0.0 { 0.0 } else { rounded.abs().log10().floor() };
     if !rounded.is_finite() || (-4.0..7.0).contains(&exponent) {
         return format!("{rounded}");
@@ -24,6 +24,18 @@ pub fn significant(value: f64, digits: usize) -> String {
         }
         _ => exponential,
     }
+}
+
+/// The number nearest to `value` of those with so many significant digits.
+///
+/// ```
+/// use analysis::quantity::rounded;
+/// assert_eq!(rounded(1144.0 * 0.001, 15), 1.144);
+/// assert_eq!(rounded(f64::INFINITY, 3), f64::INFINITY);
+/// ```
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let precision = digits.saturating_sub(1);
+    format!("{value:.precision$e}").parse().unwrap_or(value)
 }
 
 /// A name of at most so many letters, with dots for what is left out.

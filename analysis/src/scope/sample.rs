@@ -8,6 +8,11 @@ use firmware::torque::LimitReason;
 use firmware::wire::message::Board;
 use serde::Serialize;
 
+use crate::quantity::rounded;
+
+/// Digits of a time: a multiple of a period of few digits has not more, but for its rounding.
+const DIGITS: usize = 15;
+
 /// A tick of a board in the units of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -53,7 +58,7 @@ impl Scale {
         let torque_per_code = board.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
         Sample {
             tick: self.tick,
-            time: self.tick as f64 * board.period,
+            time: rounded(self.tick as f64 * board.period, DIGITS),
             count: self.count,
             position: self.count as f64 * TAU / board.counts_per_turn,
             code: frame.code.get(),
