@@ -74,8 +74,8 @@ fn paint(area: &Area<'_>, region: &Region) -> Drawn<()> {
     line(&chart, &level(region.truth), SOLID, 4)?;
     line(&chart, &level(region.certified), CERTIFIED, 2)?;
     for (method, points) in METHODS.into_iter().zip(&region.apparent) {
-        let seen = points.iter().filter(|point| point.1 >= STIFFNESS.start);
-        line(&chart, &seen.copied().collect::<Vec<_>>(), dash(method), 2)?;
+        let seen = points.iter().map(|point| (point.0, point.1.max(STIFFNESS.start)));
+        line(&chart, &seen.collect::<Vec<_>>(), dash(method), 2)?;
     }
     Ok(())
 }

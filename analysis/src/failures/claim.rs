@@ -1,6 +1,7 @@
 //! What somebody or something says about a loop, and whether that is so.
 
 use firmware::certificate::{Rejection, assess, certify};
+use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use serde::Serialize;
 
@@ -97,7 +98,7 @@ impl Claim {
         let assessment = assess(scene);
         let index = assessment.alpha_coupled.or(assessment.alpha);
         let (says, because) = match certify(scene) {
-            Ok(_) => (Says::Safe, "certified".to_owned()),
+            Ok(_) => (Says::Safe, certified(index, assessment.delta)),
             Err(rejection @ Rejection::Undecided { .. }) => {
                 (Says::Undecided, rejection.to_string())
             }
@@ -114,4 +115,14 @@ impl Claim {
             _ => None,
         }
     }
+}
+
+/// What a certificate rests on, in words.
+fn certified(index: Option<Interval>, delta: Interval) -> String {
+    let number = |value: f64| significant(value, 6);
+    let needs = index.map_or_else(String::new, |alpha| number(alpha.hi()));
+    format!(
+        "certified: it needs {needs} of the {} N m s/rad that the device has",
+        number(delta.lo())
+    )
 }

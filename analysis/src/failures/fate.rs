@@ -34,7 +34,8 @@ impl End {
 pub struct Fate {
     /// Largest less smallest position in the first tenth of the samples, in rad.
     pub first: f64,
-    /// The same in the last tenth; infinite where it has left the range of numbers.
+    /// The same in the last tenth; infinite, which is no number in JSON, where it has left the range
+    /// of numbers.
     pub last: f64,
 }
 

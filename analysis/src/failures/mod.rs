@@ -24,7 +24,7 @@ pub mod zigzag;
 
 use thiserror::Error;
 
-use claim::{Claim, Failure};
+use claim::Claim;
 use trial::{Trial, TrialError};
 
 use crate::chain::ChainError;
@@ -82,13 +82,6 @@ impl Case {
     /// The case of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         ALL.iter().find(|case| case.name == name)
-    }
-}
-
-impl Study {
-    /// The claims that are wrong, and how.
-    pub fn failures(&self) -> impl Iterator<Item = (&Claim, Failure)> {
-        self.claims.iter().filter_map(|claim| Some((claim, claim.failure(self.truth.says)?)))
     }
 }
 

@@ -16,7 +16,7 @@ use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
 use crate::controller::{Controller, controller};
 use crate::emulator::{EmulatorError, Player};
-use crate::rig::{Alone, Run, run};
+use crate::rig::run;
 use crate::simulation::{Experiment, SimulationError, Stride, simulate};
 
 /// Why there is no proof.
@@ -123,19 +123,6 @@ impl Trial {
             Some(difference) => Err(TrialError::Disagreement(difference.to_string())),
             None => Ok(Played::Ran(Fate::of(&device.positions, self.experiment.samples))),
         }
-    }
-
-    /// The same without a board: the host's servo alone, codes and counts and all.
-    ///
-    /// # Errors
-    /// Where the scene cannot be had.
-    pub fn alone(&self) -> Result<(Run, Fate), TrialError> {
-        let mut servo = self.controller(&self.certified()?)?;
-        let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
-        let ticks = self.ticks();
-        let run = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
-        let run = run.unwrap_or_else(|never| match never {});
-        Ok((run, Fate::of(&device.positions, self.experiment.samples)))
     }
 
     /// The scene as the board is told it.

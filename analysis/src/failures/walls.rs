@@ -1,5 +1,7 @@
 //! Both sides of the line: walls at 0.99 of the certified limit, which come to rest, and at 1.01 of
 //! it, with the hand in which they do not.
+//!
+//! For a rigid device and a linear wall the certified limit is the true one (theory, section 4.1).
 
 use firmware::scene::Scene;
 

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::servo::Transducers;
 
 /// What the servo computes in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Arithmetic {
     /// IEEE binary32.
