@@ -24,8 +24,10 @@ impl Scaled {
     /// in place of eight.
     const LARGEST_SHIFT: u32 = 31;
 
-    /// Rounds `value`; an error from 2^31 on.
-    fn new(value: f64, format: Format) -> Result<Self, OutOfRange> {
+    /// Rounds `value`; an error from 2^31 on. Once a coefficient and never in a tick, so that it is
+    /// in a program once.
+    #[inline(never)]
+    pub(super) fn new(value: f64, format: Format) -> Result<Self, OutOfRange> {
         let bound = f64::from(i32::MAX);
         let magnitude = bounded(value, bound, format)?.abs();
         let (mut scaled, mut shift) = (magnitude, 0);
@@ -38,7 +40,7 @@ impl Scaled {
     }
 
     /// The exact value.
-    fn to_f64(self) -> f64 {
+    pub(super) fn to_f64(self) -> f64 {
         f64::from(self.mantissa) / f64::from(1_u32 << self.shift)
     }
 
@@ -50,6 +52,14 @@ impl Scaled {
         let half = i64::from((1_u32 << shift) >> 1);
         // At most 2^62 + 2^30: no overflow.
         nearest(product.wrapping_add(half) >> shift)
+    }
+
+    /// `bits * self` cut off: the nearest `i32` to the largest whole number that is not above it, and
+    /// whether it is that number.
+    #[inline(always)]
+    pub(super) fn scale_down(self, bits: i32) -> (i32, bool) {
+        let product = i64::from(bits) * i64::from(self.mantissa);
+        nearest(product >> (self.shift & Self::LARGEST_SHIFT))
     }
 }
 

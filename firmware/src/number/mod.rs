@@ -4,18 +4,22 @@
 //! [`Number::Coefficient`], computed once from plain SI values. All operations of the tick give
 //! the same bits on every machine: no fused multiply-add, no library function, no division.
 
+mod arithmetic;
 mod fixed_point;
 mod float;
 #[cfg(test)]
 mod tests;
+mod truncated;
 
+pub use arithmetic::{Arithmetic, InEach};
 pub use fixed_point::Scaled;
+pub use truncated::Truncated;
 
 use core::fmt;
 
 use crate::text::Written;
 
-/// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`].
+/// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// What multiplies a number: a gain, a compliance, a scale.
     type Coefficient: Copy + fmt::Debug;
@@ -39,7 +43,8 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     fn plus(self, other: Self) -> Self;
     /// Difference; saturates in fixed point.
     fn minus(self, other: Self) -> Self;
-    /// Product with a coefficient, rounded to nearest; saturates in fixed point.
+    /// Product with a coefficient, rounded to nearest, or cut off in a [`Truncated`] format;
+    /// saturates in fixed point.
     fn times(self, coefficient: Self::Coefficient) -> Self;
     /// The number with the opposite sign; saturates in fixed point.
     fn negated(self) -> Self;
@@ -81,6 +86,11 @@ pub enum Format {
         /// Number of fractional bits.
         fraction_bits: u32,
     },
+    /// The same, with products that are cut off.
+    Truncated {
+        /// Number of fractional bits.
+        fraction_bits: u32,
+    },
 }
 
 impl fmt::Display for Format {
@@ -89,6 +99,9 @@ impl fmt::Display for Format {
             Self::F32 => f.write_str("f32"),
             Self::F64 => f.write_str("f64"),
             Self::Fixed { fraction_bits } => write!(f, "Q{}.{fraction_bits}", 32 - fraction_bits),
+            Self::Truncated { fraction_bits } => {
+                write!(f, "Q{}.{fraction_bits} truncated", 32 - fraction_bits)
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::*;
 
 type Q16 = FixedI32<U16>;
+type Cut = Truncated<FixedI32<U24>>;
 
 const CENTRE: u16 = 2048;
 
@@ -39,6 +40,7 @@ fn the_code_is_in_the_middle_at_no_torque_and_rounds_to_nearest() {
     middle_and_both_ends::<Q16>();
     middle_and_both_ends::<FixedI32<U24>>();
     middle_and_both_ends::<FixedI32<U31>>();
+    middle_and_both_ends::<Cut>();
 }
 
 #[test]
@@ -66,6 +68,7 @@ fn an_angle_beyond_its_format_stands_still_and_says_so() {
     }
     ends::<Q16>(327_670_000, 327_690_000);
     ends::<FixedI32<U28>>(79_999, 80_001);
+    ends::<Truncated<FixedI32<U28>>>(79_999, 80_001);
     for count in [i32::MIN, -1, 0, 1, i32::MAX] {
         assert_eq!(f64::angle(count, 1e-4), (f64::from(count) * 1e-4, true));
         assert_eq!(f32::angle(count, 1e-4), (count as f32 * 1e-4, true));
@@ -74,6 +77,8 @@ fn an_angle_beyond_its_format_stands_still_and_says_so() {
 
 #[test]
 fn what_does_not_fit_is_named() {
+    let error = Truncated::<FixedI32<U28>>::from_f64(-9.0).unwrap_err().to_string();
+    assert!(error.starts_with("-9 does not fit Q4.28 truncated: "), "{error}");
     let error = FixedI32::<U28>::from_f64(9.0).unwrap_err();
     assert_eq!(error.to_string(), "9 does not fit Q4.28: its magnitude may be at most 7.999999996");
     for value in [f64::NAN, f64::INFINITY, -1e300, 3e9] {
@@ -116,6 +121,25 @@ proptest! {
         let (product, end) = (number.times(factor).to_f64(), FixedI32::<U24>::MAX.to_f64());
         let nearest = exact.clamp(-end - 2_f64.powi(-24), end);
         prop_assert!((product - nearest).abs() <= 0.5000001 * 2_f64.powi(-24));
+    }
+
+    #[test]
+    fn a_truncated_product_is_the_next_below_or_saturates(bits: i32, value in -1e3..1e3_f64) {
+        let step = 2_f64.powi(-24);
+        let number = Cut::from_f64(f64::from(bits) * step).unwrap();
+        prop_assert_eq!(number.to_f64(), f64::from(bits) * step);
+        let factor = Cut::coefficient(value).unwrap();
+        // Both have 31 bits: exact in whole numbers.
+        let factor = Cut::coefficient_to_f64(factor) * 2_f64.powi(31);
+        let exact = i128::from(bits) * factor as i128;
+        let end = i128::from(i32::MAX);
+        let below = exact.div_euclid(1 << 31).clamp(-end - 1, end);
+        let product = number.times(Cut::coefficient(value).unwrap()).to_f64();
+        prop_assert_eq!(product, below as f64 * step);
+        let count = bits >> 1;
+        let (angle, fits) = Cut::angle(count, Cut::angle_scale(1.5 * step).unwrap());
+        prop_assert!(fits);
+        prop_assert_eq!(angle.to_f64(), (1.5 * f64::from(count)).floor() * step);
     }
 
     #[test]

@@ -1,0 +1,81 @@
+//! The number formats that are compared with each other, as data.
+
+use fixed::types::{I1F31, I8F24, I16F16};
+
+use super::{Number, Truncated};
+
+/// A number format that a servo may compute in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Arithmetic {
+    /// IEEE binary32, of which the boards' cores have a unit.
+    F32,
+    /// IEEE binary64, which they do in software.
+    F64,
+    /// To 32768 rad or N m, in steps of 1.5e-5.
+    I16F16,
+    /// The same, cut off.
+    I16F16Truncated,
+    /// To 128 rad or N m, in steps of 6e-8.
+    I8F24,
+    /// The same, cut off.
+    I8F24Truncated,
+    /// To 1 of whatever units the scene is scaled to, in steps of 5e-10.
+    I1F31,
+    /// The same, cut off.
+    I1F31Truncated,
+}
+
+/// Something to be done in a number format that is known at run time.
+pub trait InEach {
+    /// What it gives.
+    type Output;
+    /// Does it in the format `N`.
+    fn with<N: Number>(self) -> Self::Output;
+}
+
+impl Arithmetic {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::F32,
+        Self::F64,
+        Self::I16F16,
+        Self::I16F16Truncated,
+        Self::I8F24,
+        Self::I8F24Truncated,
+        Self::I1F31,
+        Self::I1F31Truncated,
+    ];
+
+    /// Its name, for tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+            Self::I16F16 => "i16f16",
+            Self::I16F16Truncated => "i16f16-truncated",
+            Self::I8F24 => "i8f24",
+            Self::I8F24Truncated => "i8f24-truncated",
+            Self::I1F31 => "i1f31",
+            Self::I1F31Truncated => "i1f31-truncated",
+        }
+    }
+
+    /// Whether a scene has to be scaled for it: neither a turn nor a torque of 1 N m fits.
+    pub const fn is_scaled(self) -> bool {
+        matches!(self, Self::I1F31 | Self::I1F31Truncated)
+    }
+
+    /// Does something in this format.
+    pub fn choose<W: InEach>(self, what: W) -> W::Output {
+        match self {
+            Self::F32 => what.with::<f32>(),
+            Self::F64 => what.with::<f64>(),
+            Self::I16F16 => what.with::<I16F16>(),
+            Self::I16F16Truncated => what.with::<Truncated<I16F16>>(),
+            Self::I8F24 => what.with::<I8F24>(),
+            Self::I8F24Truncated => what.with::<Truncated<I8F24>>(),
+            Self::I1F31 => what.with::<I1F31>(),
+            Self::I1F31Truncated => what.with::<Truncated<I1F31>>(),
+        }
+    }
+}
