@@ -34,6 +34,9 @@
 
 mod error;
 mod exciter;
+pub mod sine;
+#[cfg(feature = "sines")]
+pub mod sines;
 
 use core::fmt;
 
