@@ -3,7 +3,7 @@
 use firmware::certificate::Certified;
 use firmware::encoder::RawCount;
 use firmware::environment::Renderable;
-use firmware::number::Number;
+use firmware::number::{Number, OutOfRange};
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Servo, Transducers};
 use firmware::torque::LimitReason;
@@ -27,6 +27,12 @@ pub struct Tick {
 pub trait Controller {
     /// One tick with the counter's content.
     fn tick(&mut self, raw: i32) -> Tick;
+
+    /// One tick at an angle in rad that no encoder has counted: the torque in N m.
+    ///
+    /// # Errors
+    /// Where the number format does not hold the angle.
+    fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange>;
 }
 
 impl<E: Renderable<N>, N: Number> Controller for Servo<E, N> {
@@ -39,6 +45,10 @@ impl<E: Renderable<N>, N: Number> Controller for Servo<E, N> {
             code: output.code.get(),
             limit: output.limit,
         }
+    }
+
+    fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        Servo::tick_at(self, angle)
     }
 }
 

@@ -17,6 +17,7 @@ pub mod identify;
 pub mod mu;
 
 // What runs: a program's scene in a servo, with a simulated device or a recording around it.
+pub mod arithmetic;
 pub mod controller;
 pub mod device;
 pub mod hand;

@@ -145,6 +145,9 @@ pub enum CommandError {
     /// The servo cannot be built of the certified scene.
     #[error(transparent)]
     Servo(#[from] firmware::servo::BuildError),
+    /// An angle does not fit the servo's number format.
+    #[error("the device's angle: {0}")]
+    Angle(#[from] firmware::number::OutOfRange),
     /// A bad recording.
     #[error(transparent)]
     Replay(#[from] TableError),

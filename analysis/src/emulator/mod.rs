@@ -9,6 +9,7 @@ mod log;
 mod pipes;
 mod player;
 mod report;
+mod trials;
 pub mod world;
 
 use std::fs::File;
@@ -24,6 +25,7 @@ use tempfile::TempDir;
 pub use judge::Judge;
 pub use player::Player;
 pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+pub use trials::Trials;
 
 use log::LogReader;
 use pipes::Pipes;
@@ -105,6 +107,13 @@ pub enum EmulatorError {
     /// The board gave an answer that is none.
     #[error("the emulated board's reply is not understood: its program is of another version")]
     NoReply,
+    /// The board cannot compute what it was asked to.
+    #[error(
+        "the emulated board does not measure this scene: it has programs for a spring and a \
+         one-sided damper wall that are one sample late, and for free mode without delay, whose \
+         numbers fit the format"
+    )]
+    NoTrial,
     /// The log does not say what a report needs.
     #[error(transparent)]
     Report(#[from] ReportError),

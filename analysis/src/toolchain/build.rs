@@ -255,6 +255,14 @@ impl Toolchain {
         self.measuring("player")
     }
 
+    /// Builds the program that computes for [`Trials`](crate::emulator::Trials).
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_trial(&self) -> Result<PathBuf, BuildError> {
+        self.measuring("trial")
+    }
+
     /// Builds a program without a scene for the emulated board.
     fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
         let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };

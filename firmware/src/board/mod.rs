@@ -9,6 +9,8 @@ pub mod play;
 pub mod question;
 pub mod report;
 pub mod shown;
+#[cfg(feature = "sines")]
+pub mod trial;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]

@@ -19,7 +19,7 @@ use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
 use crate::environment::{Law, Renderable, Setting};
-use crate::number::Number;
+use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
 
@@ -138,6 +138,19 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
         self.advance(x, action);
         let offer = action.add_to(self.law.offer(x));
         self.answer(offer, fits)
+    }
+
+    /// One tick at an angle in rad that no encoder has counted: what the number format alone does to
+    /// the torque in N m, which is given. For the host; no board knows its angle better than its
+    /// encoder.
+    ///
+    /// # Errors
+    /// Where the format does not hold the angle.
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        let x = N::from_f64(angle)?;
+        self.answer(self.law.offer(x), true);
+        self.advance(x, &mut NoAction);
+        Ok(self.torque_nm())
     }
 
     /// Ends the tick with the device at `x` (rad) under this tick's torque.

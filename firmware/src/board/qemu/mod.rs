@@ -29,6 +29,8 @@ mod start;
 pub(super) mod stop;
 mod sweep;
 pub mod tick;
+#[cfg(feature = "log")]
+pub mod trial;
 
 pub use start::{Places, run};
 pub use sweep::{SweepPlace, measure};

@@ -1,0 +1,99 @@
+//! What the servo's number format does to its torque: the same servo in every format, on the same
+//! counts, in the same hand.
+
+mod cost;
+mod motion;
+mod rest;
+mod units;
+
+pub use cost::{Cost, cost};
+pub use motion::{Motion, Offset};
+pub use rest::{Rest, at_rest};
+pub use units::Units;
+
+use firmware::number::{Arithmetic, InEach, Number};
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use crate::command::CommandError;
+use crate::controller::{Controller, controller};
+
+/// Largest angle in rad to each side that a scaled format has to hold, unless it is told: a knob's or
+/// a paddle's.
+pub const HALF_A_TURN: f64 = std::f64::consts::PI;
+
+/// A scene with its sensor and motor, to be computed in any format.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// The scene.
+    pub scene: Scene,
+    /// Its sensor and its motor.
+    pub transducers: Transducers,
+    /// Largest angle in rad to each side that a scaled format has to hold.
+    pub range: f64,
+}
+
+/// A servo that takes angles in rad and gives torques in N m, whatever it is scaled to inside.
+pub struct FormatServo {
+    controller: Box<dyn Controller>,
+    units: Units,
+}
+
+impl Subject {
+    /// What the numbers of a format count in this scene.
+    pub fn units(&self, arithmetic: Arithmetic) -> Units {
+        if arithmetic.is_scaled() {
+            let torque = self.scene.torque_limit.unwrap_or(self.transducers.full_scale_torque);
+            Units::above(self.range, torque)
+        } else {
+            Units::SI
+        }
+    }
+
+    /// The scene and its transducers in the units of a format.
+    pub fn scaled(&self, arithmetic: Arithmetic) -> (Scene, Transducers) {
+        let units = self.units(arithmetic);
+        (units.scene(&self.scene), units.transducers(&self.transducers))
+    }
+
+    /// The scene's servo in a format, at rest at zero.
+    ///
+    /// # Errors
+    /// Where the scene is refused, or cannot be had in this format.
+    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, CommandError> {
+        let (scene, transducers) = self.scaled(arithmetic);
+        let controller = arithmetic.choose(Build { scene, transducers })?;
+        Ok(FormatServo { controller, units: self.units(arithmetic) })
+    }
+}
+
+impl FormatServo {
+    /// The torque in N m at a raw count, and the converter's code.
+    pub fn tick(&mut self, raw: i32) -> (f64, u16) {
+        let tick = self.controller.tick(raw);
+        (tick.torque * self.units.torque, tick.code)
+    }
+
+    /// The torque in N m at an angle in rad that no encoder has counted.
+    ///
+    /// # Errors
+    /// Where the format does not hold the angle.
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, CommandError> {
+        Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
+    }
+}
+
+/// Builds a servo, in a format that is still to be chosen.
+struct Build {
+    scene: Scene,
+    transducers: Transducers,
+}
+
+impl InEach for Build {
+    type Output = Result<Box<dyn Controller>, CommandError>;
+
+    fn with<N: Number>(self) -> Self::Output {
+        let certified = self.scene.certify().map_err(|r| CommandError::Refused(Box::new(r)))?;
+        Ok(controller::<_, N>(&certified, &self.transducers)?)
+    }
+}

@@ -1,0 +1,64 @@
+//! Torques and sines as the emulated board computes them, with the instructions of each.
+
+use std::path::Path;
+
+use firmware::board::trial::{BLOCK, Output, Outputs, READY, Trial};
+
+use super::{EmulatorError, Guest};
+
+/// An emulated board that computes in ways that the host chooses.
+pub struct Trials {
+    guest: Guest,
+}
+
+impl Trials {
+    /// Starts the program; see [`build_trial`](crate::toolchain::Toolchain::build_trial).
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self { guest: Guest::boot(elf, &[])? })
+    }
+
+    /// Has the board compute all of these: counts of an encoder, or the bits of parts of a turn.
+    ///
+    /// # Errors
+    /// Where the board has ended, does not answer, or has no program for this.
+    pub fn compute(&mut self, trial: &Trial, inputs: &[u32]) -> Result<Vec<Output>, EmulatorError> {
+        let words = trial.words().map(u64::to_le_bytes);
+        let mut ready = [0];
+        self.guest.exchange(words.as_flattened(), &mut ready)?;
+        if ready != [READY] {
+            return Err(EmulatorError::NoTrial);
+        }
+        let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
+        for block in inputs.chunks(BLOCK) {
+            outputs.extend(self.block(block)?);
+        }
+        // What filled up the last block is nobody's.
+        outputs.truncate(inputs.len());
+        self.guest.exchange(&[0], &mut [])?;
+        Ok(outputs)
+    }
+
+    fn block(&mut self, block: &[u32]) -> Result<Outputs, EmulatorError> {
+        let last = block.last().copied().unwrap_or_default();
+        let inputs: [[u8; 4]; BLOCK] =
+            std::array::from_fn(|i| block.get(i).copied().unwrap_or(last).to_le_bytes());
+        let question = [&[1], inputs.as_flattened()].concat();
+        let mut answer = [[0; Output::BYTES]; BLOCK];
+        self.guest.exchange(&question, answer.as_flattened_mut())?;
+        Ok(answer.map(Output::from_bytes))
+    }
+
+    /// Ends the board.
+    ///
+    /// # Errors
+    /// Where it does not end, or ends with a failure.
+    pub fn finish(self) -> Result<(), EmulatorError> {
+        self.guest.finish().map(drop)
+    }
+}
+
+/// A question fits into a pipe at once, so that asking never waits for the board.
+const _: () = assert!(1 + BLOCK * Output::BYTES <= 4096);

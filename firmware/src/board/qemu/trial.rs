@@ -1,0 +1,194 @@
+//! Does [trials](crate::board::trial) on the emulated board: inputs come by the pipe `counts`,
+//! outputs go by `codes`.
+
+use core::hint::black_box;
+
+use semihosting::fs::File;
+use semihosting::io::{Read, Write};
+
+use super::meter::{Scale, measure};
+use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
+use crate::board::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial, Words};
+use crate::encoder::RawCount;
+use crate::environment::{
+    DamperWall, DelayedSpring, Environment, FreeMode, OneSided, Renderable, Wall,
+};
+use crate::excitation::sines::Sine;
+use crate::number::{InEach, Number};
+use crate::scene::Scene;
+use crate::servo::{Servo, Transducers};
+
+/// Does trials until the host closes its end.
+pub fn run() -> ! {
+    super::pace::start_clock();
+    let scale = Scale::calibrate();
+    let Ok((counts, codes)) = lockstep::pipes() else {
+        semihosting::process::exit(EXIT_REFUSED);
+    };
+    let mut host = Host { counts, codes, scale };
+    semihosting::process::exit(match host.serve() {
+        Ok(()) => EXIT_DONE,
+        Err(Gone) => EXIT_REFUSED,
+    })
+}
+
+/// The host does not take an answer, or asks what is no question.
+struct Gone;
+
+/// The pipes to the host, and what the meter's numbers mean.
+struct Host {
+    counts: File,
+    codes: File,
+    scale: Scale,
+}
+
+impl Host {
+    fn serve(&mut self) -> Result<(), Gone> {
+        while let Some(trial) = self.question()? {
+            match trial {
+                Trial::Servo { scene, transducers, arithmetic } => {
+                    arithmetic.choose(OfServo { host: self, scene: &scene, transducers })?;
+                }
+                Trial::Sine(sine) => self.sine(sine)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The next trial, if there is another one.
+    fn question(&mut self) -> Result<Option<Trial>, Gone> {
+        let mut bytes = [0; size_of::<Words>()];
+        if self.counts.read_exact(&mut bytes).is_err() {
+            return Ok(None);
+        }
+        let (chunks, _) = bytes.as_chunks();
+        let words: Words = core::array::from_fn(|i| u64::from_le_bytes(chunks[i]));
+        Trial::read(&words).map(Some).ok_or(Gone)
+    }
+
+    fn answer(&mut self, bytes: &[u8]) -> Result<(), Gone> {
+        self.codes.write_all(bytes).map_err(|_| Gone)
+    }
+
+    /// The inputs that come next; `None` where the trial is over.
+    #[inline(never)]
+    fn inputs(&mut self) -> Result<Option<Inputs>, Gone> {
+        let mut more = [0];
+        self.counts.read_exact(&mut more).map_err(|_| Gone)?;
+        if more == [0] {
+            return Ok(None);
+        }
+        let mut bytes = [0; size_of::<Inputs>()];
+        self.counts.read_exact(&mut bytes).map_err(|_| Gone)?;
+        let (chunks, _) = bytes.as_chunks();
+        Ok(Some(core::array::from_fn(|i| u32::from_le_bytes(chunks[i]))))
+    }
+
+    #[inline(never)]
+    fn outputs(&mut self, outputs: &Outputs) -> Result<(), Gone> {
+        outputs.iter().try_for_each(|output| self.answer(&output.to_bytes()))
+    }
+
+    /// Ticks of a servo of the scene, as long as there are counts.
+    #[inline(never)]
+    fn ticks<E: Renderable<N>, N: Number>(
+        &mut self,
+        scene: Scene<E>,
+        transducers: &Transducers,
+    ) -> Result<(), Gone> {
+        let Ok(mut servo) = Servo::<E, N>::build(&scene, transducers) else {
+            return self.answer(&[REFUSED]);
+        };
+        self.answer(&[READY])?;
+        while let Some(counts) = self.inputs()? {
+            let mut outputs = [Output::default(); BLOCK];
+            for (count, output) in counts.into_iter().zip(&mut outputs) {
+                let (servo, mut code) = (black_box(&mut servo), 0);
+                let time = measure(count, |count| {
+                    let output = servo.tick(RawCount::from(count));
+                    code = output.code.get();
+                    (code.into(), output.limit as u32)
+                });
+                let instructions = self.scale.measured(time);
+                *output = Output { value: servo.torque_nm(), code, instructions };
+            }
+            self.outputs(&outputs)?;
+        }
+        Ok(())
+    }
+
+    /// Sines, as long as there are parts of a turn.
+    fn sine(&mut self, sine: Sine) -> Result<(), Gone> {
+        self.answer(&[READY])?;
+        while let Some(turns) = self.inputs()? {
+            let mut outputs = [Output::default(); BLOCK];
+            for (turn, output) in turns.into_iter().zip(&mut outputs) {
+                let (value, time) = timed(sine, turn);
+                let instructions = self.scale.measured(time);
+                *output = Output { value: value.into(), code: 0, instructions };
+            }
+            self.outputs(&outputs)?;
+        }
+        Ok(())
+    }
+}
+
+/// The sine of the bits of a part of a turn, and the time that it took. The choice is outside of the
+/// measured stretch.
+fn timed(sine: Sine, turn: u32) -> (f32, u32) {
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match sine {
+                $(Sine::$kind => {
+                    let mut bits = 0;
+                    let time = measure(turn, |turn| {
+                        bits = Sine::$kind.of_turn(f32::from_bits(turn)).to_bits();
+                        (bits, bits)
+                    });
+                    (f32::from_bits(bits), time)
+                })*
+            }
+        };
+    }
+    each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic)
+}
+
+/// A servo's trial, whose format is still to be chosen.
+struct OfServo<'a> {
+    host: &'a mut Host,
+    scene: &'a Scene,
+    transducers: Transducers,
+}
+
+impl InEach for OfServo<'_> {
+    type Output = Result<(), Gone>;
+
+    /// In the types of the scenes that have a program: a servo of data would have instructions of
+    /// its own to find out what it is.
+    fn with<N: Number>(self) -> Result<(), Gone> {
+        let Self { host, scene, transducers } = self;
+        let plain = |wall: &Wall| wall.delay == 1 && wall.filter.is_none();
+        let centred = |wall: &Wall| plain(wall) && !wall.one_sided && wall.face == 0.0;
+        match scene.environment {
+            Environment::DelayedSpring(wall) if centred(&wall) => {
+                let environment = DelayedSpring::<1> { stiffness: wall.stiffness };
+                host.ticks::<_, N>(with(scene, environment), &transducers)
+            }
+            Environment::DamperWall(wall) if plain(&wall) && wall.one_sided => {
+                let Wall { stiffness, damping, face, .. } = wall;
+                let wall = DamperWall::<1> { stiffness, damping };
+                host.ticks::<_, N>(with(scene, OneSided { face, wall }), &transducers)
+            }
+            Environment::FreeMode { residual, delay: 0 } => {
+                host.ticks::<_, N>(with(scene, FreeMode::<0> { residual }), &transducers)
+            }
+            _ => host.answer(&[REFUSED]),
+        }
+    }
+}
+
+/// The scene with another environment.
+fn with<E>(scene: &Scene, environment: E) -> Scene<E> {
+    let Scene { device, timing, coupling, torque_limit, .. } = *scene;
+    Scene { device, timing, coupling, environment, torque_limit }
+}

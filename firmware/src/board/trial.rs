@@ -1,0 +1,117 @@
+//! Arithmetic put to the trial: what a board is asked to compute in one way or another, and what it
+//! says of the result and of its instructions.
+//!
+//! A [`Trial`] goes to the board as [`Words`], which are answered by one byte: whether it can be
+//! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
+
+use super::question::{self, Question, ask};
+use crate::encoder::CounterWidth;
+use crate::excitation::sines::Sine;
+use crate::number::Arithmetic;
+use crate::scene::Scene;
+use crate::servo::Transducers;
+
+/// What is to be computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trial {
+    /// The torque of a scene at each count of an encoder, from rest.
+    Servo {
+        /// The scene, which has been judged.
+        scene: Scene,
+        /// Its sensor and its motor.
+        transducers: Transducers,
+        /// The format to compute in.
+        arithmetic: Arithmetic,
+    },
+    /// The sine of each part of a turn, which is the bits of an `f32`.
+    Sine(Sine),
+}
+
+/// Inputs at a time: as many as fit a pipe's buffer, so that asking never waits for the board.
+pub const BLOCK: usize = 64;
+/// Counts, or the bits of parts of a turn.
+pub type Inputs = [u32; BLOCK];
+/// What came of them.
+pub type Outputs = [Output; BLOCK];
+
+/// What came of an input.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Output {
+    /// Torque in N m, or sine.
+    pub value: f64,
+    /// The converter's code; of a sine none.
+    pub code: u16,
+    /// Instructions that it took.
+    pub instructions: u32,
+}
+
+impl Output {
+    /// Size in bytes.
+    pub const BYTES: usize = 16;
+
+    /// As bytes.
+    pub fn to_bytes(self) -> [u8; Self::BYTES] {
+        let low = u64::from(self.code) | u64::from(self.instructions) << 32;
+        let words = u128::from(low) << 64 | u128::from(self.value.to_bits());
+        words.to_le_bytes()
+    }
+
+    /// Of bytes.
+    pub fn from_bytes(bytes: [u8; Self::BYTES]) -> Self {
+        let words = u128::from_le_bytes(bytes);
+        let low = (words >> 64) as u64;
+        let (code, instructions) = (low as u16, (low >> 32) as u32);
+        Self { value: f64::from_bits(words as u64), code, instructions }
+    }
+}
+
+/// The board's first answer: it will compute.
+pub const READY: u8 = 1;
+/// The board's first answer: its program has no scene of this type, or none can be built.
+pub const REFUSED: u8 = 0;
+
+/// A trial as words: which it is, the transducers' three numbers, the scene.
+pub type Words = [u64; 4 + size_of::<Question>() / 8];
+
+impl Trial {
+    /// Its words. A counter is always one of 32 bits.
+    pub fn words(&self) -> Words {
+        let mut words = [0; _];
+        match self {
+            Self::Servo { scene, transducers, arithmetic } => {
+                words[0] = place(&Arithmetic::ALL, arithmetic);
+                words[1] = transducers.counts_per_turn.to_bits();
+                words[2] = transducers.full_scale_torque.to_bits();
+                words[3] = transducers.largest_speed.to_bits();
+                words[4..].copy_from_slice(&ask(scene));
+            }
+            Self::Sine(sine) => words[0] = SINES | place(&Sine::ALL, sine),
+        }
+        words
+    }
+
+    /// The trial of the words; `None` if they are none.
+    pub fn read(words: &Words) -> Option<Self> {
+        let (head, scene) = words.split_first_chunk::<4>()?;
+        let [which, counts_per_turn, full_scale_torque, largest_speed] = *head;
+        if which & SINES != 0 {
+            return Sine::ALL.get((which & !SINES) as usize).copied().map(Self::Sine);
+        }
+        let arithmetic = *Arithmetic::ALL.get(which as usize)?;
+        let transducers = Transducers {
+            counts_per_turn: f64::from_bits(counts_per_turn),
+            counter: CounterWidth::Bits32,
+            full_scale_torque: f64::from_bits(full_scale_torque),
+            largest_speed: f64::from_bits(largest_speed),
+        };
+        let scene = question::read(scene.try_into().ok()?)?;
+        Some(Self::Servo { scene, transducers, arithmetic })
+    }
+}
+
+/// Tells sines from servos.
+const SINES: u64 = 1 << 32;
+
+fn place<T: PartialEq>(all: &[T], one: &T) -> u64 {
+    all.iter().take_while(|other| *other != one).count() as u64
+}
