@@ -54,6 +54,30 @@ fn the_pictures_of_the_readme_are_what_its_commands_draw() {
     for file in std::fs::read_dir(root().join("analysis/pictures")).unwrap() {
         let file = file.unwrap().path();
         let file = file.strip_prefix(root()).unwrap().to_owned();
-        assert!(file.extension().unwrap() == "toml" || drawn.contains(&file), "{file:?}");
+        let is_table = file.ends_with("tradeoff");
+        let is_scene = file.extension().is_some_and(|extension| extension == "toml");
+        assert!(is_table || is_scene || drawn.contains(&file), "{file:?}");
+    }
+}
+
+#[test]
+fn the_pictures_of_the_tables_are_drawn_of_them() {
+    let kept = root().join("analysis/pictures/tradeoff");
+    let folder = tempfile::tempdir().unwrap();
+    let files = std::fs::read_dir(&kept).unwrap().map(|file| file.unwrap().path());
+    let (tables, pictures): (Vec<_>, Vec<_>) =
+        files.partition(|file| file.extension().unwrap() == "csv");
+    for table in &tables {
+        let name = table.file_stem().unwrap().to_str().unwrap();
+        std::fs::copy(table, folder.path().join(table.file_name().unwrap())).unwrap();
+        let draw = ["chart", "tradeoff", name, "--draw-only", "-o"];
+        let run = program(&draw).arg(folder.path()).output().unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    }
+    assert_eq!(pictures.len(), 2 * tables.len());
+    for picture in pictures {
+        let drawn = folder.path().join(picture.file_name().unwrap());
+        let same = std::fs::read(&picture).unwrap() == std::fs::read(drawn).unwrap();
+        assert!(same, "{} is not drawn of its table", picture.display());
     }
 }

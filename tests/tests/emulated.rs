@@ -8,15 +8,19 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use analysis::emulator::{Emulator, EmulatorError, Judge, Report};
+use analysis::arithmetic::{Motion, cost};
+use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
 use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
+use analysis::tradeoff::{servo, sine};
 use firmware::board::question::{Ends, Reply};
+use firmware::board::trial::Trial;
 use firmware::certificate::{Certified, assess};
 use firmware::encoder::RawCount;
-use firmware::environment::Renderable;
-use firmware::number::Number;
+use firmware::environment::{Environment, Renderable};
+use firmware::excitation::sines::Sine;
+use firmware::number::{Arithmetic, Number};
 use firmware::passivity::interval::Interval;
-use firmware::scene::Scene;
+use firmware::scene::{Coupling, Scene};
 use firmware::servo::{Servo, Transducers};
 use rand::Rng;
 use rand::SeedableRng;
@@ -150,6 +154,43 @@ fn the_board_judges_as_the_host_does() {
     }
     board.finish().unwrap();
     println!("instructions of the longest judgement: {most}");
+}
+
+/// Torques and codes are those of the host, bit for bit, in every number format; there the scene is
+/// data, on the board it is a type.
+#[test]
+fn every_format_computes_as_the_host_does() {
+    let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = Trials::boot(&elf).unwrap();
+    for (number, program) in analysis::program::ALL.iter().enumerate() {
+        let motion = Motion::recorded(&servo::subject(program), counts(number as u64));
+        for arithmetic in Arithmetic::ALL {
+            let name = format!("{} in {}", program.name, arithmetic.name());
+            let cost = cost(&mut board, &motion, arithmetic);
+            let cost = cost.unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(cost.most > 0, "{name}");
+        }
+    }
+    let turns: Vec<_> = sine::turns().into_iter().map(f32::to_bits).collect();
+    for sine in Sine::ALL {
+        let outputs = board.compute(&Trial::Sine(sine), &turns).unwrap();
+        for (turn, output) in turns.iter().zip(outputs) {
+            let here = f64::from(sine.of_turn(f32::from_bits(*turn)));
+            assert_eq!(output.value.to_bits(), here.to_bits(), "{} {turn:x}", sine.name());
+        }
+    }
+    // A type of scene that the program has not is refused, and the next question is answered.
+    let rigid = Scene { coupling: Coupling::Rigid, ..analysis::program::ALL[0].scene };
+    let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
+    let subject = servo::subject(&analysis::program::ALL[0]);
+    let other = Trial::Servo {
+        scene: Scene { environment, ..rigid },
+        transducers: subject.transducers,
+        arithmetic: Arithmetic::F32,
+    };
+    assert!(matches!(board.compute(&other, &[0]), Err(EmulatorError::NoTrial)));
+    assert_eq!(board.compute(&Trial::Sine(Sine::Quintic), &[0]).unwrap()[0].value, 0.0);
+    board.finish().unwrap();
 }
 
 /// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.

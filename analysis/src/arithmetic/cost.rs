@@ -1,6 +1,6 @@
 //! What a tick takes on the emulated board in a format.
 
-use firmware::board::trial::{Output, Trial};
+use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
 
 use super::Motion;
@@ -14,14 +14,13 @@ pub struct Cost {
     pub most: u32,
     /// Their mean.
     pub mean: f64,
-    /// Ticks whose torque and code are those of this machine, to the bit.
-    pub equal: usize,
 }
 
-/// Has the board follow a motion.
+/// Has the board follow a motion, beside this machine.
 ///
 /// # Errors
-/// Where the scene cannot be had in this format, or the board fails or has no program for it.
+/// Where the scene cannot be had in this format, the board fails or has no program for it, or a
+/// torque or a code of the board is not to the bit that of this machine.
 pub fn cost(
     board: &mut Trials,
     motion: &Motion,
@@ -33,13 +32,16 @@ pub fn cost(
     let trial = Trial::Servo { scene, transducers, arithmetic };
     let counts: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
     let there = board.compute(&trial, &counts)?;
-    let pairs = here.iter().zip(&there);
-    let is_equal = |((torque, code), there): &(&(f64, u16), &Output)| {
-        torque.to_bits() == (there.value * units.torque).to_bits() && *code == there.code
-    };
-    let equal = pairs.filter(is_equal).count();
+    let bits = |torque: f64, code| (torque.to_bits(), code);
+    let mut pairs = here.iter().zip(&there);
+    let differs = pairs.position(|(&(torque, code), there)| {
+        bits(torque, code) != bits(there.value * units.torque, there.code)
+    });
+    if let Some(tick) = differs {
+        return Err(CommandError::Differs { format: arithmetic.name(), tick });
+    }
     let instructions = there.iter().map(|output| output.instructions);
     let most = instructions.clone().max().unwrap_or_default();
     let mean = instructions.map(f64::from).sum::<f64>() / there.len() as f64;
-    Ok(Cost { most, mean, equal })
+    Ok(Cost { most, mean })
 }

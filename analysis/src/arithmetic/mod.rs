@@ -2,11 +2,13 @@
 //! counts, in the same hand.
 
 mod cost;
+mod losses;
 mod motion;
 mod rest;
 mod units;
 
 pub use cost::{Cost, cost};
+pub use losses::Losses;
 pub use motion::{Motion, Offset};
 pub use rest::{Rest, at_rest};
 pub use units::Units;

@@ -44,7 +44,12 @@ impl Motion {
         let ticks = (seconds / period).ceil() as usize;
         let Ok(run) = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
         let counts = run.ticks.iter().map(|tick| tick.count as i32).collect();
-        Ok(Self { subject: *subject, counts, begin: 0 })
+        Ok(Self::recorded(subject, counts))
+    }
+
+    /// Recorded raw counts.
+    pub fn recorded(subject: &Subject, counts: Vec<i32>) -> Self {
+        Self { subject: *subject, counts, begin: 0 }
     }
 
     /// The same motion elsewhere; `None` where the environment has its rest at zero and nowhere

@@ -21,7 +21,7 @@ pub struct Rest {
 /// Torque in N m that pushes against a wall, or half of the limit where that is less.
 pub const PRELOAD: f64 = 0.2;
 /// Starts in rad off zero.
-const STARTS: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+const STARTS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
 /// Time in s over which a motion is looked at.
 const WINDOW: f64 = 0.5;
 /// Most windows until a motion has died away as far as it will.

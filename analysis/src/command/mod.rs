@@ -169,6 +169,17 @@ pub enum CommandError {
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
+    /// The emulated board computes something else.
+    #[error(
+        "in {format} the torque of the emulated board is not that of this machine at tick {tick}: \
+         its program is of another version"
+    )]
+    Differs {
+        /// The number format.
+        format: &'static str,
+        /// The tick, counted from 0.
+        tick: usize,
+    },
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
     Live(#[from] crate::bench::live::LiveError),

@@ -4,13 +4,19 @@
 //! A [`Subject`] says what is compared and in which columns; a [`Tradeoff`] is the table that was
 //! measured, kept as CSV beside the picture that is drawn of it ([`crate::chart::tradeoff`]).
 
+pub mod servo;
 pub mod simulation;
+pub mod sine;
 
 use std::io::{Read, Write};
 use std::time::Instant;
 
+use crate::command::CommandError;
+use crate::emulator::Trials;
+use crate::progress;
 use crate::quantity::significant;
 use crate::table::{Column, Table, TableError};
+use crate::toolchain::{self, Tools};
 
 /// Digits of the numbers in a table: more than a measured time has, and as many as tell a wrong
 /// error from a right one.
@@ -241,6 +247,16 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
         }
     }
     times
+}
+
+/// An emulated board that computes what it is asked to.
+fn board() -> Result<Trials, CommandError> {
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let spinner = progress::spinner("building the trial of the formats");
+    let elf = toolchain.build_trial()?;
+    spinner.finish_and_clear();
+    Ok(Trials::boot(&elf)?)
 }
 
 fn written(value: f64) -> String {

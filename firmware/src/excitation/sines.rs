@@ -46,10 +46,10 @@ impl Sine {
             Self::Micromath => "micromath",
             Self::Libm => "libm sinf",
             Self::LibmDouble => "libm sin",
-            Self::Cubic => "polynomial, degree 3",
-            Self::Quintic => "polynomial, degree 5",
-            Self::Septic => "polynomial, degree 7",
-            Self::Nonic => "polynomial, degree 9",
+            Self::Cubic => "degree 3",
+            Self::Quintic => "degree 5",
+            Self::Septic => "degree 7",
+            Self::Nonic => "degree 9",
         }
     }
 

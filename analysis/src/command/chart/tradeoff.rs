@@ -9,7 +9,7 @@ use crate::chart::{self, Output};
 use crate::command::{Answer, CommandError};
 use crate::quantity::significant;
 use crate::table::Table;
-use crate::tradeoff::{Subject, Tradeoff, simulation};
+use crate::tradeoff::{Subject, Tradeoff, servo, simulation, sine};
 
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
@@ -31,12 +31,16 @@ pub enum Topic {
     /// Each of the following
     #[default]
     All,
+    /// Number formats of the servo: instructions against error, hum and limit cycle
+    Servo,
+    /// Means of computing a sweep's sine: instructions against error
+    Sine,
     /// Methods of integration by their steps: time against error of the motion and of the verdict
     Simulation,
 }
 
 /// All but [`Topic::All`].
-const TOPICS: [Topic; 1] = [Topic::Simulation];
+const TOPICS: [Topic; 3] = [Topic::Servo, Topic::Sine, Topic::Simulation];
 
 impl Topic {
     fn topics(self) -> Vec<Self> {
@@ -45,12 +49,16 @@ impl Topic {
 
     fn subject(self) -> &'static Subject {
         match self {
+            Self::Servo => &servo::SUBJECT,
+            Self::Sine => &sine::SUBJECT,
             Self::All | Self::Simulation => &simulation::SUBJECT,
         }
     }
 
     fn measure(self) -> Result<Tradeoff, CommandError> {
         match self {
+            Self::Servo => servo::measure(),
+            Self::Sine => sine::measure(),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
         }
     }

@@ -1,0 +1,35 @@
+//! All that a format loses of a scene's torque.
+
+use firmware::number::Arithmetic;
+
+use super::{Motion, Offset, Rest, at_rest};
+use crate::command::CommandError;
+
+/// What a format loses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Losses {
+    /// Largest difference in N m to the torques of `f64` on the same counts.
+    pub error: f64,
+    /// The same around 1 rad; `None` where the scene cannot be moved there.
+    pub error_elsewhere: Option<f64>,
+    /// What is left at rest by the format alone.
+    pub alone: Rest,
+    /// What is left at rest with the encoder.
+    pub with_encoder: Rest,
+}
+
+impl Losses {
+    /// What a format loses in a motion, and at rest.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had in this format.
+    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, CommandError> {
+        let elsewhere = motion.at(Offset::Rad(1.0));
+        Ok(Self {
+            error: motion.error(arithmetic)?,
+            error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,
+            alone: at_rest(motion.subject(), arithmetic, false)?,
+            with_encoder: at_rest(motion.subject(), arithmetic, true)?,
+        })
+    }
+}
