@@ -20,7 +20,7 @@ use firmware::environment::{Environment, Renderable};
 use firmware::excitation::sines::Sine;
 use firmware::number::{Arithmetic, Number};
 use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Scene};
+use firmware::scene::Scene;
 use firmware::servo::{Servo, Transducers};
 use rand::Rng;
 use rand::SeedableRng;
@@ -162,10 +162,10 @@ fn the_board_judges_as_the_host_does() {
 fn every_format_computes_as_the_host_does() {
     let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
     let mut board = Trials::boot(&elf).unwrap();
-    for (number, program) in analysis::program::ALL.iter().enumerate() {
-        let motion = Motion::recorded(&servo::subject(program), counts(number as u64));
+    for (number, case) in servo::cases().iter().enumerate() {
+        let motion = Motion::recorded(&case.subject, counts(number as u64));
         for arithmetic in Arithmetic::ALL {
-            let name = format!("{} in {}", program.name, arithmetic.name());
+            let name = format!("{} in {}", case.name, arithmetic.name());
             let cost = cost(&mut board, &motion, arithmetic);
             let cost = cost.unwrap_or_else(|error| panic!("{name}: {error}"));
             assert!(cost.most > 0, "{name}");
@@ -180,11 +180,10 @@ fn every_format_computes_as_the_host_does() {
         }
     }
     // A type of scene that the program has not is refused, and the next question is answered.
-    let rigid = Scene { coupling: Coupling::Rigid, ..analysis::program::ALL[0].scene };
+    let subject = servo::cases()[0].subject;
     let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
-    let subject = servo::subject(&analysis::program::ALL[0]);
     let other = Trial::Servo {
-        scene: Scene { environment, ..rigid },
+        scene: Scene { environment, ..subject.scene },
         transducers: subject.transducers,
         arithmetic: Arithmetic::F32,
     };

@@ -1,12 +1,13 @@
 //! All that a format loses of a scene's torque.
 
 use firmware::number::Arithmetic;
+use serde::Serialize;
 
 use super::{Motion, Offset, Rest, at_rest};
 use crate::command::CommandError;
 
 /// What a format loses.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Losses {
     /// Largest difference in N m to the torques of `f64` on the same counts.
     pub error: f64,

@@ -1,12 +1,14 @@
 //! What the servo's number format does to its torque: the same servo in every format, on the same
 //! counts, in the same hand.
 
+mod advice;
 mod cost;
 mod losses;
 mod motion;
 mod rest;
 mod units;
 
+pub use advice::{Advice, Candidate, Figures};
 pub use cost::{Cost, cost};
 pub use losses::Losses;
 pub use motion::{Motion, Offset};

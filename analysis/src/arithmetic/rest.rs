@@ -3,6 +3,7 @@
 
 use firmware::environment::Environment;
 use firmware::number::Arithmetic;
+use serde::Serialize;
 
 use super::{FormatServo, Subject};
 use crate::command::CommandError;
@@ -10,7 +11,7 @@ use crate::device::{Grip, Hand, Motion, SimulatedEncoder};
 use crate::simulation::held::HeldDevice;
 
 /// What is left of the motion of a device that is pushed against a wall, or let go in free mode.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rest {
     /// Torque in N m from its lowest to its highest, the most that any start ends with.
     pub hum: f64,
@@ -23,7 +24,7 @@ pub const PRELOAD: f64 = 0.2;
 /// Starts in rad off zero.
 const STARTS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
 /// Time in s over which a motion is looked at.
-const WINDOW: f64 = 0.5;
+const WINDOW: f64 = 0.25;
 /// Most windows until a motion has died away as far as it will.
 const WINDOWS: usize = 40;
 /// A motion that has not become smaller by this part from one window to the next has died away.

@@ -14,6 +14,9 @@ use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use serde::Serialize;
 
+/// Instructions a second of a board's core: 170 MHz, if an instruction took a cycle.
+pub const CORE_CLOCK: f64 = 170e6;
+
 /// One measured figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {

@@ -14,7 +14,7 @@ use firmware::scene::{Coupling, Scene};
 use super::common::ForWhom;
 use super::{Answer, CommandError};
 use crate::bench::live::live_set;
-use crate::bench::{self, Figure};
+use crate::bench::{self, CORE_CLOCK, Figure};
 use crate::emulator::Report;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
@@ -56,8 +56,7 @@ const CERTIFY_BUDGET: f64 = 3.4e6;
 const INTERRUPT_BUDGET: f64 = 150.0;
 /// Most per cent of a core that the servo may take.
 const CORE_BUDGET: f64 = 15.0;
-/// What a board's core does: 170 MHz, at 20 kHz, if an instruction took a cycle.
-const CORE_CLOCK: f64 = 170e6;
+/// Ticks a second of which a core's part is told.
 const TICK_RATE: f64 = 20e3;
 /// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core,
 /// for the same job without a coupling.

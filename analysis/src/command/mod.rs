@@ -1,5 +1,6 @@
 //! The program's commands, one module each.
 
+pub mod advise;
 pub mod bench;
 pub mod certify;
 pub mod chart;
@@ -85,6 +86,8 @@ pub enum Command {
     Stability(stability::Arguments),
     /// How far may one go, and what does it take? Answers are scenes that certify.
     Design(design::Arguments),
+    /// Which number format is enough for a scene at a rate, and the cheapest?
+    Advise(advise::Arguments),
     /// In which passive hand does a scene oscillate?
     WorstHand(worst_hand::Arguments),
     /// Where do other methods fail, and what did the certificate say before?
@@ -179,6 +182,15 @@ pub enum CommandError {
         format: &'static str,
         /// The tick, counted from 0.
         tick: usize,
+    },
+    /// No tick of scenes of this type has been measured.
+    #[error(
+        "no tick of such a scene has been measured on a board; there are those of: {types}, each \
+         with any numbers in it, and spring and two-sided wall at zero"
+    )]
+    NotMeasured {
+        /// The types that there are.
+        types: String,
     },
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
@@ -290,6 +302,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
+        Command::Advise(arguments) => advise::run(&arguments),
         Command::WorstHand(arguments) => worst_hand::run(&arguments),
         Command::Failures(arguments) => failures::run(&arguments),
     };

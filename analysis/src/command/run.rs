@@ -13,7 +13,7 @@ use super::identify::positive;
 use super::{Answer, CommandError};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
-use crate::file;
+use crate::file::{self, SceneFile};
 use crate::hand::Script;
 use crate::program::{self, Program};
 use crate::progress;
@@ -188,28 +188,48 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
     })
 }
 
-fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
-    let name = &arguments.scene;
+/// A scene file, or the sentence that there is neither such a file nor such a program.
+pub(super) fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
         let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
-        return Err(CommandError::NoScene { name: name.clone(), programs: programs.join(", ") });
+        let name = name.to_owned();
+        return Err(CommandError::NoScene { name, programs: programs.join(", ") });
     }
-    let file = file::load(name)?;
+    Ok(file::load(name)?)
+}
+
+/// The sensor and the motor of a scene file, as it says them or as they are given.
+pub(super) fn transducers_of(
+    file: &SceneFile,
+    counts_per_turn: Option<f64>,
+    full_scale: Option<f64>,
+) -> Transducers {
+    let from_step = file.encoder_step.map(|step| std::f64::consts::TAU / step);
+    Transducers {
+        counts_per_turn: counts_per_turn.or(from_step).unwrap_or(COUNTS_PER_TURN),
+        counter: CounterWidth::Bits32,
+        full_scale_torque: full_scale.or(file.scene.torque_limit).unwrap_or(FULL_SCALE),
+        largest_speed: Transducers::NO_HAND_IS_FASTER,
+    }
+}
+
+/// What a hand does to show a scene file: the file's own hand, if it has one.
+pub(super) fn script_of(file: &SceneFile) -> Script {
+    let mut script = Script::push_and_let_go();
+    script.hand = file.hand.unwrap_or(script.hand);
+    script
+}
+
+fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
+    let file = scene_file(&arguments.scene)?;
     let certified =
         file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let from_step = file.encoder_step.map(|step| std::f64::consts::TAU / step);
-    let transducers = Transducers {
-        counts_per_turn: arguments.counts_per_rev.or(from_step).unwrap_or(COUNTS_PER_TURN),
-        counter: CounterWidth::Bits32,
-        full_scale_torque: arguments.full_scale.or(file.scene.torque_limit).unwrap_or(FULL_SCALE),
-        largest_speed: Transducers::NO_HAND_IS_FASTER,
-    };
+    let transducers = transducers_of(&file, arguments.counts_per_rev, arguments.full_scale);
     let controller = match arguments.format {
         FormatArgument::F32 => controller::<_, f32>(&certified, &transducers)?,
         FormatArgument::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
-    let mut script = Script::push_and_let_go();
-    script.hand = file.hand.unwrap_or(script.hand);
+    let script = script_of(&file);
     let (name, scene) = (file.name, file.scene);
     Ok(Question { name, scene, transducers, script, controller, program: None })
 }

@@ -109,9 +109,9 @@ pub enum EmulatorError {
     NoReply,
     /// The board cannot compute what it was asked to.
     #[error(
-        "the emulated board does not measure this scene: it has programs for a spring and a \
-         one-sided damper wall that are one sample late, and for free mode without delay, whose \
-         numbers fit the format"
+        "the emulated board has no program to measure this scene: it has one for a spring and a \
+         damper wall at zero and a one-sided damper wall anywhere, each one sample late, and for \
+         free mode at once"
     )]
     NoTrial,
     /// The log does not say what a report needs.

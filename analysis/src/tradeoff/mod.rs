@@ -250,7 +250,10 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 }
 
 /// An emulated board that computes what it is asked to.
-fn board() -> Result<Trials, CommandError> {
+///
+/// # Errors
+/// Where its program cannot be built or the emulator cannot be started.
+pub fn board() -> Result<Trials, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner("building the trial of the formats");

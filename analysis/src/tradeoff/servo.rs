@@ -2,6 +2,7 @@
 //! torque (theory, section 9).
 
 use firmware::encoder::CounterWidth;
+use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
@@ -9,8 +10,9 @@ use super::{Axis, Method, NUMBER, Subject, Tradeoff};
 use crate::arithmetic::{self, HALF_A_TURN, Losses, Motion, cost};
 use crate::command::CommandError;
 use crate::emulator::Trials;
+use crate::hand::Script;
 use crate::program::{self, Program};
-use crate::table::Column;
+use crate::table::{Column, Table};
 
 /// What is compared.
 pub static SUBJECT: Subject = Subject {
@@ -36,18 +38,76 @@ const NONE: &str = "none";
 /// Time in s of the motion.
 const SECONDS: f64 = 5.0;
 
-/// A program's scene, whose counter does not wrap.
-pub fn subject(program: &Program) -> arithmetic::Subject {
-    let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
-    arithmetic::Subject { scene: program.scene, transducers, range: HALF_A_TURN }
+/// A scene whose tick is measured, and what the device does meanwhile.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name.
+    pub name: &'static str,
+    /// The scene with its sensor and motor.
+    pub subject: arithmetic::Subject,
+    /// What a hand does.
+    pub script: Script,
 }
 
-/// What the device does meanwhile.
-///
-/// # Errors
-/// Where the scene cannot be simulated.
-pub fn motion(program: &Program) -> Result<Motion, CommandError> {
-    Motion::new(&subject(program), (program.script)(), SECONDS)
+impl Case {
+    /// Of a program, whose counter does not wrap.
+    fn of(program: &Program) -> Self {
+        let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
+        let subject = arithmetic::Subject { scene: program.scene, transducers, range: HALF_A_TURN };
+        Self { name: program.name, subject, script: (program.script)() }
+    }
+
+    /// The same in another environment.
+    fn with(mut self, name: &'static str, environment: Environment) -> Self {
+        self.subject.scene.environment = environment;
+        Self { name, ..self }
+    }
+
+    /// What the device does.
+    ///
+    /// # Errors
+    /// Where the scene cannot be simulated.
+    pub fn motion(&self) -> Result<Motion, CommandError> {
+        Motion::new(&self.subject, self.script.clone(), SECONDS)
+    }
+}
+
+/// The programs' scenes, and a wall that also pulls.
+pub fn cases() -> Vec<Case> {
+    let mut cases: Vec<_> = program::ALL.iter().map(Case::of).collect();
+    let pulls = |case: &Case| match case.subject.scene.environment {
+        Environment::DamperWall(wall) => {
+            let wall = Wall { one_sided: false, ..wall };
+            Some(case.clone().with("damper_wall, two-sided", Environment::DamperWall(wall)))
+        }
+        _ => None,
+    };
+    cases.extend(cases.iter().filter_map(pulls).collect::<Vec<_>>());
+    cases
+}
+
+/// The case whose tick is that of a scene, with other numbers in it; `None` where no tick of its
+/// type has been measured.
+pub fn case_of(environment: &Environment) -> Option<Case> {
+    cases()
+        .into_iter()
+        .find(|case| type_of(&case.subject.scene.environment) == type_of(environment))
+}
+
+/// What of an environment decides which instructions its tick has.
+fn type_of(environment: &Environment) -> Option<(&'static str, usize, bool)> {
+    match *environment {
+        Environment::DelayedSpring(wall) if !wall.one_sided && wall.face == 0.0 => {
+            Some(("spring", wall.delay, false))
+        }
+        Environment::DamperWall(wall)
+            if wall.filter.is_none() && (wall.one_sided || wall.face == 0.0) =>
+        {
+            Some(("wall", wall.delay, wall.one_sided))
+        }
+        Environment::FreeMode { delay, .. } => Some(("free mode", delay, false)),
+        _ => None,
+    }
 }
 
 /// Measures all formats on all scenes.
@@ -57,18 +117,27 @@ pub fn motion(program: &Program) -> Result<Motion, CommandError> {
 pub fn measure() -> Result<Tradeoff, CommandError> {
     let mut board = super::board()?;
     let mut methods = Vec::new();
-    for program in program::ALL {
-        let motion = motion(program)?;
+    for case in cases() {
+        let motion = case.motion()?;
         for arithmetic in Arithmetic::ALL {
-            methods.push(row(program, &motion, &mut board, arithmetic)?);
+            methods.push(row(&case, &motion, &mut board, arithmetic)?);
         }
     }
     board.finish()?;
     Ok(Tradeoff { subject: &SUBJECT, methods })
 }
 
+/// The table that is kept.
+///
+/// # Errors
+/// Where it is not a table of this subject.
+pub fn kept() -> Result<Tradeoff, CommandError> {
+    let kept = include_bytes!("../../pictures/tradeoff/servo.csv");
+    Ok(Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)?)
+}
+
 fn row(
-    program: &Program,
+    case: &Case,
     motion: &Motion,
     board: &mut Trials,
     arithmetic: Arithmetic,
@@ -85,7 +154,7 @@ fn row(
         Some(with_encoder.hum),
         Some(with_encoder.cycle),
     ];
-    let method = Method::new(program.name, family(arithmetic), arithmetic.name(), &[]);
+    let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
     Ok(Method { values: values.to_vec(), ..method })
 }
 
@@ -102,20 +171,18 @@ fn family(arithmetic: Arithmetic) -> &'static str {
 mod tests {
     use super::*;
     use crate::arithmetic::{Rest, Units, at_rest};
-    use crate::table::Table;
 
     /// The kept figures that do not depend on a compiler for the board.
     #[test]
     fn the_kept_losses_are_what_they_are() {
-        let kept = include_bytes!("../../pictures/tradeoff/servo.csv");
-        let kept = Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..]).unwrap()).unwrap();
+        let kept = kept().unwrap();
         let mut methods = kept.methods.iter();
-        for program in program::ALL {
-            let motion = motion(program).unwrap();
+        for case in cases() {
+            let motion = case.motion().unwrap();
             for arithmetic in Arithmetic::ALL {
                 let kept = methods.next().unwrap();
                 let names = (&*kept.case, &*kept.name);
-                assert_eq!(names, (program.name, arithmetic.name()));
+                assert_eq!(names, (case.name, arithmetic.name()));
                 let Losses { error, error_elsewhere, alone, with_encoder } =
                     Losses::of(&motion, arithmetic).unwrap();
                 let Rest { hum, cycle } = with_encoder;
@@ -136,8 +203,8 @@ mod tests {
     /// the controller; here three products are rounded, each with a coefficient as fine as 31 bits.
     #[test]
     fn the_wall_hums_as_much_as_experiments_found() {
-        let program = Program::find("damper_wall").unwrap();
-        let subject = arithmetic::Subject { range: 0.9, ..subject(program) };
+        let case = Case::of(Program::find("damper_wall").unwrap());
+        let subject = arithmetic::Subject { range: 0.9, ..case.subject };
         assert_eq!(subject.units(Arithmetic::I1F31), Units { angle: 1.0, torque: 2.0 });
         let hum =
             |arithmetic, with_encoder| at_rest(&subject, arithmetic, with_encoder).unwrap().hum;

@@ -13,6 +13,7 @@ use crate::servo::Transducers;
 
 /// What is to be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap, and never more than one")]
 pub enum Trial {
     /// The torque of a scene at each count of an encoder, from rest.
     Servo {

@@ -2,7 +2,7 @@
 
 /// The coefficients of `u, u^3, u^5` whose largest error on a quarter of a turn is the least that
 /// there is, 7e-5: a seventh of a converter's code at full scale.
-pub const QUINTIC: [f32; 3] = [6.281_28, -41.095_243, 73.585_51];
+pub const QUINTIC: [f32; 3] = [6.281_28, -41.095_24, 73.585_51];
 
 /// The sine of `turn` turns, from 0 to 1, by an odd polynomial of the angle to the nearest zero.
 ///

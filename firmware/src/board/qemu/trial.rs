@@ -179,6 +179,11 @@ impl InEach for OfServo<'_> {
                 let wall = DamperWall::<1> { stiffness, damping };
                 host.ticks::<_, N>(with(scene, OneSided { face, wall }), &transducers)
             }
+            Environment::DamperWall(wall) if centred(&wall) => {
+                let Wall { stiffness, damping, .. } = wall;
+                let wall = DamperWall::<1> { stiffness, damping };
+                host.ticks::<_, N>(with(scene, wall), &transducers)
+            }
             Environment::FreeMode { residual, delay: 0 } => {
                 host.ticks::<_, N>(with(scene, FreeMode::<0> { residual }), &transducers)
             }

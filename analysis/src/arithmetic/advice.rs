@@ -1,0 +1,119 @@
+//! Which number format is enough for a scene, and the cheapest that is.
+
+use firmware::number::Arithmetic;
+use serde::Serialize;
+
+use super::{Losses, Motion};
+use crate::command::CommandError;
+use crate::quantity::significant;
+
+/// What a format has to keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Most torque in N m, from its lowest to its highest, that the format may add at rest.
+    pub hum: f64,
+    /// Largest error of the torque in N m, if there is one.
+    pub error: Option<f64>,
+    /// Most of a core's time that a tick may take, as a part.
+    pub share: f64,
+    /// Ticks a second.
+    pub rate: f64,
+    /// Instructions that a core does in a second.
+    pub clock: f64,
+}
+
+/// A format with what it costs and loses.
+#[derive(Clone, Debug, Serialize)]
+pub struct Candidate {
+    /// Its name.
+    pub format: &'static str,
+    /// Most instructions of a tick from count to code.
+    pub instructions: f64,
+    /// Part of the core's time that these take at the rate.
+    pub share: f64,
+    /// What it loses; none where the scene cannot be had in it.
+    pub losses: Option<Losses>,
+    /// Why it is not taken; empty where it is, or is only dearer.
+    pub rejected: Vec<String>,
+}
+
+/// All formats, the cheapest first.
+#[derive(Clone, Debug)]
+pub struct Advice {
+    /// The formats.
+    pub candidates: Vec<Candidate>,
+    /// Torque in N m by which the encoder alone hums, in the finest format.
+    pub encoder_hum: f64,
+}
+
+impl Advice {
+    /// Looks at all formats; `instructions` are those of a tick in each.
+    ///
+    /// # Errors
+    /// Where the scene is refused or cannot be simulated.
+    pub fn new(
+        motion: &Motion,
+        figures: &Figures,
+        mut instructions: impl FnMut(Arithmetic) -> Result<f64, CommandError>,
+    ) -> Result<Self, CommandError> {
+        let mut candidates = Vec::new();
+        let mut encoder_hum = 0.0;
+        for arithmetic in Arithmetic::ALL {
+            let losses = match Losses::of(motion, arithmetic) {
+                Ok(losses) => Ok(losses),
+                Err(error @ (CommandError::Servo(_) | CommandError::Angle(_))) => Err(error),
+                Err(error) => return Err(error),
+            };
+            if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
+                encoder_hum = losses.with_encoder.hum;
+            }
+            let instructions = match losses {
+                Ok(_) => instructions(arithmetic)?,
+                Err(_) => f64::INFINITY,
+            };
+            candidates.push(candidate(arithmetic, instructions, losses, figures));
+        }
+        candidates.sort_by(|a, b| {
+            a.instructions.total_cmp(&b.instructions).then(hum(a).total_cmp(&hum(b)))
+        });
+        Ok(Self { candidates, encoder_hum })
+    }
+
+    /// The cheapest format that keeps to the figures.
+    pub fn choice(&self) -> Option<&Candidate> {
+        self.candidates.iter().find(|candidate| candidate.rejected.is_empty())
+    }
+}
+
+/// What a format adds at rest; of two that cost the same the quieter one is better.
+fn hum(candidate: &Candidate) -> f64 {
+    candidate.losses.map_or(f64::INFINITY, |losses| losses.alone.hum)
+}
+
+fn candidate(
+    arithmetic: Arithmetic,
+    instructions: f64,
+    losses: Result<Losses, CommandError>,
+    figures: &Figures,
+) -> Candidate {
+    let share = instructions * figures.rate / figures.clock;
+    let mut rejected = Vec::new();
+    let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
+        if value > bound {
+            let (value, bound) = (significant(value, 3), significant(bound, 3));
+            rejected.push(format!("{what} {value}{unit} is above {bound}{unit}"));
+        }
+    };
+    match &losses {
+        Ok(losses) => {
+            beyond("hum", losses.alone.hum, figures.hum, " N m");
+            if let Some(bound) = figures.error {
+                let elsewhere = losses.error_elsewhere.unwrap_or_default();
+                beyond("error", losses.error.max(elsewhere), bound, " N m");
+            }
+            beyond("share of the core", 100.0 * share, 100.0 * figures.share, " %");
+        }
+        Err(error) => rejected.push(error.to_string()),
+    }
+    Candidate { format: arithmetic.name(), instructions, share, losses: losses.ok(), rejected }
+}

@@ -1,0 +1,278 @@
+//! `haptic advise --hum --rate`: which number format, and which method of simulation, are enough?
+
+use clap::Args;
+use comfy_table::{CellAlignment, Table, presets};
+use firmware::encoder::CounterWidth;
+use firmware::number::Arithmetic;
+use firmware::scene::{Coupling, Scene};
+use firmware::servo::Transducers;
+use serde::Serialize;
+
+use crate::arithmetic::{Advice, Candidate, Figures, HALF_A_TURN, Motion, Subject, cost};
+use crate::bench::CORE_CLOCK;
+use crate::command::common::ForWhom;
+use crate::command::identify::positive;
+use crate::command::run::{scene_file, script_of, transducers_of};
+use crate::command::{Answer, CommandError};
+use crate::hand::Script;
+use crate::limits::at_period;
+use crate::program::Program;
+use crate::quantity::significant;
+use crate::tradeoff::{self, Method, servo};
+
+/// Arguments of `haptic advise` about formats.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Most torque in N m, from its lowest to its highest, by which the servo may hum at rest
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    pub hum: f64,
+    /// Ticks a second
+    #[arg(long, value_name = "HZ", value_parser = rate, allow_negative_numbers = true)]
+    pub rate: f64,
+    /// Largest error in N m of the torque to that in f64; any if left out
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    pub error: Option<f64>,
+    /// Part of a core of 170 MHz that a tick may take from count to code
+    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.5,
+          allow_negative_numbers = true)]
+    pub share: f64,
+    /// Encoder counts a turn; the scene's own if left out
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
+    pub counts_per_rev: Option<f64>,
+    /// Largest angle in rad to each side that a scaled format has to hold
+    #[arg(long, value_name = "ANGLE", value_parser = positive, default_value_t = HALF_A_TURN,
+          allow_negative_numbers = true)]
+    pub range: f64,
+    /// Count the instructions of this scene on the emulated board instead of taking the kept ones
+    #[arg(long)]
+    pub measure: bool,
+}
+
+/// Most ticks a second: a core of 170 MHz has 850 instructions then.
+const LARGEST_RATE: f64 = 200e3;
+/// Time in s of the motion in which errors are looked for.
+const SECONDS: f64 = 5.0;
+
+/// The answer as JSON.
+#[derive(Serialize)]
+struct Answered {
+    scene: String,
+    rate: f64,
+    coupling_stiffness: Option<f64>,
+    format: Option<&'static str>,
+    encoder_hum: Option<f64>,
+    formats: Vec<Candidate>,
+    message: String,
+}
+
+/// What is asked about.
+struct Question {
+    name: String,
+    subject: Subject,
+    script: Script,
+    /// Whether somebody has said how fine the encoder is.
+    has_encoder: bool,
+}
+
+/// Looks for the cheapest format. The answer is no where none keeps to the figures, or the encoder
+/// does not.
+pub fn run(scene: &str, arguments: &Arguments, answer: &ForWhom) -> Result<Answer, CommandError> {
+    let question = question(scene, arguments)?;
+    let scene = &question.subject.scene;
+    // A scene that is refused at this rate needs no format.
+    scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
+    let motion = Motion::new(&question.subject, question.script.clone(), SECONDS)?;
+    let figures = Figures {
+        hum: arguments.hum,
+        error: arguments.error,
+        share: arguments.share,
+        rate: arguments.rate,
+        clock: CORE_CLOCK,
+    };
+    let look = if arguments.measure { measured } else { kept };
+    let advice = look(&motion, &figures)?;
+    let encoder_hum = question.has_encoder.then_some(advice.encoder_hum);
+    let is_quiet = encoder_hum.is_none_or(|hum| hum <= arguments.hum);
+    let is_yes = advice.choice().is_some() && is_quiet;
+    let answered = Answered {
+        format: advice.choice().map(|choice| choice.format),
+        message: message(&question.subject, arguments, &advice, encoder_hum),
+        scene: question.name,
+        rate: arguments.rate,
+        coupling_stiffness: match question.subject.scene.coupling {
+            Coupling::Rigid => None,
+            Coupling::Spring { stiffness } => Some(stiffness),
+        },
+        encoder_hum,
+        formats: advice.candidates,
+    };
+    answer.print(&answered, text)?;
+    Ok(if is_yes { Answer::Yes } else { Answer::No })
+}
+
+/// The scene at the rate, with its sensor and motor, and what a hand does to it.
+fn question(scene: &str, arguments: &Arguments) -> Result<Question, CommandError> {
+    let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
+    let counts = arguments.counts_per_rev;
+    let range = arguments.range;
+    Ok(match Program::find(scene) {
+        Some(program) => {
+            let counts_per_turn = counts.unwrap_or(program.transducers.counts_per_turn);
+            let counter = CounterWidth::Bits32;
+            let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
+            Question {
+                name: program.name.to_owned(),
+                subject: Subject { scene: at_rate(&program.scene), transducers, range },
+                script: (program.script)(),
+                has_encoder: true,
+            }
+        }
+        None => {
+            let file = scene_file(scene)?;
+            let transducers = transducers_of(&file, counts, None);
+            Question {
+                subject: Subject { scene: at_rate(&file.scene), transducers, range },
+                script: script_of(&file),
+                has_encoder: counts.is_some() || file.encoder_step.is_some(),
+                name: file.name,
+            }
+        }
+    })
+}
+
+/// With the instructions that are kept for scenes of this type.
+fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+    let table = servo::kept()?;
+    let case = servo::case_of(&motion.subject().scene.environment);
+    let case = case.ok_or_else(|| CommandError::NotMeasured {
+        types: servo::cases().iter().map(|case| case.name).collect::<Vec<_>>().join("; "),
+    })?;
+    Advice::new(motion, figures, |arithmetic| {
+        let mut methods = table.of(case.name);
+        let method = methods.find(|method| method.name == arithmetic.name());
+        Ok(method.and_then(Method::cost).unwrap_or(f64::INFINITY))
+    })
+}
+
+/// With the instructions that this scene takes on the emulated board.
+fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+    let mut board = tradeoff::board()?;
+    let advice = Advice::new(motion, figures, |arithmetic| {
+        Ok(cost(&mut board, motion, arithmetic)?.most.into())
+    })?;
+    board.finish()?;
+    Ok(advice)
+}
+
+/// The answer in sentences.
+fn message(
+    subject: &Subject,
+    arguments: &Arguments,
+    advice: &Advice,
+    encoder_hum: Option<f64>,
+) -> String {
+    let number = |value: f64| significant(value, 3);
+    let format = match advice.choice() {
+        Some(choice) => chosen(subject, choice),
+        None => "no format keeps to the figures".to_owned(),
+    };
+    match encoder_hum {
+        Some(hum) if hum > arguments.hum => {
+            let counts = subject.transducers.counts_per_turn;
+            format!(
+                "no: in every format the encoder alone makes a device without friction hum by {} \
+                 N m, above {} N m. About {} counts a turn in place of {} would do, or a softer \
+                 scene. As to the formats: {format}",
+                number(hum),
+                number(arguments.hum),
+                number(counts * hum / arguments.hum),
+                significant(counts, 7),
+            )
+        }
+        _ => format,
+    }
+}
+
+/// Why a format was chosen.
+fn chosen(subject: &Subject, choice: &Candidate) -> String {
+    let number = |value: f64| significant(value, 3);
+    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
+    let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
+    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
+    let scaled = units.map_or_else(String::new, |units| {
+        format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
+    });
+    format!(
+        "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
+         core of {} MHz, and it hums by no more than {} N m",
+        choice.format,
+        number(choice.instructions),
+        number(100.0 * choice.share),
+        number(CORE_CLOCK / 1e6),
+        number(hum),
+    )
+}
+
+fn text(answered: &Answered) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "format",
+        "instructions",
+        "share of the core",
+        "error",
+        "around 1 rad",
+        "hum",
+        "with encoder",
+        "rejected",
+    ]);
+    for candidate in &answered.formats {
+        table.add_row(row(candidate));
+    }
+    for column in 1..7 {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let coupling = answered.coupling_stiffness.map_or_else(
+        || "rigid".to_owned(),
+        |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
+    );
+    let Answered { scene, rate, message, .. } = answered;
+    format!(
+        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n"
+    )
+}
+
+/// A format's figures; torques in N m.
+fn row(candidate: &Candidate) -> [String; 8] {
+    let number = |value: Option<f64>| match value {
+        Some(value) if value.is_finite() => significant(value, 3),
+        _ => "none".to_owned(),
+    };
+    let losses = candidate.losses;
+    [
+        candidate.format.to_owned(),
+        number(Some(candidate.instructions)),
+        format!("{} %", number(Some(100.0 * candidate.share))),
+        number(losses.map(|losses| losses.error)),
+        number(losses.and_then(|losses| losses.error_elsewhere)),
+        number(losses.map(|losses| losses.alone.hum)),
+        number(losses.map(|losses| losses.with_encoder.hum)),
+        candidate.rejected.join("; "),
+    ]
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = positive(text)?;
+    if rate <= LARGEST_RATE {
+        Ok(rate)
+    } else {
+        Err(format!("`{text}` must be at most {LARGEST_RATE} ticks a second"))
+    }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let part = positive(text)?;
+    if part <= 1.0 { Ok(part) } else { Err(format!("`{text}` must be at most 1")) }
+}
