@@ -196,3 +196,74 @@ fn failures_are_rows_and_objects_by_name() {
     assert_eq!(output.status.code(), Some(2));
     assert!(complaint(output).contains("luck"));
 }
+
+#[test]
+fn advice_names_the_cheapest_format_and_why_not_the_others() {
+    let advise = |more: &[&str]| {
+        let question = [&["advise", "-", "--rate", "2000", "--json"], more].concat();
+        haptic(&question, WALL.as_bytes())
+    };
+    let format = |answer: &Value, name: &str| {
+        let formats = answer["formats"].as_array().unwrap();
+        formats.iter().find(|format| format["format"] == name).unwrap().clone()
+    };
+    let output = advise(&["--hum", "0.0005"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let answer = &lines(&output)[0];
+    assert_eq!(
+        (&answer["format"], answer["formats"].as_array().unwrap().len()),
+        (&"f32".into(), 8)
+    );
+    // 2 delta / T at this rate.
+    assert!((answer["coupling_stiffness"].as_f64().unwrap() - 88.0).abs() < 1e-6);
+    let coarse = format(answer, "i16f16")["rejected"].to_string();
+    assert!(coarse.contains("hum") && coarse.contains("is above 0.0005 N m"), "{coarse}");
+    // What f32 rounds away a rad off zero is too much for this, and 31 bits are not.
+    let output = advise(&["--hum", "0.0005", "--error", "2e-6"]);
+    let answer = &lines(&output)[0];
+    assert_eq!(answer["format"], "i1f31-truncated", "{answer}");
+    assert!(answer["message"].as_str().unwrap().contains("angles in 4 rad"), "{answer}");
+    assert!(format(answer, "f32")["rejected"].to_string().contains("error"), "{answer}");
+    // A core that has hardly any time has time for none but the cheapest.
+    let output = advise(&["--hum", "1e-9", "--share", "0.001"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let answer = &lines(&output)[0];
+    assert!(answer["format"].is_null());
+    assert!(format(answer, "f64")["rejected"].to_string().contains("share of the core"));
+    // An encoder that is too coarse is no format's fault, and the answer is no all the same.
+    let output = advise(&["--hum", "0.0005", "--counts-per-rev", "1000"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let answer = &lines(&output)[0];
+    assert_eq!(answer["format"], "f32");
+    assert!(answer["encoder_hum"].as_f64().unwrap() > 0.0005);
+    assert!(answer["message"].as_str().unwrap().contains("counts a turn in place of 1000"));
+}
+
+#[test]
+fn advice_needs_figures_that_make_sense_and_a_scene_that_certifies_at_the_rate() {
+    let advise = |scene: &str, hum: &str, rate: &str| {
+        let output = haptic(&["advise", scene, "--hum", hum, "--rate", rate], WALL.as_bytes());
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for (scene, hum, rate, said) in [
+        ("-", "-1", "1000", "`-1`"),
+        ("-", "nan", "1000", "`nan`"),
+        ("-", "0.005", "0", "`0`"),
+        ("-", "0.005", "1e9", "must be at most 200000"),
+        ("wrist", "0.005", "1000", "there is no scene wrist"),
+        ("no.toml", "0.005", "1000", "no.toml"),
+    ] {
+        let (status, words) = advise(scene, hum, rate);
+        assert_eq!(status, Some(2), "{words}");
+        assert!(words.contains(said), "{words}");
+    }
+    // K T/2 + B = 0.12 N m s/rad, of which the device has 0.022.
+    let (status, words) = advise("-", "0.005", "100");
+    assert_eq!(status, Some(1), "{words}");
+    assert!(words.contains("rejected") && words.contains("0.12"), "{words}");
+    let rational = r#"{"type": "rational", "numerator": [1], "denominator": [1, 0]}"#;
+    let wall = &WALL[WALL.find(r#"{"type""#).unwrap()..WALL.len() - 1];
+    let scene = WALL.replace(wall, rational);
+    let output = haptic(&["advise", "-", "--hum", "1", "--rate", "1000"], scene.as_bytes());
+    assert!(complaint(output).contains("no tick of such a scene has been measured"));
+}

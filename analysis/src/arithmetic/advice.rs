@@ -42,8 +42,9 @@ pub struct Candidate {
 pub struct Advice {
     /// The formats.
     pub candidates: Vec<Candidate>,
-    /// Torque in N m by which the encoder alone hums, in the finest format.
-    pub encoder_hum: f64,
+    /// Torque in N m by which the encoder alone hums, in the finest format; `None` where nobody has
+    /// said how fine it is.
+    pub encoder_hum: Option<f64>,
 }
 
 impl Advice {
@@ -57,7 +58,7 @@ impl Advice {
         mut instructions: impl FnMut(Arithmetic) -> Result<f64, CommandError>,
     ) -> Result<Self, CommandError> {
         let mut candidates = Vec::new();
-        let mut encoder_hum = 0.0;
+        let mut encoder_hum = None;
         for arithmetic in Arithmetic::ALL {
             let losses = match Losses::of(motion, arithmetic) {
                 Ok(losses) => Ok(losses),
@@ -65,7 +66,7 @@ impl Advice {
                 Err(error) => return Err(error),
             };
             if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
-                encoder_hum = losses.with_encoder.hum;
+                encoder_hum = losses.with_encoder.map(|rest| rest.hum);
             }
             let instructions = match losses {
                 Ok(_) => instructions(arithmetic)?,

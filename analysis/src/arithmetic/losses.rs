@@ -15,8 +15,8 @@ pub struct Losses {
     pub error_elsewhere: Option<f64>,
     /// What is left at rest by the format alone.
     pub alone: Rest,
-    /// What is left at rest with the encoder.
-    pub with_encoder: Rest,
+    /// What is left at rest with the encoder; `None` where nobody has said how fine that is.
+    pub with_encoder: Option<Rest>,
 }
 
 impl Losses {
@@ -30,7 +30,10 @@ impl Losses {
             error: motion.error(arithmetic)?,
             error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,
             alone: at_rest(motion.subject(), arithmetic, false)?,
-            with_encoder: at_rest(motion.subject(), arithmetic, true)?,
+            with_encoder: match motion.subject().has_encoder {
+                true => Some(at_rest(motion.subject(), arithmetic, true)?),
+                false => None,
+            },
         })
     }
 }

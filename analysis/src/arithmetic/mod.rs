@@ -33,6 +33,8 @@ pub struct Subject {
     pub scene: Scene,
     /// Its sensor and its motor.
     pub transducers: Transducers,
+    /// Whether somebody has said how fine the sensor is.
+    pub has_encoder: bool,
     /// Largest angle in rad to each side that a scaled format has to hold.
     pub range: f64,
 }

@@ -53,7 +53,8 @@ impl Case {
     /// Of a program, whose counter does not wrap.
     fn of(program: &Program) -> Self {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
-        let subject = arithmetic::Subject { scene: program.scene, transducers, range: HALF_A_TURN };
+        let (scene, range) = (program.scene, HALF_A_TURN);
+        let subject = arithmetic::Subject { scene, transducers, has_encoder: true, range };
         Self { name: program.name, subject, script: (program.script)() }
     }
 
@@ -151,8 +152,8 @@ fn row(
         Some(alone.hum),
         Some(alone.cycle),
         Some(cost.mean),
-        Some(with_encoder.hum),
-        Some(with_encoder.cycle),
+        with_encoder.map(|rest| rest.hum),
+        with_encoder.map(|rest| rest.cycle),
     ];
     let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
     Ok(Method { values: values.to_vec(), ..method })
@@ -185,7 +186,7 @@ mod tests {
                 assert_eq!(names, (case.name, arithmetic.name()));
                 let Losses { error, error_elsewhere, alone, with_encoder } =
                     Losses::of(&motion, arithmetic).unwrap();
-                let Rest { hum, cycle } = with_encoder;
+                let Rest { hum, cycle } = with_encoder.unwrap();
                 let alone = [Some(alone.hum), Some(alone.cycle)];
                 let fresh =
                     [Some(error), error_elsewhere, alone[0], alone[1], Some(hum), Some(cycle)];

@@ -1,5 +1,7 @@
 //! `haptic advise --hum --rate`: which number format, and which method of simulation, are enough?
 
+use std::cmp::Ordering;
+
 use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use firmware::encoder::CounterWidth;
@@ -22,7 +24,7 @@ use crate::tradeoff::{self, Method, servo};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct Wanted {
     /// Most torque in N m, from its lowest to its highest, by which the servo may hum at rest
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
     pub hum: f64,
@@ -32,7 +34,8 @@ pub struct Arguments {
     /// Largest error in N m of the torque to that in f64; any if left out
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
     pub error: Option<f64>,
-    /// Part of a core of 170 MHz that a tick may take from count to code
+    /// Part of a core of 170 MHz that a tick may take from count to code; the rest of the servo's
+    /// interrupt is the same in every format
     #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.5,
           allow_negative_numbers = true)]
     pub share: f64,
@@ -70,13 +73,11 @@ struct Question {
     name: String,
     subject: Subject,
     script: Script,
-    /// Whether somebody has said how fine the encoder is.
-    has_encoder: bool,
 }
 
 /// Looks for the cheapest format. The answer is no where none keeps to the figures, or the encoder
 /// does not.
-pub fn run(scene: &str, arguments: &Arguments, answer: &ForWhom) -> Result<Answer, CommandError> {
+pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, CommandError> {
     let question = question(scene, arguments)?;
     let scene = &question.subject.scene;
     // A scene that is refused at this rate needs no format.
@@ -91,19 +92,18 @@ pub fn run(scene: &str, arguments: &Arguments, answer: &ForWhom) -> Result<Answe
     };
     let look = if arguments.measure { measured } else { kept };
     let advice = look(&motion, &figures)?;
-    let encoder_hum = question.has_encoder.then_some(advice.encoder_hum);
-    let is_quiet = encoder_hum.is_none_or(|hum| hum <= arguments.hum);
+    let is_quiet = advice.encoder_hum.is_none_or(|hum| hum <= arguments.hum);
     let is_yes = advice.choice().is_some() && is_quiet;
     let answered = Answered {
         format: advice.choice().map(|choice| choice.format),
-        message: message(&question.subject, arguments, &advice, encoder_hum),
+        message: message(&question.subject, arguments, &advice),
         scene: question.name,
         rate: arguments.rate,
         coupling_stiffness: match question.subject.scene.coupling {
             Coupling::Rigid => None,
             Coupling::Spring { stiffness } => Some(stiffness),
         },
-        encoder_hum,
+        encoder_hum: advice.encoder_hum,
         formats: advice.candidates,
     };
     answer.print(&answered, text)?;
@@ -111,7 +111,7 @@ pub fn run(scene: &str, arguments: &Arguments, answer: &ForWhom) -> Result<Answe
 }
 
 /// The scene at the rate, with its sensor and motor, and what a hand does to it.
-fn question(scene: &str, arguments: &Arguments) -> Result<Question, CommandError> {
+fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
     let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
     let counts = arguments.counts_per_rev;
     let range = arguments.range;
@@ -120,20 +120,21 @@ fn question(scene: &str, arguments: &Arguments) -> Result<Question, CommandError
             let counts_per_turn = counts.unwrap_or(program.transducers.counts_per_turn);
             let counter = CounterWidth::Bits32;
             let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
+            let (scene, has_encoder) = (at_rate(&program.scene), true);
             Question {
                 name: program.name.to_owned(),
-                subject: Subject { scene: at_rate(&program.scene), transducers, range },
+                subject: Subject { scene, transducers, has_encoder, range },
                 script: (program.script)(),
-                has_encoder: true,
             }
         }
         None => {
             let file = scene_file(scene)?;
             let transducers = transducers_of(&file, counts, None);
+            let has_encoder = counts.is_some() || file.encoder_step.is_some();
+            let scene = at_rate(&file.scene);
             Question {
-                subject: Subject { scene: at_rate(&file.scene), transducers, range },
+                subject: Subject { scene, transducers, has_encoder, range },
                 script: script_of(&file),
-                has_encoder: counts.is_some() || file.encoder_step.is_some(),
                 name: file.name,
             }
         }
@@ -165,18 +166,13 @@ fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> 
 }
 
 /// The answer in sentences.
-fn message(
-    subject: &Subject,
-    arguments: &Arguments,
-    advice: &Advice,
-    encoder_hum: Option<f64>,
-) -> String {
+fn message(subject: &Subject, arguments: &Wanted, advice: &Advice) -> String {
     let number = |value: f64| significant(value, 3);
     let format = match advice.choice() {
         Some(choice) => chosen(subject, choice),
-        None => "no format keeps to the figures".to_owned(),
+        None => none(advice),
     };
-    match encoder_hum {
+    match advice.encoder_hum {
         Some(hum) if hum > arguments.hum => {
             let counts = subject.transducers.counts_per_turn;
             format!(
@@ -189,8 +185,23 @@ fn message(
                 significant(counts, 7),
             )
         }
-        _ => format,
+        Some(_) => format,
+        None => format!(
+            "{format}; how fine the encoder is the scene does not say, so that its part of the hum \
+             is not in this"
+        ),
     }
+}
+
+/// Why no format was chosen.
+fn none(advice: &Advice) -> String {
+    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.hum);
+    let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
+    let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
+    let reason = quietest.map_or_else(String::new, |candidate| {
+        format!(": of the quietest, {}, the {}", candidate.format, candidate.rejected.join("; "))
+    });
+    format!("no format keeps to the figures{reason}")
 }
 
 /// Why a format was chosen.
@@ -258,7 +269,7 @@ fn row(candidate: &Candidate) -> [String; 8] {
         number(losses.map(|losses| losses.error)),
         number(losses.and_then(|losses| losses.error_elsewhere)),
         number(losses.map(|losses| losses.alone.hum)),
-        number(losses.map(|losses| losses.with_encoder.hum)),
+        number(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
         candidate.rejected.join("; "),
     ]
 }

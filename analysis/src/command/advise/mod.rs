@@ -15,7 +15,7 @@ pub struct Arguments {
     pub scene: String,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub format: format::Arguments,
+    pub format: format::Wanted,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: ForWhom,
