@@ -246,9 +246,9 @@ fn advice_needs_figures_that_make_sense_and_a_scene_that_certifies_at_the_rate()
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
     for (scene, hum, rate, said) in [
-        ("-", "-1", "1000", "`-1`"),
-        ("-", "nan", "1000", "`nan`"),
-        ("-", "0.005", "0", "`0`"),
+        ("-", "-1", "1000", "'-1'"),
+        ("-", "nan", "1000", "'nan'"),
+        ("-", "0.005", "0", "'0'"),
         ("-", "0.005", "1e9", "must be at most 200000"),
         ("wrist", "0.005", "1000", "there is no scene wrist"),
         ("no.toml", "0.005", "1000", "no.toml"),
