@@ -1,6 +1,6 @@
 //! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
 
-use firmware::board::play::Arithmetic;
+use firmware::number::Arithmetic;
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
@@ -29,7 +29,7 @@ pub fn fixed_point() -> Result<Study, FailureError> {
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 0.3, ..PADDLES };
     let trial = |what, friction, expected| Trial {
-        arithmetic: Arithmetic::Q16,
+        arithmetic: Arithmetic::I16F16,
         ..leaning(what, &scene, fine, expected, friction)
     };
     let hums = trial("no friction", 0.0, End::Hums);

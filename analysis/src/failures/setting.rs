@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use firmware::board::play::Arithmetic;
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
+use firmware::number::Arithmetic;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
 

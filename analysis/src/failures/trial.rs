@@ -1,13 +1,11 @@
 //! A loop that is run: simulated without converters, and on the emulated board with them.
 
-use firmware::board::play::{Arithmetic, Curtain, Play};
+use firmware::board::play::{Curtain, Play};
 use firmware::certificate::{Certified, Rejection};
-use firmware::encoder::CounterWidth;
 use firmware::environment::Environment;
-use firmware::number::Number;
+use firmware::number::{Arithmetic, InEach, Number, OutOfRange};
 use firmware::scene::{Device, Scene};
-use firmware::servo::{Servo, Transducers};
-use fixed::types::I16F16;
+use firmware::servo::{BuildError, Transducers};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -33,7 +31,10 @@ pub enum TrialError {
     Disagreement(String),
     /// The servo cannot be had in this arithmetic.
     #[error(transparent)]
-    Servo(#[from] firmware::servo::BuildError),
+    Servo(#[from] BuildError),
+    /// The angle is more than this arithmetic holds.
+    #[error(transparent)]
+    Angle(#[from] OutOfRange),
 }
 
 /// A loop that is run.
@@ -82,21 +83,18 @@ impl Trial {
     pub fn simulated(&self) -> Result<Fate, TrialError> {
         let positions = match self.arithmetic {
             Arithmetic::F32 => simulate(&self.experiment, Stride::default())?.position,
-            Arithmetic::Q16 => self.without_converter::<I16F16>()?,
+            _ => self.without_converters()?,
         };
         Ok(Fate::of(&positions, self.experiment.samples))
     }
 
-    /// The same with the servo's own arithmetic and an encoder so fine that it does not matter.
-    fn without_converter<N: Number>(&self) -> Result<Vec<f64>, TrialError> {
-        let certified = self.certified()?;
-        let fine = fine(&self.transducers);
-        let mut servo = Servo::<Environment, N>::new(&certified, &fine)?;
-        let mut device = LoadedDevice::new(&self.experiment, &fine)?;
+    /// The same with the servo's own arithmetic.
+    fn without_converters(&self) -> Result<Vec<f64>, TrialError> {
+        let mut servo = self.controller(&self.certified()?)?;
+        let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         while device.positions.len() < self.experiment.samples {
-            let count = crate::rig::Plant::count(&mut device).unwrap_or_default();
-            servo.tick(count.into());
-            device.apply(-servo.torque_nm());
+            let torque = servo.tick_at(device.position())?;
+            device.apply(-torque);
         }
         device.positions.truncate(self.experiment.samples);
         Ok(device.positions)
@@ -152,11 +150,22 @@ impl Trial {
         missed.ticks().take(*samples).filter(|is_missed| !is_missed).count()
     }
 
-    fn controller(&self, certified: &Certified<Scene>) -> Result<Box<dyn Controller>, TrialError> {
-        Ok(match self.arithmetic {
-            Arithmetic::F32 => controller::<Environment, f32>(certified, &self.transducers)?,
-            Arithmetic::Q16 => controller::<Environment, I16F16>(certified, &self.transducers)?,
-        })
+    fn controller(&self, certified: &Certified<Scene>) -> Result<Box<dyn Controller>, BuildError> {
+        self.arithmetic.choose(Build { certified, transducers: &self.transducers })
+    }
+}
+
+/// Builds a servo, in an arithmetic that is still to be chosen.
+struct Build<'a> {
+    certified: &'a Certified<Scene>,
+    transducers: &'a Transducers,
+}
+
+impl InEach for Build<'_> {
+    type Output = Result<Box<dyn Controller>, BuildError>;
+
+    fn with<N: Number>(self) -> Self::Output {
+        controller::<Environment, N>(self.certified, self.transducers)
     }
 }
 
@@ -170,10 +179,4 @@ impl Claim {
         let says = Says::of(fate.end() == End::Rests);
         Ok(Self::new(by, says, fate.last, "at the end it moves to and fro by {} rad"))
     }
-}
-
-/// The same with an encoder of `2^26` counts a turn: steps of 1e-7 rad.
-fn fine(transducers: &Transducers) -> Transducers {
-    let counts_per_turn = f64::from(1_u32 << 26);
-    Transducers { counts_per_turn, counter: CounterWidth::Bits32, ..*transducers }
 }

@@ -6,18 +6,9 @@
 
 use super::question::{Question, ask, read};
 use crate::encoder::CounterWidth;
+use crate::number::Arithmetic;
 use crate::scene::Scene;
 use crate::servo::Transducers;
-
-/// What the servo computes in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u64)]
-pub enum Arithmetic {
-    /// IEEE binary32.
-    F32 = 0,
-    /// Fixed point with 16 bits behind the point.
-    Q16 = 1,
-}
 
 /// What a board is to play.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +17,7 @@ pub struct Play {
     pub scene: Scene,
     /// The encoder and the motor.
     pub transducers: Transducers,
-    /// What the servo computes in.
+    /// What the servo computes in: `f32` or `I16F16`, for which a program has room.
     pub arithmetic: Arithmetic,
     /// Number of ticks, for each of which the host gives a count and takes a code.
     pub ticks: u32,
@@ -99,7 +90,8 @@ impl Play {
                 u64::from(counter == CounterWidth::Bits16),
                 full_scale_torque.to_bits(),
                 largest_speed.to_bits(),
-                self.arithmetic as u64,
+                Arithmetic::ALL.iter().take_while(|other| **other != self.arithmetic).count()
+                    as u64,
                 self.ticks.into(),
             ],
         }
@@ -108,7 +100,6 @@ impl Play {
     /// From words; `None` if they are none.
     pub fn from_words(words: &PlayWords) -> Option<Self> {
         let [counts, narrow, torque, speed, arithmetic, ticks] = words.more;
-        let all = [Arithmetic::F32, Arithmetic::Q16];
         Some(Self {
             scene: read(&words.question)?,
             transducers: Transducers {
@@ -117,7 +108,7 @@ impl Play {
                 full_scale_torque: f64::from_bits(torque),
                 largest_speed: f64::from_bits(speed),
             },
-            arithmetic: all.into_iter().find(|known| *known as u64 == arithmetic)?,
+            arithmetic: *Arithmetic::ALL.get(usize::try_from(arithmetic).ok()?)?,
             ticks: ticks.try_into().ok()?,
         })
     }
@@ -153,13 +144,13 @@ mod tests {
                 full_scale_torque: 2.0,
                 largest_speed: 100.0,
             },
-            arithmetic: Arithmetic::Q16,
+            arithmetic: Arithmetic::I16F16,
             ticks: 5000,
         };
         let words = play.to_words();
         assert_eq!(Play::from_words(&words), Some(play));
         let [a, b, c, d, _, ticks] = words.more;
-        assert_eq!(Play::from_words(&PlayWords { more: [a, b, c, d, 2, ticks], ..words }), None);
+        assert_eq!(Play::from_words(&PlayWords { more: [a, b, c, d, 8, ticks], ..words }), None);
         for curtain in [Curtain::Open, Curtain::Refused, Curtain::Unbuildable] {
             assert_eq!(Curtain::from_bytes(curtain.to_bytes()), Some(curtain));
         }

@@ -6,9 +6,9 @@ use semihosting::fs::File;
 use semihosting::io::{Error, Read, Write};
 
 use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use crate::board::play::{Arithmetic, Curtain, Play, PlayWords};
+use crate::board::play::{Curtain, Play, PlayWords};
 use crate::encoder::RawCount;
-use crate::number::Number;
+use crate::number::{Arithmetic, Number};
 use crate::servo::Servo;
 
 /// Plays until the host closes its end.
@@ -20,7 +20,8 @@ pub fn run() -> ! {
     while let Ok(play) = stage.next() {
         let played = play.map(|play| match play.arithmetic {
             Arithmetic::F32 => stage.play::<f32>(&play),
-            Arithmetic::Q16 => stage.play::<I16F16>(&play),
+            Arithmetic::I16F16 => stage.play::<I16F16>(&play),
+            _ => stage.draw(Curtain::Unbuildable),
         });
         // What is no play, and a host that goes away in the middle of one.
         if !matches!(played, Some(Ok(()))) {
