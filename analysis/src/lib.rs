@@ -42,6 +42,7 @@ pub mod design;
 pub mod failures;
 pub mod limits;
 pub mod map;
+pub mod model;
 pub mod response;
 pub mod simulation;
 pub mod stability;

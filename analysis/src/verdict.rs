@@ -1,5 +1,7 @@
 //! What the certificate says about a scene, as the fields that people and programs read.
 
+use std::fmt;
+
 use firmware::certificate::{Answer, Assessment, Assumptions, Loop, Rule, assess, certify};
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
@@ -19,6 +21,16 @@ pub enum Verdict {
     Rejected,
     /// Neither; never means yes.
     Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Certified => "certified",
+            Self::Rejected => "rejected",
+            Self::Undecided => "undecided",
+        })
+    }
 }
 
 /// The answer of one rule.

@@ -98,6 +98,32 @@ fn bad_questions_are_named() {
     }
 }
 
+#[test]
+fn advice_on_models_as_json_and_bad_questions_named() {
+    let folder = TempDir::new().unwrap();
+    let run = "[simulation]\nsamples = 100\n";
+    let moving = scene(&folder, &format!("{run}position = 0.001\n[human]\nstiffness = 0.001\n"));
+    let ask = ["advise", "--model", name(&moving)];
+    let (status, advice) = json(&[&ask[..], &["--json", "--bound", "0.05"]].concat());
+    assert_eq!((status, &advice["enough"]), (0, &Value::from("rigid")));
+    assert_eq!(advice["left_out"], serde_json::json!(["the hand"]));
+    assert_eq!(advice["models"].as_array().unwrap().len(), 2);
+    for bound in ["0", "-0.1", "nan", "inf", "2", "much"] {
+        let message = complaint(haptic(&[&ask[..], &["--bound", bound]].concat()));
+        assert!(message.contains(bound) && message.contains("at most 1"), "{message}");
+    }
+    // About a model or about a format, and not about both or neither.
+    let message = complaint(haptic(&[&ask[..], &["--hum", "0.1"]].concat()));
+    assert!(message.contains("'--model' cannot be used with"), "{message}");
+    let message = complaint(haptic(&["advise", name(&moving)]));
+    assert!(message.contains("--hum") && message.contains("--rate"), "{message}");
+    for (more, expected) in [("", "[simulation]"), (run, "nothing moves")] {
+        let scene = scene(&folder, more);
+        let message = complaint(haptic(&["advise", "--model", name(&scene)]));
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
 /// What a loop does that grows until there are no numbers for it.
 #[test]
 fn a_motion_ends_where_the_numbers_do() {

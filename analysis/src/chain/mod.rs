@@ -12,6 +12,7 @@
 mod disk;
 mod exact;
 mod infimum;
+mod lump;
 mod passivity;
 pub mod two_port;
 
@@ -127,6 +128,11 @@ impl Chain {
     pub fn with_actuator_lag(self, lag: f64) -> Result<Self, ChainError> {
         not_negative(|| "lag of the amplifier".to_owned(), lag)?;
         Ok(Self { actuator_lag: lag, ..self })
+    }
+
+    /// The same chain behind an amplifier that follows at once.
+    pub fn without_lag(self) -> Self {
+        Self { actuator_lag: 0.0, ..self }
     }
 
     /// The same chain with another damping in N m s/rad of the motor's mass against the ground.

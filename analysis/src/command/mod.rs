@@ -86,7 +86,7 @@ pub enum Command {
     Stability(stability::Arguments),
     /// How far may one go, and what does it take? Answers are scenes that certify.
     Design(design::Arguments),
-    /// Which number format is enough for a scene at a rate, and the cheapest?
+    /// How little is enough for a scene: which number format, which model of its device?
     Advise(advise::Arguments),
     /// In which passive hand does a scene oscillate?
     WorstHand(worst_hand::Arguments),
@@ -239,6 +239,9 @@ pub enum CommandError {
     /// A case of failure could not be shown.
     #[error(transparent)]
     Failure(#[from] crate::failures::FailureError),
+    /// Models of a device that cannot be compared.
+    #[error(transparent)]
+    Model(#[from] crate::model::ModelError),
     /// A design asks for what the environment does not have.
     #[error("the environment of {scene} has no {quantity}")]
     NoSuchQuantity {

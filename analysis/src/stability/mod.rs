@@ -7,6 +7,8 @@
 
 mod borders;
 
+use std::fmt;
+
 use firmware::environment::Environment;
 use firmware::scene::Scene;
 use nalgebra::linalg::Schur;
@@ -33,6 +35,16 @@ pub enum Verdict {
     /// It neither grows nor dies away. Most often this is the device that stays where it is left
     /// because no spring pulls it anywhere, the eigenvalue 1 of its position.
     Marginal,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Stable => "stable",
+            Self::Unstable => "unstable",
+            Self::Marginal => "marginal",
+        })
+    }
 }
 
 /// The answer to "is this loop stable".

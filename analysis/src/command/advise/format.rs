@@ -26,10 +26,12 @@ use crate::tradeoff::{self, Method, servo};
 #[derive(Debug, Args)]
 pub struct Wanted {
     /// Most torque in N m, from its lowest to its highest, by which the servo may hum at rest
-    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
+          required = false, required_unless_present = "model")]
     pub hum: f64,
     /// Ticks a second
-    #[arg(long, value_name = "HZ", value_parser = rate, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", value_parser = rate, allow_negative_numbers = true,
+          required = false, required_unless_present = "model")]
     pub rate: f64,
     /// Largest error in N m of the torque to that in f64; any if left out
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]

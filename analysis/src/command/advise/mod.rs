@@ -1,13 +1,14 @@
 //! `haptic advise`: how little is enough for a scene?
 
 mod format;
+mod model;
 
 use clap::Args;
 
 use super::common::ForWhom;
 use super::{Answer, CommandError};
 
-/// Arguments of `haptic advise`.
+/// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a program (delayed_spring, damper_wall, free_mode) or a scene file
@@ -15,7 +16,10 @@ pub struct Arguments {
     pub scene: String,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub format: format::Wanted,
+    pub model: model::Question,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub format: Option<format::Wanted>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: ForWhom,
@@ -23,5 +27,8 @@ pub struct Arguments {
 
 /// Advises.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    format::run(&arguments.scene, &arguments.format, &arguments.answer)
+    match &arguments.format {
+        Some(format) => format::run(&arguments.scene, format, &arguments.answer),
+        None => model::run(&arguments.scene, &arguments.model, &arguments.answer),
+    }
 }

@@ -1,0 +1,91 @@
+//! `haptic advise --model`: how much model of the device?
+
+use clap::Args;
+use comfy_table::{CellAlignment, Table, presets};
+
+use crate::command::common::{ForWhom, folder};
+use crate::command::{Answer, CommandError};
+use crate::file::{Purpose, load_for};
+use crate::model::{Advice, Deviation, Judged, advise, percent};
+use crate::quantity::significant;
+
+/// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
+#[derive(Debug, Args)]
+pub struct Question {
+    /// Find the cheapest model of a scene file's device whose verdict and motion are those of the
+    /// fullest: rigid or with its masses, in its hand or in none, with the amplifier's lag or without
+    #[arg(long, conflicts_with = "Wanted")]
+    pub model: bool,
+    /// Most that delta, critical stiffness, angle and torque may be off, as a share of the
+    /// fullest model's
+    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share,
+          allow_negative_numbers = true, requires = "model")]
+    pub bound: f64,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if share > 0.0 && share <= 1.0 => Ok(share),
+        _ => Err(format!("`{text}` must be a number greater than 0 and at most 1")),
+    }
+}
+
+/// Compares the models of the scene's device.
+pub fn run(scene: &str, question: &Question, answer: &ForWhom) -> Result<Answer, CommandError> {
+    let file = load_for(Purpose::Simulate, scene)?;
+    let advice = advise(&file, folder(scene), question.bound)?;
+    answer.print(&advice, text)?;
+    Ok(Answer::Yes)
+}
+
+fn text(advice: &Advice) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "model",
+        "states",
+        "steps/s",
+        "certificate",
+        "stability",
+        "delta",
+        "critical stiffness",
+        "angle",
+        "torque",
+        "beyond the bound",
+    ]);
+    for judged in &advice.models {
+        table.add_row(row(judged));
+    }
+    for column in [1, 2, 5, 6, 7, 8] {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let reason = advice.no_certificate.as_ref();
+    let no_certificate = reason
+        .map_or_else(String::new, |reason| format!("\nno certificate to compare with: {reason}\n"));
+    format!("scene  {}\n\n{table}\n{no_certificate}\n{}\n", advice.scene, advice.message)
+}
+
+/// Numbers with how far they are off in brackets.
+fn row(judged: &Judged) -> [String; 10] {
+    let Judged { model, facts, deviation, beyond, .. } = judged;
+    let Deviation { delta, critical_stiffness, angle, torque } = *deviation;
+    let number = |value: Option<f64>, off: Option<f64>| match (value, off) {
+        (None, _) => "none".to_owned(),
+        (Some(value), None) => significant(value, 6),
+        (Some(value), Some(off)) => format!("{} ({})", significant(value, 6), percent(off)),
+    };
+    [
+        model.clone(),
+        facts.states.to_string(),
+        significant(facts.steps_per_second, 2),
+        facts.certificate.map_or_else(|| "none".to_owned(), |verdict| verdict.to_string()),
+        facts.stability.to_string(),
+        number(facts.delta, delta),
+        number(facts.critical_stiffness, critical_stiffness),
+        percent(angle),
+        percent(torque),
+        beyond.join(", "),
+    ]
+}

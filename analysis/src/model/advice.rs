@@ -1,0 +1,139 @@
+//! Which model is enough, and what the others miss.
+
+use std::path::Path;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::{Deviation, Facts, Model, percent};
+use crate::file::SceneFile;
+use crate::simulation::{Experiment, SimulationError};
+
+/// Why models cannot be compared.
+#[derive(Debug, Error)]
+pub enum ModelError {
+    /// The fullest model has no motion or no loop.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The run is a rest.
+    #[error(
+        "{scene}: nothing moves in its simulation, and models that rest say the same; give it a \
+         position, a velocity or a torque"
+    )]
+    Rest {
+        /// Name of the scene.
+        scene: String,
+    },
+}
+
+/// Which model is enough.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Advice {
+    /// What the person calls the scene.
+    pub scene: String,
+    /// Most that a number may be off, as a share of the fullest model's.
+    pub bound: f64,
+    /// The cheapest model that is enough.
+    pub enough: String,
+    /// What that leaves out.
+    pub left_out: Vec<String>,
+    /// All models, the cheapest first; the last is the fullest.
+    pub models: Vec<Judged>,
+    /// Why there is no certificate to compare; `None` where there is.
+    pub no_certificate: Option<String>,
+    /// The answer as a sentence.
+    pub message: String,
+}
+
+/// A model beside the fullest one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judged {
+    /// Its name.
+    pub model: String,
+    /// What the fullest model has and this has not.
+    pub lacks: Vec<String>,
+    /// What it says.
+    #[serde(flatten)]
+    pub facts: Facts,
+    /// How far that is from what the fullest says.
+    pub deviation: Deviation,
+    /// What of it is beyond the bound; empty where the model is enough.
+    pub beyond: Vec<String>,
+}
+
+/// Compares the models of a file's machine by what the file wants to be simulated; `folder` is
+/// where its torque file is looked for, `bound` the most that a number may be off, as a share of
+/// the fullest model's.
+///
+/// # Errors
+/// Where the file has no simulation, or one in which nothing moves, or its scene no closed loop.
+pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, ModelError> {
+    let run = Experiment::of(file, folder)?;
+    let fullest = Model::fullest(file);
+    let full = Facts::of(fullest, file, &run)?;
+    if full.motion.position.iter().chain(&full.motion.torque).all(|&value| value == 0.0) {
+        return Err(ModelError::Rest { scene: file.name.clone() });
+    }
+    let mut models = Vec::new();
+    for model in fullest.up_to() {
+        let facts = if model == fullest { full.clone() } else { Facts::of(model, file, &run)? };
+        models.push(Judged::of(model, facts, (fullest, &full), bound));
+    }
+    let enough = models.iter().find(|judged| judged.beyond.is_empty());
+    let (enough, left_out) = enough.map_or_else(
+        || (fullest.to_string(), Vec::new()),
+        |it| (it.model.clone(), it.lacks.clone()),
+    );
+    let message = message(&models, bound);
+    let no_certificate = file.chain.as_rigid().err().map(|reason| reason.to_string());
+    let scene = file.name.clone();
+    Ok(Advice { scene, bound, enough, left_out, models, no_certificate, message })
+}
+
+impl Judged {
+    fn of(model: Model, facts: Facts, (fullest, full): (Model, &Facts), bound: f64) -> Self {
+        let deviation = Deviation::of(&facts, full);
+        let mut beyond = Vec::new();
+        if let (Some(full), Some(found)) = (full.certificate, facts.certificate)
+            && full != found
+        {
+            beyond.push(format!("{found} and not {full}"));
+        }
+        if facts.stability != full.stability {
+            beyond.push(format!("{} and not {}", facts.stability, full.stability));
+        }
+        let far = deviation.parts().filter(|(_, part)| part.is_nan() || *part > bound);
+        beyond.extend(far.map(|(name, part)| match part.is_finite() {
+            true => format!("{name} {} off", percent(part)),
+            false => format!("{name} not to be compared"),
+        }));
+        let (model, lacks) = (model.to_string(), model.lacks(fullest));
+        Self { model, lacks, facts, deviation, beyond }
+    }
+
+    /// What its omissions cost and save.
+    fn costs(&self, full: &Facts) -> String {
+        let of = |(name, part)| format!("{} of the {name}", percent(part));
+        let off: Vec<String> = self.deviation.parts().map(of).collect();
+        let (states, all) = (self.facts.states, full.states);
+        format!("which costs {}, and leaves {states} states of {all}", off.join(", "))
+    }
+}
+
+fn message(models: &[Judged], bound: f64) -> String {
+    let within = format!("within {}", percent(bound));
+    match (models, models.iter().find(|judged| judged.beyond.is_empty())) {
+        ([only], _) => format!("{} is all that the file describes", only.model),
+        ([.., full], Some(enough)) if !enough.lacks.is_empty() => {
+            let (lacks, costs) = (enough.lacks.join(" and "), enough.costs(&full.facts));
+            format!("{} is enough {within}: it leaves out {lacks}, {costs}", enough.model)
+        }
+        _ => {
+            let without = models.iter().filter(|judged| judged.lacks.len() == 1);
+            let without: Vec<_> = without
+                .map(|it| format!("without {}: {}", it.lacks.join(""), it.beyond.join(", ")))
+                .collect();
+            format!("nothing may be left out {within}; {}", without.join("; "))
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! How much model of a device a scene needs: the cheapest one whose verdict and motion stay within
+//! a bound of the fullest's, which is the one that the scene's file describes.
+//!
+//! The servo is the same in all of them. What a model may leave out is the hand that holds the
+//! device, masses of the chain (links are welded: [`Chain::lumped`]) and the amplifier's lag.
+
+mod advice;
+mod deviation;
+mod facts;
+
+pub use advice::{Advice, Judged, ModelError, advise};
+pub use deviation::{Deviation, percent};
+pub use facts::Facts;
+
+use std::fmt;
+
+use crate::chain::Chain;
+use crate::device::Hand;
+use crate::file::SceneFile;
+use crate::simulation::plant::Plant;
+
+/// What of the machine is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Model {
+    /// Masses of the chain; one is a rigid device.
+    pub masses: usize,
+    /// Whether it is in the hand of the file.
+    pub hand: bool,
+    /// Whether the amplifier lags.
+    pub lag: bool,
+}
+
+impl Model {
+    /// All that the file describes.
+    pub fn fullest(file: &SceneFile) -> Self {
+        Self {
+            masses: file.chain.masses().len(),
+            hand: file.hand.is_some_and(|hand| hand != Hand::default()),
+            lag: file.chain.actuator_lag() > 0.0,
+        }
+    }
+
+    /// This one and all that leave something of it out, the cheapest first: that with the fewest
+    /// states, and among those the one with the fewest parts.
+    pub fn up_to(self) -> Vec<Self> {
+        let either = |is: bool| if is { &[false, true][..] } else { &[false] };
+        let mut models = Vec::new();
+        for masses in 1..=self.masses {
+            for &lag in either(self.lag) {
+                models.extend(either(self.hand).iter().map(|&hand| Self { masses, hand, lag }));
+            }
+        }
+        models.sort_by_key(|model| (2 * model.masses + usize::from(model.lag), model.hand));
+        models
+    }
+
+    /// The device of a file in this model.
+    pub fn chain(self, file: &SceneFile) -> Chain {
+        let chain = file.chain.lumped(self.masses);
+        if self.lag { chain } else { chain.without_lag() }
+    }
+
+    /// The machine of a file in this model.
+    pub fn plant(self, file: &SceneFile) -> Plant {
+        let hand = file.hand.filter(|_| self.hand).unwrap_or_default();
+        Plant::of(&self.chain(file)).held(hand)
+    }
+
+    /// In words, what it lacks of another model.
+    pub fn lacks(self, fuller: Self) -> Vec<String> {
+        let mut lacks = Vec::new();
+        match fuller.masses - self.masses {
+            0 => {}
+            1 => lacks.push("a mass".to_owned()),
+            masses => lacks.push(format!("{masses} masses")),
+        }
+        if fuller.hand && !self.hand {
+            lacks.push("the hand".to_owned());
+        }
+        if fuller.lag && !self.lag {
+            lacks.push("the amplifier's lag".to_owned());
+        }
+        lacks
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.masses {
+            1 => f.write_str("rigid")?,
+            masses => write!(f, "{masses} masses")?,
+        }
+        f.write_str(if self.hand { ", hand" } else { "" })?;
+        f.write_str(if self.lag { ", lag" } else { "" })
+    }
+}
+
+#[cfg(test)]
+mod tests;
