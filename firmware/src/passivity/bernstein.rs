@@ -19,11 +19,37 @@ const POOL: usize = 2 * SIZE * 5;
 const MAX_WAITING: usize = 16;
 const MAX_BOXES: u32 = 600;
 const MAX_LEVEL: u32 = 30;
-/// Wanted width of the enclosure, relative to its magnitude.
+/// Smallest width of an enclosure, relative to its magnitude, that is asked for anywhere.
 const TOLERANCE: f64 = 1e-13;
 /// How far from a border a bound has to be to settle on which side the minimum is, relative to the
 /// border: far beyond rounding, so that closer looks would not have told anything else.
 const CLEARANCE: f64 = 1e-9;
+
+/// How closely a minimum is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closeness {
+    /// The enclosure is as tight as it gets around this border, and no tighter than it takes where
+    /// the minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a
+    /// limit it is what tells on which side of the limit the minimum is.
+    pub border: Interval,
+    /// Width of the enclosure, relative to its magnitude, at which the search may end.
+    pub tolerance: f64,
+}
+
+impl Closeness {
+    /// As tight as it gets.
+    pub const TIGHT: Self = Self { border: Interval::ENTIRE, tolerance: TOLERANCE };
+
+    /// What it takes to tell on which side of a border the minimum is.
+    pub const fn around(border: Interval) -> Self {
+        Self { border, ..Self::TIGHT }
+    }
+
+    /// So tight, relative to the minimum's magnitude.
+    pub const fn within(tolerance: f64) -> Self {
+        Self { tolerance: tolerance.max(TOLERANCE), ..Self::TIGHT }
+    }
+}
 
 /// Where and how small `p / r` gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,17 +94,20 @@ impl Waiting {
 /// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits where a root
 /// comes near, being squares of what is small there; who has the square's root knows better, and
 /// what is known at the ends is known of every box beside them.
-///
-/// The enclosure is as tight as it gets around `border`, and no tighter than it takes where the
-/// minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a limit
-/// it is what tells on which side of the limit the minimum is.
 #[inline(never)]
-pub const fn minimum(p: &Series, r: &Series, ends: [Interval; 2], border: Interval) -> Minimum {
+pub const fn minimum(
+    p: &Series,
+    r: &Series,
+    ends: [Interval; 2],
+    closeness: &Closeness,
+) -> Minimum {
+    let border = closeness.border;
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
     let mut search = Search {
         degree,
         clearly_below: border.lo() - CLEARANCE * border.lo().abs(),
         clearly_above: border.hi() + CLEARANCE * border.hi().abs(),
+        tolerance: closeness.tolerance,
         upper: f64::INFINITY,
         at: Interval::ZERO,
         lower: f64::INFINITY,
@@ -112,6 +141,7 @@ struct Search {
     /// A value below this one, or only boxes above that one: no closer look is wanted.
     clearly_below: f64,
     clearly_above: f64,
+    tolerance: f64,
     /// Smallest proved upper bound so far, and the `c` that it was seen at.
     upper: f64,
     at: Interval,
@@ -190,7 +220,7 @@ impl Search {
     /// Whether halving the box cannot move the result by more than is wanted, or than rounding
     /// hides.
     const fn is_settled(&self, bound: Bound) -> bool {
-        let slack = (TOLERANCE * self.upper.abs()).max(2.0 * bound.rounding);
+        let slack = (self.tolerance * self.upper.abs()).max(2.0 * bound.rounding);
         bound.lower > self.clearly_above || bound.lower >= self.upper - slack
     }
 

@@ -1,6 +1,6 @@
 //! The discrete-time tests of theory, section 1: passive, input strictly, output strictly passive.
 
-use super::bernstein::{Minimum, minimum};
+use super::bernstein::{Closeness, Minimum, minimum};
 use super::chebyshev::{Kernel, Series, at_cosine};
 use super::interval::Interval;
 use super::poles::{Doubt, Obstacle, Reduced, reduce};
@@ -24,17 +24,13 @@ pub struct RealPart {
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
-    input_passivity_near(g, widen, Interval::ENTIRE)
+    looked_at(g, widen, &Closeness::TIGHT)
 }
 
-/// [`input_passivity`], as tight as it takes to tell on which side of `border` the minimum is.
-const fn input_passivity_near(
-    g: Transfer,
-    widen: bool,
-    border: Interval,
-) -> Result<RealPart, Obstacle> {
+/// [`input_passivity`], looked at so closely.
+const fn looked_at(g: Transfer, widen: bool, closeness: &Closeness) -> Result<RealPart, Obstacle> {
     match reduce(g, widen) {
-        Ok(reduced) => real_part(&reduced, border),
+        Ok(reduced) => real_part(&reduced, closeness),
         Err(obstacle) => Err(obstacle),
     }
 }
@@ -55,7 +51,7 @@ pub const fn index(
     period: Interval,
     widen: bool,
 ) -> Result<RealPart, Obstacle> {
-    index_near(environment, period, widen, Interval::ENTIRE)
+    index_looked_at(environment, period, widen, &Closeness::TIGHT)
 }
 
 /// [`index`], as tight as it takes to tell on which side of `limit` it is: a sound enclosure at a
@@ -67,14 +63,34 @@ pub const fn index_near(
     widen: bool,
     limit: Interval,
 ) -> Result<RealPart, Obstacle> {
-    match input_passivity_near(environment.from_velocity(period), widen, limit.neg()) {
+    index_looked_at(environment, period, widen, &Closeness::around(limit.neg()))
+}
+
+/// [`index`], its enclosure no tighter than `tolerance` times its magnitude: sound as that, and
+/// what it costs to be so tight can be seen.
+pub const fn index_within(
+    environment: Transfer,
+    period: Interval,
+    widen: bool,
+    tolerance: f64,
+) -> Result<RealPart, Obstacle> {
+    index_looked_at(environment, period, widen, &Closeness::within(tolerance))
+}
+
+const fn index_looked_at(
+    environment: Transfer,
+    period: Interval,
+    widen: bool,
+    closeness: &Closeness,
+) -> Result<RealPart, Obstacle> {
+    match looked_at(environment.from_velocity(period), widen, closeness) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
     }
 }
 
 #[inline(never)]
-const fn real_part(g: &Reduced, border: Interval) -> Result<RealPart, Obstacle> {
+const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obstacle> {
     if let Err(obstacle) = residues_at_real_points(g) {
         return Err(obstacle);
     }
@@ -90,11 +106,12 @@ const fn real_part(g: &Reduced, border: Interval) -> Result<RealPart, Obstacle> 
     }
     let r = Series::squared_magnitude(&g.denominator);
     // Where the scale's sign turns the sides around, the enclosure is tight everywhere.
-    let border = if g.scale.is_positive() { border } else { Interval::ENTIRE };
+    let border = if g.scale.is_positive() { closeness.border } else { Interval::ENTIRE };
     let left = g.denominator.at_unit_root(UnitRoot::Minus);
     let right = g.denominator.at_unit_root(UnitRoot::Plus);
     let ends = [left.mul(left), right.mul(right)];
-    let Minimum { value, at } = minimum(&p, &r, ends, border.double().div(g.scale));
+    let closeness = Closeness { border: border.double().div(g.scale), ..*closeness };
+    let Minimum { value, at } = minimum(&p, &r, ends, &closeness);
     let minimum = value.mul(g.scale).half();
     if minimum.is_finite() {
         Ok(RealPart { minimum, cos_theta: at })
