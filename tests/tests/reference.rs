@@ -1,9 +1,14 @@
 //! The reference itself is judged by the published 34-digit values before it judges anything.
+//! Then it judges the answers that ways to the certificate are compared by.
 
+use analysis::tradeoff::certificate::environments::{ANSWERS, EACH, Environment, Kind, PERIOD};
+use analysis::tradeoff::certificate::environments::{answer, environment};
+use analysis::tradeoff::certificate::judges::Judge;
 use num_traits::Signed;
 use std::cmp::Ordering;
-use tests::exact::{Q, power_of_ten};
-use tests::index::Index;
+use tests::exact::{Q, of_f64, power_of_ten, ratio};
+use tests::index::{Defect, Index};
+use tests::poly::Poly;
 use tests::vectors;
 
 /// `alpha` to 34 digits: half a unit of the last digit on both sides.
@@ -36,4 +41,88 @@ fn the_reference_has_the_published_verdicts() {
         assert_eq!(case.loop_.passes_paper(), case.paper, "{}: paper", case.name);
         assert_eq!(case.loop_.passes_exact(), case.exact, "{}: exact", case.name);
     }
+}
+
+fn q(value: f64) -> Q {
+    of_f64(value).expect("finite")
+}
+
+fn index(environment: &Environment) -> Result<Index, Defect> {
+    let polynomial = |values: &[f64]| {
+        Poly::descending(&values.iter().map(|&value| q(value)).collect::<Vec<_>>())
+    };
+    let denominator = polynomial(&environment.denominator).raised(environment.delay);
+    Index::of(&polynomial(&environment.numerator), &denominator, &q(PERIOD))
+}
+
+/// The double next to an index, found by halving, from a guess that need not be good.
+fn nearest(index: &Index, guess: f64) -> f64 {
+    let is_above = |value: f64| index.compare(&q(value)) != Ordering::Greater;
+    let mut reach = guess.abs() * f64::EPSILON + f64::MIN_POSITIVE;
+    let (mut low, mut high) = loop {
+        let (low, high) = (guess - reach, guess + reach);
+        if is_above(high) && !is_above(low) {
+            break (low, high);
+        }
+        reach *= 16.0;
+    };
+    loop {
+        let middle = low + 0.5 * (high - low);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if is_above(middle) { high = middle } else { low = middle }
+    }
+    let between = (q(low) + q(high)) / Q::from_integer(2.into());
+    if index.compare(&between) == Ordering::Greater { high } else { low }
+}
+
+/// A guess at the index: the middle of the certificate's enclosure.
+fn guess(environment: &Environment) -> f64 {
+    let said = Judge::Enclosure(0.0).ask(environment, 1.0).and_then(|said| said.alpha);
+    said.map_or(0.0, |(lo, hi)| 0.5 * (lo + hi))
+}
+
+/// `ANSWERS=overwrite` finds all of them again, and takes its time.
+#[test]
+fn the_answers_that_ways_to_the_certificate_are_compared_by_are_exact() {
+    let all = || Kind::ALL.into_iter().flat_map(|kind| (0..EACH).map(move |n| (kind, n)));
+    if std::env::var_os("ANSWERS").is_some_and(|value| value == "overwrite") {
+        let asked: Vec<_> = all().collect();
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let found = |part: &[(Kind, usize)]| -> String {
+            let line = |&(kind, number): &(Kind, usize)| {
+                let environment = environment(kind, number);
+                match index(&environment) {
+                    Ok(index) => format!("{:e}\n", nearest(&index, guess(&environment))),
+                    Err(_) => "none\n".to_owned(),
+                }
+            };
+            part.iter().map(line).collect()
+        };
+        let text: String = std::thread::scope(|scope| {
+            let parts = asked.chunks(asked.len().div_ceil(cores));
+            let threads: Vec<_> = parts.map(|part| scope.spawn(move || found(part))).collect();
+            threads.into_iter().map(|thread| thread.join().expect("found")).collect()
+        });
+        let file = "/../analysis/src/tradeoff/certificate/answers.txt";
+        std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), text).expect("written");
+        return;
+    }
+    assert_eq!(ANSWERS.len(), all().count());
+    let mut without = 0;
+    for (kind, number) in all().step_by(61) {
+        let (index, kept) = (index(&environment(kind, number)), answer(kind, number));
+        match (&index, kept) {
+            (Ok(index), Some(alpha)) => {
+                let alpha = q(alpha);
+                let place = alpha.abs() * ratio(1, 1 << 52);
+                let ends = [&alpha - &place, &alpha + &place].map(|end| index.compare(&end));
+                assert_eq!(ends, [Ordering::Greater, Ordering::Less], "{kind:?} {number}");
+            }
+            (Err(_), None) => without += 1,
+            _ => panic!("{kind:?} {number}: {index:?} is kept as {kept:?}"),
+        }
+    }
+    assert!(without > 2, "{without}");
 }

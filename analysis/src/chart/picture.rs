@@ -56,9 +56,17 @@ impl Output {
     /// # Errors
     /// Where it cannot be written.
     pub fn write(&self, picture: &Picture) -> Result<(), ChartError> {
+        self.write_scaled(picture, SCALE)
+    }
+
+    /// Writes the picture, with so many pixels of a PNG for each pixel of the drawing.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write_scaled(&self, picture: &Picture, scale: f32) -> Result<(), ChartError> {
         let bytes = match self.format {
             Format::Svg => picture.svg.clone().into_bytes(),
-            Format::Png => picture.png()?,
+            Format::Png => picture.png(scale)?,
         };
         std::fs::write(&self.path, bytes)
             .map_err(|source| ChartError::Output { path: self.path.clone(), source })
@@ -76,11 +84,11 @@ impl Picture {
         &self.svg
     }
 
-    /// As PNG, with the same letters on every machine.
+    /// As PNG, with the same letters on every machine, and so many pixels for each of the drawing.
     ///
     /// # Errors
     /// Where it cannot be drawn.
-    pub fn png(&self) -> Result<Vec<u8>, ChartError> {
+    pub fn png(&self, scale: f32) -> Result<Vec<u8>, ChartError> {
         let mut fonts = Database::new();
         fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
         fonts.set_sans_serif_family("DejaVu Sans");
@@ -88,10 +96,10 @@ impl Picture {
         let failed = |error: String| ChartError::Drawing(error);
         let tree = Tree::from_str(&self.svg, &options).map_err(|e| failed(e.to_string()))?;
         let size = tree.size().to_int_size();
-        let size = size.scale_by(SCALE).unwrap_or(size);
+        let size = size.scale_by(scale).unwrap_or(size);
         let mut pixels = Pixmap::new(size.width(), size.height())
             .ok_or_else(|| failed("it has no area".to_owned()))?;
-        let scale = Transform::from_scale(SCALE, SCALE);
+        let scale = Transform::from_scale(scale, scale);
         resvg::render(&tree, scale, &mut pixels.as_mut());
         pixels.encode_png().map_err(|e| failed(e.to_string()))
     }
@@ -116,7 +124,7 @@ mod tests {
     fn letters_are_in_the_png_without_any_font_on_the_machine() {
         // Only the bundled font is loaded; without it the rows of the title would be white.
         let picture = growth("A title to be seen", 1e-3, &[0.0, 1.0, -2.0]).unwrap();
-        let pixels = Pixmap::decode_png(&picture.png().unwrap()).unwrap();
+        let pixels = Pixmap::decode_png(&picture.png(SCALE).unwrap()).unwrap();
         let rows = 24 * pixels.width() as usize..64 * pixels.width() as usize;
         let dark = pixels.pixels()[rows].iter().filter(|pixel| pixel.red() < 100).count();
         assert!(dark > 200, "{dark}");

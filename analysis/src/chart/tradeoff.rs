@@ -14,7 +14,7 @@ use labels::{Block, Labels};
 use marks::Mark;
 
 /// Width and height of a panel in pixels.
-const PANEL: (u32, u32) = (520, 400);
+const PANEL: (u32, u32) = (520, 350);
 /// Height of a line of the key in pixels.
 const ROW: i32 = 22;
 /// Width of an entry of the key in pixels.
@@ -154,6 +154,7 @@ impl Panel<'_> {
         let front = self.table.front(self.case, self.error);
         let stairs = stairs(front.iter().filter_map(|m| self.place(m, top)).map(|p| pixel(&p)));
         dash::Dash::of(1).draw(&plain, &stairs, 1)?;
+        stairs.windows(2).for_each(|step| labels.keep_clear_along(step[0], step[1]));
         for (family, place) in &places {
             Mark::of(*family).draw(&plain, pixel(place))?;
             labels.keep_clear(pixel(place), Mark::SIZE);
@@ -163,7 +164,8 @@ impl Panel<'_> {
             if places.iter().any(|place| place.1.1 == level) {
                 let y = pixel(&(1.0, level)).1;
                 dash::Dash::of(2).draw(&plain, &[(0, y), (width as i32, y)], 1)?;
-                labels.write(&plain, (0, y), word, SMALL)?;
+                labels.keep_clear_along((0, y), (width as i32, y));
+                labels.write_beside(&plain, y, word, SMALL)?;
             }
         }
         for method in front {

@@ -10,6 +10,8 @@ use crate::chart::{Area, Drawn, FONT, UNITS, units};
 const LETTER: f64 = 0.6;
 /// Between a point and its name.
 const GAP: i32 = units(7);
+/// Between a line and a name.
+const BESIDE: i32 = units(1);
 /// Directions in which a place is looked for, first to the right and above.
 const DIRECTIONS: usize = 16;
 /// Distances at which it is looked for, each one line further.
@@ -63,9 +65,16 @@ impl Labels {
         self.taken.push(Block::new((x - reach, y - reach), (x + reach, y + reach)));
     }
 
-    /// The nearest place to a point where a name of that size fits, and takes it; `None` where the
-    /// panel is full.
-    fn place(&mut self, (x, y): (i32, i32), (width, height): (i32, i32)) -> Option<Block> {
+    /// Lets no name be across a line that is upright or level.
+    pub fn keep_clear_along(&mut self, from: (i32, i32), to: (i32, i32)) {
+        let (left, right) = (from.0.min(to.0), from.0.max(to.0));
+        let (top, bottom) = (from.1.min(to.1), from.1.max(to.1));
+        self.taken
+            .push(Block::new((left - BESIDE, top - BESIDE), (right + BESIDE, bottom + BESIDE)));
+    }
+
+    /// The nearest place to a point where a name of that size fits; `None` where the panel is full.
+    fn place(&self, (x, y): (i32, i32), (width, height): (i32, i32)) -> Option<Block> {
         let around = (0..DISTANCES).flat_map(|distance| {
             (0..DIRECTIONS).map(move |direction| {
                 let turn = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
@@ -84,12 +93,32 @@ impl Labels {
             let corner = (middle.0 as i32 - width / 2, middle.1 as i32 - height / 2);
             Block::new(corner, (corner.0 + width, corner.1 + height))
         };
-        let free = |block: &Block| {
-            self.panel.holds(block) && !self.taken.iter().any(|taken| taken.meets(block))
-        };
-        let found = around.map(block).find(free)?;
-        self.taken.push(found);
-        Some(found)
+        around.map(block).find(|block| self.is_free(block))
+    }
+
+    fn is_free(&self, block: &Block) -> bool {
+        self.panel.holds(block) && !self.taken.iter().any(|taken| taken.meets(block))
+    }
+
+    /// Takes a block and writes in it.
+    fn fill(&mut self, area: &Area<'_>, block: Block, name: &str, size: i32) -> Drawn<()> {
+        self.taken.push(block);
+        let middle = ((block.left + block.right) / 2, (block.top + block.bottom) / 2);
+        let style = TextStyle::from((FONT, size)).color(&BLACK);
+        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
+        area.draw(&Text::new(name.to_owned(), middle, style))
+    }
+
+    /// Writes a word beside a level line, above or below it, as far to the left as there is room.
+    pub fn write_beside(&mut self, area: &Area<'_>, y: i32, word: &str, size: i32) -> Drawn<()> {
+        let (width, height) = (width_of(word, size), size);
+        let column = |left: i32| [y - height - BESIDE, y + 2 * BESIDE].map(|top| (left, top));
+        let corners = (self.panel.left..self.panel.right).step_by(GAP as usize).flat_map(column);
+        let block = |(x, y): (i32, i32)| Block::new((x, y), (x + width, y + height));
+        match corners.map(block).find(|block| self.is_free(block)) {
+            Some(block) => self.fill(area, block, word, size),
+            None => Ok(()),
+        }
     }
 
     /// Writes a name beside a point, with a thin line to it where it had to go far.
@@ -100,8 +129,7 @@ impl Labels {
         name: &str,
         size: i32,
     ) -> Drawn<()> {
-        let width = (name.chars().count() as f64 * LETTER * f64::from(size)) as i32;
-        let Some(block) = self.place(point, (width, size)) else { return Ok(()) };
+        let Some(block) = self.place(point, (width_of(name, size), size)) else { return Ok(()) };
         let nearest =
             (point.0.clamp(block.left, block.right), point.1.clamp(block.top, block.bottom));
         let far = (nearest.0 - point.0).abs().max((nearest.1 - point.1).abs()) > 2 * GAP;
@@ -109,11 +137,13 @@ impl Labels {
             let line = BLACK.mix(0.4).stroke_width(UNITS / 2);
             area.draw(&PathElement::new(vec![point, nearest], line))?;
         }
-        let middle = ((block.left + block.right) / 2, (block.top + block.bottom) / 2);
-        let style = TextStyle::from((FONT, size)).color(&BLACK);
-        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-        area.draw(&Text::new(name.to_owned(), middle, style))
+        self.fill(area, block, name, size)
     }
+}
+
+/// Width of a name, or a little more.
+fn width_of(name: &str, size: i32) -> i32 {
+    (name.chars().count() as f64 * LETTER * f64::from(size)) as i32
 }
 
 #[cfg(test)]
@@ -127,7 +157,12 @@ mod tests {
         let points: Vec<_> = (0..12).map(|i| (units(20 * i + 40), units(10 * i + 60))).collect();
         points.iter().for_each(|&point| labels.keep_clear(point, units(4)));
         let size = (units(90), units(13));
-        let placed: Vec<_> = points.iter().map(|&p| labels.place(p, size).unwrap()).collect();
+        let mut place = |&point: &(i32, i32)| {
+            let found = labels.place(point, size).unwrap();
+            labels.taken.push(found);
+            found
+        };
+        let placed: Vec<_> = points.iter().map(&mut place).collect();
         for (index, block) in labels.taken.iter().enumerate() {
             assert!(panel.holds(block));
             let names = placed.iter().filter(|name| *name != block);

@@ -7,9 +7,14 @@ use clap::{Args, ValueEnum};
 
 use crate::chart::{self, Output};
 use crate::command::{Answer, CommandError};
+use crate::program::{self, Program};
+use crate::progress;
 use crate::quantity::significant;
+use crate::scenario::{Input, play};
+use crate::simulation::wall;
 use crate::table::Table;
-use crate::tradeoff::{Subject, Tradeoff, servo, simulation, sine};
+use crate::toolchain::{self, NumberFormat, Tools};
+use crate::tradeoff::{Subject, Tradeoff, certificate, rate, servo, simulation, sine};
 
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
@@ -37,10 +42,20 @@ pub enum Topic {
     Sine,
     /// Methods of integration by their steps: time against error of the motion and of the verdict
     Simulation,
+    /// Ways to the certificate: time against error of the index and of the verdict
+    Certificate,
+    /// Sample rates: part of the processor against stiffness and the encoder's ripple
+    Rate,
 }
 
+/// Pixels of a PNG for each pixel of the drawing: the pictures are large, and kept.
+const SCALE: f32 = 1.0;
+/// Ticks of a run on the emulated board.
+const TICKS: usize = 5000;
+
 /// All but [`Topic::All`].
-const TOPICS: [Topic; 3] = [Topic::Servo, Topic::Sine, Topic::Simulation];
+const TOPICS: [Topic; 5] =
+    [Topic::Servo, Topic::Sine, Topic::Simulation, Topic::Certificate, Topic::Rate];
 
 impl Topic {
     fn topics(self) -> Vec<Self> {
@@ -52,6 +67,8 @@ impl Topic {
             Self::Servo => &servo::SUBJECT,
             Self::Sine => &sine::SUBJECT,
             Self::All | Self::Simulation => &simulation::SUBJECT,
+            Self::Certificate => &certificate::SUBJECT,
+            Self::Rate => &rate::SUBJECT,
         }
     }
 
@@ -60,6 +77,13 @@ impl Topic {
             Self::Servo => servo::measure(),
             Self::Sine => sine::measure(),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
+            Self::Certificate => {
+                let bar = progress::bar(certificate::steps() as u64, "certificate");
+                let measured = certificate::measure(|| bar.inc(1));
+                bar.finish_and_clear();
+                Ok(measured)
+            }
+            Self::Rate => Ok(rate::table(&interrupts()?)),
         }
     }
 }
@@ -84,11 +108,32 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
         let picture = chart::tradeoff::tradeoff(&tradeoff)?;
         for extension in ["svg", "png"] {
-            Output::new(&file(extension))?.write(&picture)?;
+            Output::new(&file(extension))?.write_scaled(&picture, SCALE)?;
         }
         print!("{}", fronts(&tradeoff));
     }
     Ok(Answer::Yes)
+}
+
+/// The programs that render a wall, with the instructions that their interrupts take on the emulated
+/// board, in the mean of a hand that comes and goes.
+fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let has_wall = |program: &&Program| wall(&program.scene).is_some();
+    let walls: Vec<_> = program::ALL.iter().filter(has_wall).collect();
+    let names: Vec<_> = walls.iter().map(|program| program.name).collect();
+    let spinner = progress::spinner("the programs of walls");
+    let files = toolchain.build_scenes(&names, NumberFormat::F32)?;
+    let mean = |(program, file): (&'static Program, PathBuf)| {
+        let mut controller = program.controller(NumberFormat::F32, &program.transducers)?;
+        let hand = Input::Hand(Box::new(program.device()));
+        let board = play(hand, controller.as_mut(), Some(&file), TICKS, || {})?.board;
+        Ok((program, board.map_or(f64::NAN, |board| board.interrupt_instructions.mean)))
+    };
+    let means = walls.into_iter().zip(files).map(mean).collect();
+    spinner.finish_and_clear();
+    means
 }
 
 /// The methods on the fronts with their figures.

@@ -40,8 +40,13 @@ impl<const N: usize> Stepper<N> {
         Self { stride, stiffness: case.stiffness, rates, step, h }
     }
 
+    /// What runs the case.
+    pub(super) fn into_runner(self, case: &Case) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
+        Box::new(move |samples| self.run(case, samples))
+    }
+
     /// The angles at the samples, from the start of the case.
-    pub(super) fn run(&self, case: &Case, samples: usize) -> Vec<f64> {
+    fn run(&self, case: &Case, samples: usize) -> Vec<f64> {
         let start = case.experiment.start;
         let moving = case.experiment.plant.moving(start.position, start.velocity);
         let mut state = SVector::<f64, N>::from_fn(|i, _| moving[i]);

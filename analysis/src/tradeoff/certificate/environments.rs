@@ -1,0 +1,203 @@
+//! Ten thousand environments of known answer, drawn from a seed.
+//!
+//! They are drawn with nothing but exact sums, products and halvings, so that every machine draws
+//! the same; their indices are kept beside this file, found in rational arithmetic by the package
+//! `tests`, which checks them (`tests/tests/reference.rs`). The damping that a device has to spare
+//! is then set beside the index, so that the right verdict is known.
+
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use fastrand::Rng;
+
+/// Period in s of all of them: a power of two, which divides without rounding.
+pub const PERIOD: f64 = 1.0 / 1024.0;
+/// Environments of each kind.
+pub const EACH: usize = 2500;
+/// Passivity in N m s/rad of a device whose environment has no index, or one that spares passivity.
+const SPARE: f64 = 16.0;
+/// One of so many environments has no index: its spring pushes, or a pole is outside of the circle.
+const ODD: usize = 32;
+/// Binary places of the coefficients.
+const PLACES: i32 = 44;
+
+/// How environments are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Springs and walls, one to three samples late, whose index is known by formula.
+    Walls,
+    /// One to six poles at least a hundredth inside of the circle.
+    Inside,
+    /// A pair of poles a millionth to a thousandth from the circle, so that the minimum is narrow.
+    Narrow,
+    /// As `Inside`, on a device whose passivity is a thousandth to `1e-12` beside the index.
+    Border,
+}
+
+impl Kind {
+    /// All of them, in the order of the answers.
+    pub const ALL: [Self; 4] = [Self::Walls, Self::Inside, Self::Narrow, Self::Border];
+
+    /// Its name in tables and pictures.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walls => "walls that have a formula",
+            Self::Inside => "poles well inside of the circle",
+            Self::Narrow => "poles 1e-3 to 1e-6 from the circle",
+            Self::Border => "devices 1e-3 to 1e-12 beside the border",
+        }
+    }
+}
+
+/// `E(z) = z^-delay numerator(z) / denominator(z)`, position to torque, descending powers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    /// Numerator.
+    pub numerator: Vec<f64>,
+    /// Denominator, of the same degree or a greater one.
+    pub denominator: Vec<f64>,
+    /// Samples on top.
+    pub delay: usize,
+    /// Stiffness in N m/rad and damping in N m s/rad, where it is a wall.
+    pub wall: Option<(f64, f64)>,
+    /// Passivity of the device over the index.
+    ratio: f64,
+}
+
+impl Environment {
+    /// The passivity in N m s/rad of the device that it is on, given its index.
+    pub fn delta(&self, alpha: Option<f64>) -> f64 {
+        alpha.filter(|alpha| *alpha > 0.0).map_or(SPARE, |alpha| self.ratio * alpha)
+    }
+
+    /// Whether that device is passive with it, given its index.
+    pub fn is_passive(&self, alpha: Option<f64>) -> bool {
+        alpha.is_some_and(|alpha| alpha < self.delta(Some(alpha)))
+    }
+}
+
+/// The indices `alpha` in N m s/rad of all environments, kind by kind, each the double next to it or
+/// the one after; `None` where there is none.
+pub static ANSWERS: LazyLock<Vec<Option<f64>>> =
+    LazyLock::new(|| include_str!("answers.txt").lines().map(|line| line.parse().ok()).collect());
+
+/// The index of an environment.
+pub fn answer(kind: Kind, number: usize) -> Option<f64> {
+    ANSWERS[kind as usize * EACH + number]
+}
+
+/// An environment by its kind and its number below [`EACH`].
+pub fn environment(kind: Kind, number: usize) -> Environment {
+    let rng = &mut Rng::with_seed((kind as usize * EACH + number) as u64);
+    let beside = match kind {
+        Kind::Border => 10..40,
+        _ => 1..9,
+    };
+    let ratio = 1.0 + part(rng, beside);
+    let ratio = if rng.bool() { ratio } else { 1.0 / ratio };
+    let drawn = match kind {
+        Kind::Walls => wall(rng),
+        Kind::Inside => rational(rng, 0.0),
+        Kind::Narrow => narrow(rng),
+        Kind::Border => rational(rng, 1.0 / ODD as f64),
+    };
+    Environment { ratio, ..drawn }
+}
+
+/// `2^-k (1 + u)`: all sizes alike.
+fn part(rng: &mut Rng, halvings: Range<u32>) -> f64 {
+    (1.0 + rng.f64()) * 0.5_f64.powi(rng.u32(halvings) as i32)
+}
+
+fn wall(rng: &mut Rng) -> Environment {
+    let stiffness = f64::from(rng.u32(1..4096)) * 0.25;
+    let damping = if rng.usize(..5) == 0 { 0.0 } else { f64::from(rng.u32(1..1024)) / 1024.0 };
+    let slope = damping / PERIOD;
+    Environment {
+        numerator: vec![stiffness + slope, -slope],
+        denominator: vec![1.0, 0.0],
+        delay: rng.usize(1..4),
+        wall: Some((stiffness, damping)),
+        ratio: 1.0,
+    }
+}
+
+/// One to six poles, and one more outside of the circle in such a part of them.
+fn rational(rng: &mut Rng, outside: f64) -> Environment {
+    let count = rng.usize(1..7);
+    let mut denominator = polynomial(rng, count);
+    if rng.f64() < outside {
+        let pole = 1.0 + part(rng, 4..20);
+        denominator = multiply(&denominator, &[1.0, if rng.bool() { pole } else { -pole }]);
+    }
+    let zeros = rng.usize(0..denominator.len());
+    let numerator = (0..=zeros).map(|_| 2.0 * rng.f64() - 1.0).collect();
+    finished(rng, numerator, denominator)
+}
+
+/// Poles and, in one of two, zeros as near the circle beside them: a notch.
+fn narrow(rng: &mut Rng) -> Environment {
+    let (cosine, gap) = (2.0 * rng.f64() - 1.0, part(rng, 10..20));
+    let side = if rng.usize(..ODD) == 0 { 1.0 } else { -1.0 };
+    let others = rng.usize(0..4);
+    let rest = polynomial(rng, others);
+    let denominator = multiply(&rest, &pair(1.0 + side * gap, cosine));
+    let zeros = rng.usize(0..=others);
+    let random: Vec<f64> = (0..=zeros).map(|_| 2.0 * rng.f64() - 1.0).collect();
+    let numerator = match rng.bool() {
+        true => random,
+        false => multiply(&random, &pair(1.0 - 8.0 * gap * part(rng, 1..7), cosine)),
+    };
+    finished(rng, numerator, denominator)
+}
+
+/// With a spring that pulls, but for a few, and rounded coefficients.
+fn finished(rng: &mut Rng, mut numerator: Vec<f64>, denominator: Vec<f64>) -> Environment {
+    let pushes = numerator.iter().sum::<f64>() * denominator.iter().sum::<f64>() < 0.0;
+    if pushes && rng.usize(..ODD) != 0 {
+        numerator.iter_mut().for_each(|value| *value = -*value);
+    }
+    let round = |values: Vec<f64>| values.into_iter().map(short).collect();
+    let numerator: Vec<f64> = round(numerator);
+    Environment {
+        numerator: numerator.into_iter().map(|value| value / PERIOD).collect(),
+        denominator: round(denominator),
+        delay: if rng.bool() { 0 } else { rng.usize(0..5) },
+        wall: None,
+        ratio: 1.0,
+    }
+}
+
+/// Descending coefficients of a polynomial with so many roots, a hundredth inside of the circle or
+/// more.
+fn polynomial(rng: &mut Rng, count: usize) -> Vec<f64> {
+    let mut product = vec![1.0];
+    while product.len() <= count {
+        let radius = 1.0 - 0.5 * part(rng, 1..7);
+        let factor = match product.len() < count && rng.bool() {
+            true => pair(radius, 2.0 * rng.f64() - 1.0).to_vec(),
+            false => vec![1.0, if rng.bool() { radius } else { -radius }],
+        };
+        product = multiply(&product, &factor);
+    }
+    product
+}
+
+fn pair(radius: f64, cosine: f64) -> [f64; 3] {
+    [1.0, -2.0 * radius * cosine, radius * radius]
+}
+
+fn multiply(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; a.len() + b.len() - 1];
+    for (i, x) in a.iter().enumerate() {
+        for (j, y) in b.iter().enumerate() {
+            product[i + j] += x * y;
+        }
+    }
+    product
+}
+
+fn short(value: f64) -> f64 {
+    let scale = 2_f64.powi(PLACES);
+    (value * scale).round() / scale
+}

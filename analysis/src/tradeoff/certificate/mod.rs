@@ -1,0 +1,188 @@
+//! Ways to the certificate: how long each takes, how far off its index is, and how often its
+//! verdict is wrong or missing, among ten thousand environments of known answer.
+
+pub mod environments;
+pub mod judges;
+
+mod polynomials;
+
+use std::hint::black_box;
+
+use rayon::prelude::*;
+
+use super::{Axis, Method, NUMBER, Subject, Tradeoff, fastest};
+use crate::table::Column;
+use environments::{EACH, Kind, answer, environment};
+use judges::{Answer, Grid, Judge, Verdict};
+
+/// What is compared.
+pub static SUBJECT: Subject = Subject {
+    name: "certificate",
+    title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
+    cost: Axis::least(&["microseconds"], "time of a verdict (microseconds)"),
+    errors: &[
+        // The answers are doubles, off by one place at most.
+        Axis::least(&["alpha_error"], "error of alpha, 99 of 100 below it (part)")
+            .floored(1e-15, "a double's last places"),
+        Axis::least(&["not_right"], "verdicts wrong or left open, of 2500").floored(0.5, "none"),
+    ],
+    others: &[
+        Column { names: &["wrong_yes"], bound: NUMBER },
+        Column { names: &["wrong_no"], bound: NUMBER },
+        Column { names: &["open"], bound: NUMBER },
+        Column { names: &["median_error"], bound: NUMBER },
+        Column { names: &["largest_error"], bound: NUMBER },
+    ],
+};
+
+/// Environments of each kind on which a judge is timed.
+const TIMED: usize = 25;
+/// Rounds of that, of which the fastest counts.
+const ROUNDS: usize = 9;
+/// Widths of enclosures, relative to the index.
+const TOLERANCES: [f64; 5] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-13];
+
+/// A way to the index, with its family and its name.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What it is one of.
+    pub family: &'static str,
+    /// Its own name.
+    pub name: String,
+    /// The way.
+    pub judge: Judge,
+}
+
+/// All ways that are compared.
+pub fn candidates() -> Vec<Candidate> {
+    let one = |family, judge| vec![Candidate { family, name: family.to_owned(), judge }];
+    let enclosure = |&tolerance: &f64| Candidate {
+        family: "enclosure",
+        name: format!("enclosure, {tolerance:e}"),
+        judge: Judge::Enclosure(tolerance),
+    };
+    let grid = |is_logarithmic: bool| {
+        move |power: u32| Candidate {
+            family: if is_logarithmic { "logarithmic grid" } else { "even grid" },
+            name: format!("{}grid, 1e{power}", if is_logarithmic { "log " } else { "" }),
+            judge: Judge::Grid(Grid::new(10_usize.pow(power), is_logarithmic)),
+        }
+    };
+    let mut all = one("closed form", Judge::ClosedForm);
+    all.extend(TOLERANCES.iter().map(enclosure));
+    all.extend(one("decision", Judge::Decision));
+    all.extend((2..=5).map(grid(false)));
+    all.extend((2..=4).map(grid(true)));
+    all.extend(one("roots", Judge::Roots));
+    all
+}
+
+/// Measures all ways on all environments; `step` is called after each kind's.
+pub fn measure(mut step: impl FnMut()) -> Tradeoff {
+    let mut methods = Vec::new();
+    for kind in Kind::ALL {
+        let candidates = candidates();
+        let knows = |candidate: &&Candidate| asked(&candidate.judge, kind, 0).is_some();
+        let candidates: Vec<_> = candidates.iter().filter(knows).collect();
+        let work = |candidate: &&Candidate| {
+            let judge = candidate.judge.clone();
+            let posed: Vec<_> = (0..TIMED)
+                .map(|number| {
+                    let environment = environment(kind, number);
+                    let delta = environment.delta(answer(kind, number));
+                    (environment, delta)
+                })
+                .collect();
+            move || {
+                for (environment, delta) in &posed {
+                    black_box(judge.ask(black_box(environment), *delta));
+                }
+            }
+        };
+        let mut works: Vec<_> = candidates.iter().map(work).collect();
+        let times = fastest(ROUNDS, &mut works);
+        for (candidate, time) in candidates.into_iter().zip(times) {
+            let figures = Figures::of(&candidate.judge, kind, 0..EACH);
+            methods.push(figures.row(kind, candidate, 1e6 * time / TIMED as f64));
+            step();
+        }
+    }
+    Tradeoff { subject: &SUBJECT, methods }
+}
+
+/// Steps of [`measure`].
+pub fn steps() -> usize {
+    let all = candidates();
+    let known = |kind| all.iter().filter(|one| asked(&one.judge, kind, 0).is_some()).count();
+    Kind::ALL.into_iter().map(known).sum()
+}
+
+fn asked(judge: &Judge, kind: Kind, number: usize) -> Option<Answer> {
+    let environment = environment(kind, number);
+    judge.ask(&environment, environment.delta(answer(kind, number)))
+}
+
+/// What a judge says of many environments, beside what is right.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// It says yes where the answer is no.
+    pub wrong_yes: usize,
+    /// It says no where the answer is yes.
+    pub wrong_no: usize,
+    /// It leaves the verdict open.
+    pub open: usize,
+    /// Errors of the index over the index, in order; infinite where there is one and none was found.
+    /// Empty for a judge that looks for none.
+    pub errors: Vec<f64>,
+}
+
+impl Figures {
+    /// Asks a judge about environments of a kind.
+    pub fn of(judge: &Judge, kind: Kind, numbers: std::ops::Range<usize>) -> Self {
+        let one = |number: usize| Some((number, asked(judge, kind, number)?));
+        let answers: Vec<_> = numbers.into_par_iter().filter_map(one).collect();
+        let mut figures = Self::default();
+        for (number, said) in answers {
+            let (environment, truth) = (environment(kind, number), answer(kind, number));
+            match (said.verdict, environment.is_passive(truth)) {
+                (Verdict::Yes, false) => figures.wrong_yes += 1,
+                (Verdict::No, true) => figures.wrong_no += 1,
+                (Verdict::Open, _) => figures.open += 1,
+                _ => {}
+            }
+            let looks = !matches!(judge, Judge::Decision);
+            figures.errors.extend(truth.filter(|_| looks).map(|truth| error(said.alpha, truth)));
+        }
+        figures.errors.sort_by(f64::total_cmp);
+        figures
+    }
+
+    /// The error that such a part of the environments stays below.
+    fn quantile(&self, part: f64) -> Option<f64> {
+        let last = self.errors.len().checked_sub(1)?;
+        self.errors.get((part * last as f64).ceil() as usize).copied()
+    }
+
+    fn row(&self, kind: Kind, candidate: &Candidate, microseconds: f64) -> Method {
+        let count = |value: usize| Some(value as f64);
+        let values = vec![
+            Some(microseconds),
+            self.quantile(0.99),
+            count(self.wrong_yes + self.wrong_no + self.open),
+            count(self.wrong_yes),
+            count(self.wrong_no),
+            count(self.open),
+            self.quantile(0.5),
+            self.quantile(1.0),
+        ];
+        Method { values, ..Method::new(kind.name(), candidate.family, candidate.name.clone(), &[]) }
+    }
+}
+
+/// How far the furthest of what was said is from the index, over the index.
+fn error(said: Option<(f64, f64)>, truth: f64) -> f64 {
+    said.map_or(f64::INFINITY, |(lo, hi)| (lo - truth).abs().max((hi - truth).abs()) / truth.abs())
+}
+
+#[cfg(test)]
+mod tests;
