@@ -103,3 +103,75 @@ impl InEach for Build {
         Ok(controller::<_, N>(&certified, &self.transducers)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use firmware::encoder::CounterWidth;
+    use firmware::environment::{Coefficients, Environment, Rational, Wall};
+    use firmware::scene::{Coupling, Device, Timing};
+
+    use super::*;
+
+    /// Units are powers of two: the same bits come out, whatever a servo counts in.
+    #[test]
+    fn units_round_nothing() {
+        let wall = Wall {
+            stiffness: 22.0,
+            damping: 0.01,
+            filter: None,
+            delay: 1,
+            face: 0.01,
+            one_sided: true,
+        };
+        let numbers = |numbers: &[f64]| Coefficients::new(numbers).unwrap();
+        let rational = Rational {
+            numerator: numbers(&[13.0, -3.0]),
+            denominator: numbers(&[1.0, -0.3]),
+            delay: 1,
+            unit_zeros: 0,
+        };
+        for environment in [
+            Environment::DelayedSpring(Wall { one_sided: false, ..wall }),
+            Environment::DamperWall(wall),
+            Environment::FreeMode { residual: 0.002, delay: 0 },
+            Environment::FreeModeWall { residual: 0.02, wall: Wall { damping: 0.0, ..wall } },
+            Environment::Rational(rational),
+        ] {
+            let scene = Scene {
+                device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.021999) },
+                timing: Timing { period: 1e-3, worst_period: None },
+                coupling: Coupling::Spring { stiffness: 43.9 },
+                environment,
+                torque_limit: match environment {
+                    Environment::DelayedSpring(_) => Some(0.3),
+                    _ => None,
+                },
+            };
+            let transducers = Transducers {
+                counts_per_turn: 61_440.0,
+                counter: CounterWidth::Bits32,
+                full_scale_torque: 0.7,
+                largest_speed: 100.0,
+            };
+            let units = Units { angle: 4.0, torque: 0.25 };
+            let build = |scene, transducers| Build { scene, transducers }.with::<f64>().unwrap();
+            let mut plain = build(scene, transducers);
+            let mut scaled = build(units.scene(&scene), units.transducers(&transducers));
+            let mut count = 0;
+            for tick in 0..500 {
+                count += [3, -1, 40, -37, 2, -5][tick % 6];
+                let (plain, scaled) = (plain.tick(count), scaled.tick(count));
+                let torque = scaled.torque * units.torque;
+                assert_eq!(plain.torque.to_bits(), torque.to_bits(), "{environment:?} {tick}");
+                assert_eq!(plain.code, scaled.code, "{environment:?} {tick}");
+            }
+        }
+    }
+
+    #[test]
+    fn units_hold_what_they_are_asked_to() {
+        for (value, unit) in [(0.9, 1.0), (1.0, 2.0), (3.1, 4.0), (0.25, 0.5), (0.2, 0.25)] {
+            assert_eq!(Units::above(value, value), Units { angle: unit, torque: unit });
+        }
+    }
+}

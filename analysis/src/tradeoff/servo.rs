@@ -12,7 +12,7 @@ use crate::command::CommandError;
 use crate::emulator::Trials;
 use crate::hand::Script;
 use crate::program::{self, Program};
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, TableError};
 
 /// What is compared.
 pub static SUBJECT: Subject = Subject {
@@ -132,9 +132,9 @@ pub fn measure() -> Result<Tradeoff, CommandError> {
 ///
 /// # Errors
 /// Where it is not a table of this subject.
-pub fn kept() -> Result<Tradeoff, CommandError> {
+pub fn kept() -> Result<Tradeoff, TableError> {
     let kept = include_bytes!("../../pictures/tradeoff/servo.csv");
-    Ok(Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)?)
+    Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)
 }
 
 fn row(

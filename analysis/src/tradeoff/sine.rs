@@ -82,6 +82,12 @@ mod tests {
     use super::*;
     use crate::table::Table;
 
+    /// The table that is kept.
+    fn kept() -> Tradeoff {
+        let kept = include_bytes!("../../pictures/tradeoff/sine.csv");
+        Tradeoff::read(&SUBJECT, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()
+    }
+
     /// Binary digits behind the point of the reference.
     const DIGITS: u32 = 160;
 
@@ -125,8 +131,7 @@ mod tests {
 
     #[test]
     fn the_kept_errors_are_those_to_a_sine_of_forty_digits() {
-        let kept = include_bytes!("../../pictures/tradeoff/sine.csv");
-        let kept = Tradeoff::read(&SUBJECT, Table::new("sine.csv", &kept[..]).unwrap()).unwrap();
+        let kept = kept();
         assert_eq!(kept.methods.len(), Sine::ALL.len());
         let truth: Vec<_> = turns().into_iter().map(series).collect();
         for (sine, kept) in Sine::ALL.into_iter().zip(&kept.methods) {
@@ -143,8 +148,7 @@ mod tests {
     /// Dearer means are not used where a cheaper one is below the converter's rounding.
     #[test]
     fn the_sweep_has_the_cheapest_sine_that_no_code_shows() {
-        let kept = include_bytes!("../../pictures/tradeoff/sine.csv");
-        let kept = Tradeoff::read(&SUBJECT, Table::new("sine.csv", &kept[..]).unwrap()).unwrap();
+        let kept = kept();
         let code = 0.5 / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
         let front = kept.front("sine", 0);
         let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();

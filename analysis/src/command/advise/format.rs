@@ -20,7 +20,7 @@ use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
 use crate::quantity::significant;
-use crate::tradeoff::{self, Method, servo};
+use crate::tradeoff::{self, Method, servo, simulation};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
@@ -48,6 +48,10 @@ pub struct Wanted {
     #[arg(long, value_name = "ANGLE", value_parser = positive, default_value_t = HALF_A_TURN,
           allow_negative_numbers = true)]
     pub range: f64,
+    /// Part by which the largest stable stiffness of a simulation may be off
+    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.01,
+          allow_negative_numbers = true)]
+    pub verdict: f64,
     /// Count the instructions of this scene on the emulated board instead of taking the kept ones
     #[arg(long)]
     pub measure: bool,
@@ -65,9 +69,19 @@ struct Answered {
     rate: f64,
     coupling_stiffness: Option<f64>,
     format: Option<&'static str>,
+    simulation: Option<Simulated>,
     encoder_hum: Option<f64>,
     formats: Vec<Candidate>,
     message: String,
+}
+
+/// A method of simulation, at the rate of the kept table.
+#[derive(Serialize)]
+struct Simulated {
+    method: String,
+    substeps: f64,
+    samples_per_second: f64,
+    verdict_error: f64,
 }
 
 /// What is asked about.
@@ -99,6 +113,7 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
     let answered = Answered {
         format: advice.choice().map(|choice| choice.format),
         message: message(&question.subject, arguments, &advice),
+        simulation: simulated(arguments.verdict)?,
         scene: question.name,
         rate: arguments.rate,
         coupling_stiffness: match question.subject.scene.coupling {
@@ -165,6 +180,17 @@ fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> 
     })?;
     board.finish()?;
     Ok(advice)
+}
+
+/// The cheapest method of simulation whose verdict is off by no more than a part.
+fn simulated(bound: f64) -> Result<Option<Simulated>, CommandError> {
+    let table = simulation::kept()?;
+    Ok(simulation::cheapest(&table, bound).map(|method| Simulated {
+        method: method.family.clone(),
+        substeps: method.values[simulation::SUBSTEPS_COLUMN].unwrap_or(f64::NAN),
+        samples_per_second: method.cost().unwrap_or(f64::NAN),
+        verdict_error: method.error(simulation::VERDICT).unwrap_or(f64::NAN),
+    }))
 }
 
 /// The answer in sentences.
@@ -252,8 +278,16 @@ fn text(answered: &Answered) -> String {
         |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
     );
     let Answered { scene, rate, message, .. } = answered;
+    let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
+        let Simulated { method, substeps, verdict_error, .. } = simulated;
+        let error = significant(100.0 * verdict_error, 2);
+        format!(
+            "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \
+             largest stable stiffness is off by {error} %.\n"
+        )
+    });
     format!(
-        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n"
+        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n{simulation}"
     )
 }
 

@@ -15,7 +15,7 @@ use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
 use crate::stability::critical_stiffness;
-use crate::table::Column;
+use crate::table::{Column, Table, TableError};
 
 use stepper::Stepper;
 
@@ -38,6 +38,10 @@ pub static SUBJECT: Subject = Subject {
     ],
 };
 
+/// Number of the verdict's error among the errors.
+pub const VERDICT: usize = 1;
+/// Number of the steps among the columns.
+pub const SUBSTEPS_COLUMN: usize = 3;
 /// Steps in a tick.
 const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
 /// Samples of a motion.
@@ -87,6 +91,24 @@ fn released(plant: Plant, device: Device, stiffness: f64) -> Experiment {
     };
     let start = Motion { position: 1e-3, velocity: 0.0 };
     Experiment { plant, start, samples: SAMPLES, ..Experiment::still(&scene) }
+}
+
+/// The table that is kept.
+///
+/// # Errors
+/// Where it is not a table of this subject.
+pub fn kept() -> Result<Tradeoff, TableError> {
+    let kept = include_bytes!("../../../pictures/tradeoff/simulation.csv");
+    Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..])?)
+}
+
+/// The cheapest method in a table of this subject whose largest stable stiffness for the rigid
+/// device is off by no more than a part.
+pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
+    let [rigid, _] = cases();
+    let is_enough = |method: &&Row| method.error(VERDICT).is_some_and(|error| error <= bound);
+    // From the cheapest to the best.
+    table.front(rigid.name, VERDICT).into_iter().find(is_enough)
 }
 
 /// Measures all methods on all motions.
