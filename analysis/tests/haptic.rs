@@ -214,6 +214,9 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
         (&answer["format"], answer["formats"].as_array().unwrap().len()),
         (&"f32".into(), 8)
     );
+    let simulation = &answer["simulation"];
+    assert!(simulation["verdict_error"].as_f64().unwrap() <= 0.01, "{simulation}");
+    assert!(simulation["substeps"].as_f64().unwrap() >= 1.0, "{simulation}");
     // 2 delta / T at this rate.
     assert!((answer["coupling_stiffness"].as_f64().unwrap() - 88.0).abs() < 1e-6);
     let coarse = format(answer, "i16f16")["rejected"].to_string();
