@@ -28,7 +28,8 @@ pub mod rig;
 pub mod scenario;
 pub mod table;
 
-// The board, emulated, and what builds for it.
+// The board, emulated, what builds for it, and what was built.
+pub mod anatomy;
 pub mod emulator;
 pub mod toolchain;
 

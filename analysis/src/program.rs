@@ -16,8 +16,11 @@ use std::io;
 
 use firmware::boot;
 use firmware::cycle::Options;
+use firmware::environment::Renderable;
+use firmware::number::Number;
 use firmware::scene::Scene;
-use firmware::servo::{BuildError, Latched, RenderingOptions, Simultaneous, Transducers};
+use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Simultaneous, Transducers};
+use serde::Serialize;
 
 use crate::controller::{Controller, controller};
 use crate::hand::Script;
@@ -37,8 +40,26 @@ pub struct Program {
     pub transducers: Transducers,
     /// What a hand does to show it.
     pub script: fn() -> Script,
+    /// What its servo keeps from tick to tick, in a format.
+    pub state: fn(NumberFormat) -> State,
     build: Build,
     listen: Listen,
+}
+
+/// Bytes that a servo keeps from tick to tick, coefficients included. There is nothing in it whose
+/// size depends on the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct State {
+    /// All of it.
+    pub servo: usize,
+    /// What of it is the environment's.
+    pub environment: usize,
+}
+
+impl State {
+    fn of<E: Renderable<N>, N: Number>() -> Self {
+        Self { servo: size_of::<Servo<E, N>>(), environment: size_of::<E::Law>() }
+    }
 }
 
 /// Builds a program's servo on the host.
@@ -101,6 +122,10 @@ macro_rules! programs {
             scene: $module::SCENE.as_data(),
             transducers: $module::TRANSDUCERS,
             script: $script,
+            state: |format| match format {
+                NumberFormat::F32 => State::of::<$module::Environment, f32>(),
+                NumberFormat::Fixed => State::of::<$module::Environment, $module::Fixed>(),
+            },
             build: |format, transducers| match format {
                 NumberFormat::F32 => controller::<_, f32>(&$module::CERTIFIED, transducers),
                 NumberFormat::Fixed => {

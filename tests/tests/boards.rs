@@ -3,6 +3,7 @@
 
 use std::io::{self, Write};
 
+use analysis::anatomy::{Part, Share};
 use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
@@ -37,6 +38,38 @@ fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
     assert_eq!(probe::chip(&elf).unwrap(), chip(board));
 }
 
+/// Parts of a tick that a scene may do without: which of them are in a program.
+fn has(name: &str) -> &'static [Part] {
+    match name {
+        "delayed_spring" => &[Part::Spring, Part::Delay],
+        "damper_wall" => &[Part::Spring, Part::Damper, Part::Face, Part::Delay],
+        // Torques are later than positions on these boards.
+        "free_mode" => &[Part::Canceller, Part::Delay],
+        // It measures a device, and renders no scene.
+        _ => &[],
+    }
+}
+
+/// The instructions of a scene's tick are of what the scene uses, and of nothing else.
+fn check_parts(board: Board, name: &str, program: &Program) {
+    let anatomy = program.anatomy().unwrap_or_else(|error| panic!("{error}"));
+    let parts =
+        [Part::Spring, Part::Damper, Part::Filter, Part::Canceller, Part::Face, Part::Delay];
+    for part in parts {
+        let Share { instructions, multiplications, .. } = anatomy.share(part);
+        let should = has(name).contains(&part);
+        assert_eq!(instructions > 0, should, "{board}, {name}: {instructions} of {part}");
+        // A face and a delay move numbers and compare them.
+        let multiplies = should && !matches!(part, Part::Face | Part::Delay);
+        assert_eq!(multiplications > 0, multiplies, "{board}, {name}: {multiplications} of {part}");
+    }
+    // Every servo has an angle and a deflection of its coupling.
+    for part in [Part::Encoder, Part::Coupling] {
+        let multiplies = anatomy.share(part).multiplications > 0;
+        assert_eq!(multiplies, !has(name).is_empty(), "{board}, {name}: {part}");
+    }
+}
+
 /// What people of embedded systems type, for the board that most of them have.
 #[test]
 fn the_plain_command_builds_a_program_that_fits() {
@@ -67,6 +100,7 @@ fn every_program_builds_for_every_board_and_fits() {
         let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
         for (name, program) in programs.iter().zip(&built) {
             check(&toolchain, board, name, program);
+            check_parts(board, name, program);
         }
     }
 }

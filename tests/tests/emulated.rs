@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use analysis::arithmetic::{Motion, cost};
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
-use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
+use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use analysis::tradeoff::{servo, sine};
 use firmware::board::question::{Ends, Reply};
 use firmware::board::trial::Trial;
@@ -197,8 +197,8 @@ fn every_format_computes_as_the_host_does() {
 fn programs_without_a_log_fit_the_smallest_board() {
     let scenes = TOOLCHAIN.scenes().unwrap();
     let scenes: Vec<_> = scenes.iter().map(String::as_str).collect();
-    let sizes = TOOLCHAIN.sizes(&scenes).unwrap_or_else(|error| panic!("{error}"));
-    for (scene, sizes) in scenes.iter().zip(sizes) {
+    let built = TOOLCHAIN.build_bare(&scenes).unwrap_or_else(|error| panic!("{error}"));
+    for (scene, Program { sizes, .. }) in scenes.iter().zip(built) {
         println!("{scene} {sizes:?}");
         assert!(sizes.text > 0 && sizes.flash() <= 128 << 10);
         assert!(sizes.bss > 0 && sizes.ram() <= 22 << 10);

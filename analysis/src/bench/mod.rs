@@ -1,6 +1,7 @@
 //! What a certificate, a step and a tick cost, measured, each beside what it is compared with.
 
 pub mod live;
+pub mod parts;
 pub mod steps;
 
 use std::hint::black_box;

@@ -14,17 +14,21 @@ use firmware::scene::{Coupling, Scene};
 use super::common::ForWhom;
 use super::{Answer, CommandError};
 use crate::bench::live::live_set;
+use crate::bench::parts::{self, Inventory};
 use crate::bench::{self, CORE_CLOCK, Figure};
 use crate::emulator::Report;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Input, play};
-use crate::toolchain::{self, NumberFormat, Sizes, Tools};
+use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
 pub struct Arguments {
+    /// Only take the scenes' programs apart: instructions of each part of a tick, state, flash, RAM
+    #[arg(long)]
+    pub parts: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: ForWhom,
@@ -68,21 +72,36 @@ const TICKS: usize = 5000;
 
 /// Measures and prints.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    if arguments.parts {
+        let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
+        let scenes = inventories(&toolchain)?;
+        arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
+        return Ok(Answer::Yes);
+    }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let mut figures = on_host();
     let spinner = progress::spinner("building programs");
     let f32 = toolchain.build_scenes(program::NAMES, NumberFormat::F32)?;
     let fixed = toolchain.build_scenes(program::NAMES, NumberFormat::Fixed)?;
-    let sizes = toolchain.sizes(program::NAMES)?;
     spinner.finish_and_clear();
-    for (((program, f32), fixed), size) in program::ALL.iter().zip(&f32).zip(&fixed).zip(sizes) {
+    let scenes = inventories(&toolchain)?;
+    for (((program, f32), fixed), scene) in program::ALL.iter().zip(&f32).zip(&fixed).zip(scenes) {
         on_target(program, [(NumberFormat::F32, f32), (NumberFormat::Fixed, fixed)], &mut figures)?;
         live_sets(program.name, f32, &mut figures)?;
-        add_size(program.name, size, &mut figures);
+        figures.extend(scene.figures());
     }
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
     Ok(Answer::Yes)
+}
+
+/// What every program has.
+fn inventories(toolchain: &Toolchain) -> Result<Vec<Inventory>, CommandError> {
+    let spinner = progress::spinner("building programs");
+    let built = toolchain.build_bare(program::NAMES)?;
+    spinner.finish_and_clear();
+    let pairs = program::ALL.iter().zip(&built);
+    Ok(pairs.map(|(program, built)| Inventory::of(program, built)).collect::<Result<_, _>>()?)
 }
 
 fn on_host() -> Vec<Figure> {
@@ -212,18 +231,6 @@ fn on_target(
         }
     }
     Ok(())
-}
-
-fn add_size(name: &str, size: Sizes, figures: &mut Vec<Figure>) {
-    for (what, bytes) in [("flash", size.flash()), ("RAM", size.ram())] {
-        figures.push(Figure::new(
-            format!("{name}: {what} without log"),
-            bytes as f64,
-            "bytes",
-            None,
-            "",
-        ));
-    }
 }
 
 /// The servo's interrupt and its parts. The parts are measured by themselves, outside of the

@@ -12,6 +12,7 @@ use super::plan::Compiler;
 use super::prepare::last_lines;
 use super::size::{SizeError, Sizes};
 use super::{Board, TARGET};
+use crate::anatomy::{Anatomy, ListingError};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -81,6 +82,14 @@ pub enum BuildError {
         path: PathBuf,
         /// Why.
         source: NoLength,
+    },
+    /// The program could not be taken apart.
+    #[error("{path}: {source}")]
+    Listing {
+        /// The program's file.
+        path: PathBuf,
+        /// Why.
+        source: ListingError,
     },
     /// The program's size could not be read.
     #[error("{path}: {source}")]
@@ -183,14 +192,13 @@ impl Toolchain {
         self.scenes_programs(names, &Variant::scene("board-qemu,log", format, ""))
     }
 
-    /// Builds scenes' programs in `f32` without log and measurements, and gives their sizes.
+    /// Builds scenes' programs for the emulated board in `f32`, without log and measurements.
     ///
     /// # Errors
     /// Where one of them does not exist or does not compile.
-    pub fn sizes(&self, names: &[&str]) -> Result<Vec<Sizes>, BuildError> {
+    pub fn build_bare(&self, names: &[&str]) -> Result<Vec<Program>, BuildError> {
         let bare = Variant::scene("board-qemu", NumberFormat::F32, "-bare");
-        let files = self.scenes_programs(names, &bare)?;
-        files.into_iter().map(|file| Ok(Program::at(file)?.sizes)).collect()
+        self.scenes_programs(names, &bare)?.into_iter().map(Program::at).collect()
     }
 
     /// Builds programs for a board that can be flashed.
@@ -362,6 +370,17 @@ impl Program {
             Ok(sizes) => Ok(Self { path, sizes }),
             Err(source) => Err(BuildError::Size { path, source }),
         }
+    }
+
+    /// What it has of each part of a tick.
+    ///
+    /// # Errors
+    /// Where its file cannot be read or taken apart.
+    pub fn anatomy(&self) -> Result<Anatomy, BuildError> {
+        let path = || self.path.clone();
+        let elf = fs::read(&self.path);
+        let elf = elf.map_err(|source| BuildError::File { path: path(), source })?;
+        Anatomy::of_elf(&elf).map_err(|source| BuildError::Listing { path: path(), source })
     }
 }
 

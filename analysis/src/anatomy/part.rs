@@ -1,0 +1,146 @@
+//! The parts of a tick, and how they are known by the functions that instructions come from.
+
+use std::fmt;
+
+/// A part of the tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Counts to an angle.
+    Encoder,
+    /// The environment's spring.
+    Spring,
+    /// A damper on the backward difference.
+    Damper,
+    /// A damper behind a velocity filter.
+    Filter,
+    /// The canceller of the device's damping.
+    Canceller,
+    /// A wall's face, where it is not at zero or only pushes.
+    Face,
+    /// Samples between position and torque.
+    Delay,
+    /// The damping that is injected where there is a deficit of energy: an option of every
+    /// program, chosen when it starts, for which the tick is there once more.
+    Injection,
+    /// The virtual coupling.
+    Coupling,
+    /// The torque limit, and the clamp that fades.
+    Limit,
+    /// Torque to a code.
+    Converter,
+    /// What belongs to none of them: what is stored, and what the optimiser shares.
+    Rest,
+}
+
+/// How the function is called that does a tick: how its name begins and ends.
+const TICK: (&str, &str) = ("<firmware::servo::rendering::Rendering<", "::tick");
+
+/// How the functions of a part are called: how the name begins, and what else is in it.
+const NAMES: [(&str, &str, Part); 16] = [
+    ("<firmware::energy::Injector<", "", Part::Injection),
+    ("<firmware::environment::velocity::Difference<", "", Part::Damper),
+    ("<firmware::environment::free_mode::", "", Part::Canceller),
+    ("<firmware::environment::velocity::Washout<", "", Part::Filter),
+    ("<firmware::environment::wall_law::Face<", "", Part::Face),
+    ("<firmware::environment::wall_law::Displaced<", "", Part::Face),
+    ("<", "::positive_part", Part::Face),
+    ("<firmware::coupling::Solver<", "::pushing", Part::Face),
+    ("<firmware::environment::delay_line::", "", Part::Delay),
+    ("<firmware::environment::wall_law::WallLaw<", "", Part::Spring),
+    ("<firmware::coupling::", "", Part::Coupling),
+    ("<firmware::torque::", "", Part::Limit),
+    ("<firmware::encoder::", "", Part::Encoder),
+    ("<firmware::servo::Servo<", "::angle", Part::Encoder),
+    ("<", "::codes_below", Part::Converter),
+    ("<firmware::dac::", "", Part::Converter),
+];
+
+impl Part {
+    /// All of them, in the order of a tick.
+    pub const ALL: [Self; 12] = [
+        Self::Encoder,
+        Self::Spring,
+        Self::Damper,
+        Self::Filter,
+        Self::Canceller,
+        Self::Face,
+        Self::Delay,
+        Self::Injection,
+        Self::Coupling,
+        Self::Limit,
+        Self::Converter,
+        Self::Rest,
+    ];
+
+    /// The part that an instruction belongs to, by the functions that it was inlined from, the
+    /// innermost first; `None` where it is not of a tick.
+    pub(super) fn of(functions: &[String]) -> Option<Self> {
+        let (begins, ends) = TICK;
+        let is_tick = |name: &String| name.starts_with(begins) && name.ends_with(ends);
+        let tick = functions.iter().position(is_tick)?;
+        let found = functions[..tick].iter().find_map(|name| Self::of_function(name));
+        let found = found.unwrap_or(Self::Rest);
+        // The canceller is made of the same high-pass as a filter.
+        let cancels = |name: &String| Self::of_function(name) == Some(Self::Canceller);
+        let is_canceller = found == Self::Filter && functions[..tick].iter().any(cancels);
+        Some(if is_canceller { Self::Canceller } else { found })
+    }
+
+    fn of_function(name: &str) -> Option<Self> {
+        let is =
+            |(begins, has, _): &&(&str, &str, Self)| name.starts_with(begins) && name.contains(has);
+        NAMES.iter().find(is).map(|(.., part)| *part)
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Encoder => "encoder",
+            Self::Spring => "spring",
+            Self::Damper => "damper",
+            Self::Filter => "velocity filter",
+            Self::Canceller => "canceller",
+            Self::Face => "face",
+            Self::Delay => "delay",
+            Self::Coupling => "coupling",
+            Self::Limit => "torque limit",
+            Self::Injection => "injected damping",
+            Self::Converter => "converter",
+            Self::Rest => "rest",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TICK: &str = "<firmware::servo::rendering::Rendering<Wall, f32, Latched>>::tick";
+
+    fn of(inner: &[&str]) -> Option<Part> {
+        let functions = inner.iter().chain(&[TICK, "interrupt"]);
+        Part::of(&functions.map(|name| (*name).to_owned()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_innermost_part_counts() {
+        let number = "<f32 as firmware::number::Number>::times";
+        let damper = "<firmware::environment::velocity::Difference<f32> as \
+                      firmware::environment::velocity::Velocity<f32>>::add_to";
+        let filter = "<firmware::environment::velocity::Washout<f32>>::torque";
+        let wall = "<firmware::environment::wall_law::WallLaw<f32, V, S, D>>::line";
+        let canceller = "<firmware::environment::free_mode::FreeModeLaw<f32, D> as Law>::offer";
+        for (inner, part) in [
+            (&[number, damper, wall][..], Part::Damper),
+            (&[number, wall], Part::Spring),
+            (&[number, filter, wall], Part::Filter),
+            (&[number, filter, canceller], Part::Canceller),
+            (&["<f32 as firmware::number::Number>::positive_part", wall], Part::Face),
+            (&[], Part::Rest),
+        ] {
+            assert_eq!(of(inner), Some(part), "{inner:?}");
+        }
+        assert_eq!(Part::of(&[number.to_owned(), damper.to_owned()]), None);
+    }
+}
