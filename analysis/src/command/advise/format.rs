@@ -1,16 +1,12 @@
 //! `haptic advise --hum --rate`: which number format, and which method of simulation, are enough?
 
-use std::cmp::Ordering;
-
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
 use firmware::encoder::CounterWidth;
-use firmware::number::Arithmetic;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
-use serde::Serialize;
 
-use crate::arithmetic::{Advice, Candidate, Figures, HALF_A_TURN, Motion, Subject, cost};
+use super::words::{Answered, Simulated, message, text};
+use crate::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
 use crate::bench::CORE_CLOCK;
 use crate::command::common::ForWhom;
 use crate::command::identify::positive;
@@ -19,7 +15,6 @@ use crate::command::{Answer, CommandError};
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::quantity::significant;
 use crate::tradeoff::{self, Method, servo, simulation};
 
 /// Arguments of `haptic advise` about formats.
@@ -62,28 +57,6 @@ const LARGEST_RATE: f64 = 200e3;
 /// Time in s of the motion in which errors are looked for.
 const SECONDS: f64 = 5.0;
 
-/// The answer as JSON.
-#[derive(Serialize)]
-struct Answered {
-    scene: String,
-    rate: f64,
-    coupling_stiffness: Option<f64>,
-    format: Option<&'static str>,
-    simulation: Option<Simulated>,
-    encoder_hum: Option<f64>,
-    formats: Vec<Candidate>,
-    message: String,
-}
-
-/// A method of simulation, at the rate of the kept table.
-#[derive(Serialize)]
-struct Simulated {
-    method: String,
-    substeps: f64,
-    samples_per_second: f64,
-    verdict_error: f64,
-}
-
 /// What is asked about.
 struct Question {
     name: String,
@@ -112,7 +85,7 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
     let is_yes = advice.choice().is_some() && is_quiet;
     let answered = Answered {
         format: advice.choice().map(|choice| choice.format),
-        message: message(&question.subject, arguments, &advice),
+        message: message(&question.subject, arguments.hum, &advice),
         simulation: simulated(arguments.verdict)?,
         scene: question.name,
         rate: arguments.rate,
@@ -191,123 +164,6 @@ fn simulated(bound: f64) -> Result<Option<Simulated>, CommandError> {
         samples_per_second: method.cost().unwrap_or(f64::NAN),
         verdict_error: method.error(simulation::VERDICT).unwrap_or(f64::NAN),
     }))
-}
-
-/// The answer in sentences.
-fn message(subject: &Subject, arguments: &Wanted, advice: &Advice) -> String {
-    let number = |value: f64| significant(value, 3);
-    let format = match advice.choice() {
-        Some(choice) => chosen(subject, choice),
-        None => none(advice),
-    };
-    match advice.encoder_hum {
-        Some(hum) if hum > arguments.hum => {
-            let counts = subject.transducers.counts_per_turn;
-            format!(
-                "no: in every format the encoder alone makes a device without friction hum by {} \
-                 N m, above {} N m. About {} counts a turn in place of {} would do, or a softer \
-                 scene. As to the formats: {format}",
-                number(hum),
-                number(arguments.hum),
-                number(counts * hum / arguments.hum),
-                significant(counts, 7),
-            )
-        }
-        Some(_) => format,
-        None => format!(
-            "{format}; how fine the encoder is the scene does not say, so that its part of the hum \
-             is not in this"
-        ),
-    }
-}
-
-/// Why no format was chosen.
-fn none(advice: &Advice) -> String {
-    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.hum);
-    let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
-    let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
-    let reason = quietest.map_or_else(String::new, |candidate| {
-        format!(": of the quietest, {}, the {}", candidate.format, candidate.rejected.join("; "))
-    });
-    format!("no format keeps to the figures{reason}")
-}
-
-/// Why a format was chosen.
-fn chosen(subject: &Subject, choice: &Candidate) -> String {
-    let number = |value: f64| significant(value, 3);
-    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
-    let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
-    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
-    let scaled = units.map_or_else(String::new, |units| {
-        format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
-    });
-    format!(
-        "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
-         core of {} MHz, and it hums by no more than {} N m",
-        choice.format,
-        number(choice.instructions),
-        number(100.0 * choice.share),
-        number(CORE_CLOCK / 1e6),
-        number(hum),
-    )
-}
-
-fn text(answered: &Answered) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "format",
-        "instructions",
-        "share of the core",
-        "error",
-        "around 1 rad",
-        "hum",
-        "with encoder",
-        "rejected",
-    ]);
-    for candidate in &answered.formats {
-        table.add_row(row(candidate));
-    }
-    for column in 1..7 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    let coupling = answered.coupling_stiffness.map_or_else(
-        || "rigid".to_owned(),
-        |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
-    );
-    let Answered { scene, rate, message, .. } = answered;
-    let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
-        let Simulated { method, substeps, verdict_error, .. } = simulated;
-        let error = significant(100.0 * verdict_error, 2);
-        format!(
-            "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \
-             largest stable stiffness is off by {error} %.\n"
-        )
-    });
-    format!(
-        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n{simulation}"
-    )
-}
-
-/// A format's figures; torques in N m.
-fn row(candidate: &Candidate) -> [String; 8] {
-    let number = |value: Option<f64>| match value {
-        Some(value) if value.is_finite() => significant(value, 3),
-        _ => "none".to_owned(),
-    };
-    let losses = candidate.losses;
-    [
-        candidate.format.to_owned(),
-        number(Some(candidate.instructions)),
-        format!("{} %", number(Some(100.0 * candidate.share))),
-        number(losses.map(|losses| losses.error)),
-        number(losses.and_then(|losses| losses.error_elsewhere)),
-        number(losses.map(|losses| losses.alone.hum)),
-        number(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
-        candidate.rejected.join("; "),
-    ]
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -2,6 +2,7 @@
 
 mod format;
 mod model;
+mod words;
 
 use clap::Args;
 

@@ -1,0 +1,163 @@
+//! What `haptic advise` says of number formats, to a person and as JSON.
+
+use std::cmp::Ordering;
+
+use comfy_table::{CellAlignment, Table, presets};
+use firmware::number::Arithmetic;
+use serde::Serialize;
+
+use crate::arithmetic::{Advice, Candidate, Subject};
+use crate::bench::CORE_CLOCK;
+use crate::quantity::significant;
+
+/// The answer as JSON.
+#[derive(Serialize)]
+pub struct Answered {
+    /// Its name.
+    pub scene: String,
+    /// Ticks a second.
+    pub rate: f64,
+    /// Stiffness in N m/rad of the coupling at that rate; `None`: rigid.
+    pub coupling_stiffness: Option<f64>,
+    /// The cheapest format that keeps to the figures.
+    pub format: Option<&'static str>,
+    /// The cheapest method of simulation.
+    pub simulation: Option<Simulated>,
+    /// Torque in N m by which the encoder alone hums.
+    pub encoder_hum: Option<f64>,
+    /// All formats, the cheapest first.
+    pub formats: Vec<Candidate>,
+    /// The answer in sentences.
+    pub message: String,
+}
+
+/// A method of simulation, at the rate of the kept table.
+#[derive(Serialize)]
+pub struct Simulated {
+    /// Its name.
+    pub method: String,
+    /// Its steps in a sample.
+    pub substeps: f64,
+    /// Samples that it computes a second.
+    pub samples_per_second: f64,
+    /// Part by which its largest stable stiffness is off.
+    pub verdict_error: f64,
+}
+
+/// The answer in sentences.
+pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
+    let number = |value: f64| significant(value, 3);
+    let format = match advice.choice() {
+        Some(choice) => chosen(subject, choice),
+        None => none(advice),
+    };
+    match advice.encoder_hum {
+        Some(hum) if hum > allowed => {
+            let counts = subject.transducers.counts_per_turn;
+            format!(
+                "no: in every format the encoder alone makes a device without friction hum by {} \
+                 N m, above {} N m. About {} counts a turn in place of {} would do, or a softer \
+                 scene. As to the formats: {format}",
+                number(hum),
+                number(allowed),
+                number(counts * hum / allowed),
+                significant(counts, 7),
+            )
+        }
+        Some(_) => format,
+        None => format!(
+            "{format}; how fine the encoder is the scene does not say, so that its part of the hum \
+             is not in this"
+        ),
+    }
+}
+
+/// Why no format was chosen.
+fn none(advice: &Advice) -> String {
+    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.hum);
+    let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
+    let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
+    let reason = quietest.map_or_else(String::new, |candidate| {
+        format!(": of the quietest, {}, the {}", candidate.format, candidate.rejected.join("; "))
+    });
+    format!("no format keeps to the figures{reason}")
+}
+
+/// Why a format was chosen.
+fn chosen(subject: &Subject, choice: &Candidate) -> String {
+    let number = |value: f64| significant(value, 3);
+    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
+    let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
+    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
+    let scaled = units.map_or_else(String::new, |units| {
+        format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
+    });
+    format!(
+        "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
+         core of {} MHz, and it hums by no more than {} N m",
+        choice.format,
+        number(choice.instructions),
+        number(100.0 * choice.share),
+        number(CORE_CLOCK / 1e6),
+        number(hum),
+    )
+}
+
+/// The answer for a person.
+pub fn text(answered: &Answered) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([
+        "format",
+        "instructions",
+        "share of the core",
+        "error",
+        "around 1 rad",
+        "hum",
+        "with encoder",
+        "rejected",
+    ]);
+    for candidate in &answered.formats {
+        table.add_row(row(candidate));
+    }
+    for column in 1..7 {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    let coupling = answered.coupling_stiffness.map_or_else(
+        || "rigid".to_owned(),
+        |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
+    );
+    let Answered { scene, rate, message, .. } = answered;
+    let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
+        let Simulated { method, substeps, verdict_error, .. } = simulated;
+        let error = significant(100.0 * verdict_error, 2);
+        format!(
+            "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \
+             largest stable stiffness is off by {error} %.\n"
+        )
+    });
+    format!(
+        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n{simulation}"
+    )
+}
+
+/// A format's figures; torques in N m.
+fn row(candidate: &Candidate) -> [String; 8] {
+    let number = |value: Option<f64>| match value {
+        Some(value) if value.is_finite() => significant(value, 3),
+        _ => "none".to_owned(),
+    };
+    let losses = candidate.losses;
+    [
+        candidate.format.to_owned(),
+        number(Some(candidate.instructions)),
+        format!("{} %", number(Some(100.0 * candidate.share))),
+        number(losses.map(|losses| losses.error)),
+        number(losses.and_then(|losses| losses.error_elsewhere)),
+        number(losses.map(|losses| losses.alone.hum)),
+        number(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
+        candidate.rejected.join("; "),
+    ]
+}
