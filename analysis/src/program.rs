@@ -151,3 +151,19 @@ programs! {
     // Its canceller has no delay, which only a simulation can give.
     free_mode, Script::swing_and_let_go, Simultaneous;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stiffness and the sample that is late; for the wall a face, a damping and the last position,
+    /// too; for free mode the canceller's gain, its rate and its state.
+    #[test]
+    fn a_servo_keeps_what_its_environment_uses() {
+        for (name, numbers) in [("delayed_spring", 2), ("damper_wall", 5), ("free_mode", 3)] {
+            let state = (Program::find(name).unwrap().state)(NumberFormat::F32);
+            assert_eq!(state.environment, numbers * size_of::<f32>(), "{name}");
+            assert!(state.servo > state.environment);
+        }
+    }
+}
