@@ -1,6 +1,7 @@
 //! Speed against accuracy: for each case and each error a panel with all methods in it, families
 //! told apart by mark and colour, and the front of those that no other beats, with their names.
 
+use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -24,14 +25,8 @@ const ROOM: f64 = 0.35;
 /// Size of the text in a panel.
 const SMALL: i32 = units(13);
 
-type Logarithmic<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<
-        plotters::coord::combinators::LogCoord<f64>,
-        plotters::coord::combinators::LogCoord<f64>,
-    >,
->;
+type Logarithmic<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
 /// Draws a table.
 ///
@@ -43,7 +38,8 @@ pub fn tradeoff(table: &Tradeoff) -> Result<Picture, ChartError> {
     let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
     let width = (PANEL.0 * errors.len() as u32).max(SIZE.0);
     let per_row = (width as i32 / ENTRY).max(1);
-    let rows = (table.families().len() as i32 + per_row - 1) / per_row + 1;
+    // The families, and what a front is.
+    let rows = rows(table, per_row) + 1;
     let panels = (PANEL.1 * cases.len() as u32) as i32;
     let size = (width, (TITLE_ROOM + panels + ROW * rows + 10) as u32);
     draw_sized(size, |area| {
@@ -188,6 +184,11 @@ fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
     line
 }
 
+/// Rows of families in the key.
+fn rows(table: &Tradeoff, per_row: i32) -> i32 {
+    (table.families().len() as i32 + per_row - 1) / per_row
+}
+
 fn write_key(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
     let style = || anchored(HPos::Left, VPos::Center);
     let place = |index: usize| {
@@ -200,8 +201,7 @@ fn write_key(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
         Mark::of(index).draw(area, (x, y))?;
         area.draw(&Text::new((*family).to_owned(), (x + units(14), y), style()))?;
     }
-    let rows = (families.len() as i32 + per_row - 1) / per_row;
-    let y = units(ROW * rows + ROW / 2);
+    let y = units(ROW * rows(table, per_row) + ROW / 2);
     dash::Dash::of(1).draw(area, &[(units(20), y), (units(60), y)], 1)?;
     let words = "front: no other method of the table is both cheaper and better";
     area.draw(&Text::new(words, (units(70), y), style()))

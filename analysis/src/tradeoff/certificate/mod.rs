@@ -77,7 +77,7 @@ pub fn candidates() -> Vec<Candidate> {
     all
 }
 
-/// Measures all ways on all environments; `step` is called after each kind's.
+/// Measures all ways on all environments; `step` is called after each way on each kind.
 pub fn measure(mut step: impl FnMut()) -> Tradeoff {
     let mut methods = Vec::new();
     for kind in Kind::ALL {

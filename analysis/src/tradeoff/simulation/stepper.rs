@@ -6,7 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::Case;
+use super::{Case, STIFFNESS};
 use crate::simulation::Stride;
 use crate::simulation::method::{Method, step};
 use crate::simulation::plant::{Input, POSITION};
@@ -14,7 +14,6 @@ use crate::simulation::plant::{Input, POSITION};
 /// Steps of one method on a device with `N` states.
 pub(super) struct Stepper<const N: usize> {
     stride: Stride,
-    stiffness: f64,
     /// `A` and the motor's column of `B`.
     rates: (SMatrix<f64, N, N>, SVector<f64, N>),
     /// The step as a matrix and the motor's column, for methods that are known by it.
@@ -37,7 +36,7 @@ impl<const N: usize> Stepper<N> {
             SMatrix::from_fn(|i, j| matrix[(i, j)]),
             SVector::from_fn(|i, _| matrix[(i, N + Input::Motor as usize)]),
         );
-        Self { stride, stiffness: case.stiffness, rates, step, h }
+        Self { stride, rates, step, h }
     }
 
     /// What runs the case.
@@ -53,7 +52,7 @@ impl<const N: usize> Stepper<N> {
         let mut angles = Vec::with_capacity(samples);
         for _ in 0..samples {
             angles.push(state[POSITION]);
-            let torque = -self.stiffness * state[POSITION];
+            let torque = -STIFFNESS * state[POSITION];
             state = match self.stride.method {
                 Method::Exact | Method::Tustin => self.repeat(state, |x| self.known(x, torque)),
                 Method::Euler => self.repeat(state, |x| x + self.rate(x, torque) * self.h),
