@@ -2,11 +2,14 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 
+use firmware::number::Format;
 use rayon::prelude::*;
 use serde::Serialize;
+use thiserror::Error;
 
 use crate::command::CommandError;
-use crate::file::{self, FileError, Format, Problem};
+use crate::file::{self, FileError, Problem};
+use crate::number::{self, DoesNotFit};
 use crate::verdict;
 
 /// Lines that are judged together. Enough to keep every core busy for a few milliseconds, few
@@ -27,6 +30,15 @@ enum Line {
     TooLong,
 }
 
+/// Why a line could not be judged.
+#[derive(Debug, Error)]
+enum BadScene {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("{0}")]
+    Number(#[from] DoesNotFit),
+}
+
 /// Answer to a line that could not be judged.
 #[derive(Serialize)]
 struct BadLine {
@@ -35,20 +47,21 @@ struct BadLine {
 
 /// Reads scenes from a JSON-lines file (`-` is standard input) and writes a result for each: as many
 /// lines as came in, in their order.
-pub fn certify(file: &str, out: &mut impl Write) -> Result<(), CommandError> {
+pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), CommandError> {
     if file == "-" {
-        return certify_lines("<stdin>", std::io::stdin().lock(), out);
+        return certify_lines("<stdin>", format, std::io::stdin().lock(), out);
     }
     let unreadable = |error: std::io::Error| {
         FileError::whole(file, 1, 1, Problem::Unreadable(error.to_string()))
     };
     let source = std::fs::File::open(file).map_err(unreadable)?;
-    certify_lines(file, source, out)
+    certify_lines(file, format, source, out)
 }
 
 /// The same from any source of lines.
 pub fn certify_lines(
     file: &str,
+    format: Format,
     source: impl Read,
     out: &mut impl Write,
 ) -> Result<(), CommandError> {
@@ -62,7 +75,7 @@ pub fn certify_lines(
         let answers: Vec<Vec<u8>> = lines
             .par_iter()
             .enumerate()
-            .map(|(index, line)| answer(file, first_line + index, line))
+            .map(|(index, line)| answer(file, format, first_line + index, line))
             .collect();
         for answer in &answers {
             out.write_all(answer)?;
@@ -113,11 +126,11 @@ fn pass_over(source: &mut impl BufRead) -> std::io::Result<()> {
 }
 
 /// One line's answer with its newline.
-fn answer(file: &str, number: usize, line: &Line) -> Vec<u8> {
+fn answer(file: &str, format: Format, number: usize, line: &Line) -> Vec<u8> {
     let judged = match line {
-        Line::Bytes(bytes) => judge(file, number, bytes),
+        Line::Bytes(bytes) => judge(file, format, number, bytes),
         Line::TooLong => {
-            Err(FileError::whole(file, number, 1, Problem::TooLong { bound: MAX_LINE }))
+            Err(FileError::whole(file, number, 1, Problem::TooLong { bound: MAX_LINE }).into())
         }
     };
     let text = match judged {
@@ -131,8 +144,14 @@ fn answer(file: &str, number: usize, line: &Line) -> Vec<u8> {
     text
 }
 
-fn judge(file: &str, number: usize, bytes: &[u8]) -> Result<verdict::Report, FileError> {
+fn judge(
+    file: &str,
+    format: Format,
+    number: usize,
+    bytes: &[u8],
+) -> Result<verdict::Report, BadScene> {
     let text = file::text_of(file, number, bytes)?;
-    let scene = file::parse_at(file, number, Format::Json, text)?;
-    Ok(verdict::judge(&scene.name, &scene.scene))
+    let scene = file::parse_at(file, number, file::Format::Json, text)?;
+    number::fits(&scene.scene, format)?;
+    Ok(verdict::judge_in(&scene.name, &scene.scene, format, &scene.steps()))
 }

@@ -7,6 +7,7 @@ use firmware::number::{Number, OutOfRange};
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Servo, Transducers};
 use firmware::torque::LimitReason;
+use firmware::tuning::Tunable;
 
 /// What a tick gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +59,7 @@ pub fn controller<E, N>(
     transducers: &Transducers,
 ) -> Result<Box<dyn Controller>, BuildError>
 where
-    E: Renderable<N> + 'static,
+    E: Tunable<N>,
     N: Number + 'static,
 {
     Ok(Box::new(Servo::<E, N>::new(scene, transducers)?))

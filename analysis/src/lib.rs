@@ -54,6 +54,7 @@ pub mod bench;
 pub mod chart;
 pub mod circle;
 pub mod minimum;
+pub mod number;
 pub mod progress;
 pub mod quantity;
 pub mod report;

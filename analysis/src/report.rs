@@ -73,6 +73,10 @@ impl Page<'_> {
                         p { "Each of these changes alone would make it pass." }
                         ul id="remedies" { @for item in &report.remedies { li { (item) } } }
                     }
+                    @if !report.warnings.is_empty() {
+                        h2 { "Warnings" }
+                        ul id="warnings" { @for item in &report.warnings { li { (item) } } }
+                    }
                     h2 { "Assumptions" }
                     p { "The verdict rests on these, and says nothing where they do not hold." }
                     ul id="assumptions" { @for item in &report.assumptions { li { (item) } } }
@@ -128,6 +132,10 @@ fn numbers(report: &Report, scene: &Scene) -> Markup {
     rows.extend(
         scene.torque_limit.map(|limit| ("Torque limit", format!("{} N m", significant(limit, 6)))),
     );
+    rows.extend(report.format.clone().map(|format| ("Coefficients rounded to", format)));
+    if let Some(rest) = &report.rest {
+        rows.push(("Torque of all steps at rest", format!("{} N m", significant(rest.hum, 4))));
+    }
     rows.push(("Rule of the paper", answer(report.rules.paper).to_owned()));
     rows.push(("Exact rule", answer(report.rules.exact).to_owned()));
     html! {

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use firmware::certificate::{Answer, Assessment, Assumptions, Loop, Rule, assess, certify};
+use firmware::certificate::{
+    Answer, Assessment, Assumptions, Loop, Rest, Rule, Standing, Steps, assess_in, certify_in,
+};
+use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use serde::Serialize;
@@ -63,6 +66,31 @@ pub struct Enclosure {
     pub hi: Option<f64>,
 }
 
+/// What encoder, numbers and converter do to the torque at rest, in N m.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AtRest {
+    /// The most that the encoder's step moves it; `None`: not stated.
+    pub encoder: Option<f64>,
+    /// The most that the rounding of numbers moves it.
+    pub numbers: f64,
+    /// The most that the converter's step moves it; `None`: not stated.
+    pub converter: Option<f64>,
+    /// All of them: what it may hum by, and the friction that prevents that.
+    pub hum: f64,
+    /// Declared friction of the device; `None`: not stated.
+    pub friction: Option<f64>,
+    /// Whether that is enough; `None` where it cannot be said.
+    pub comes_to_rest: Option<bool>,
+}
+
+impl AtRest {
+    fn of(rest: &Rest) -> Self {
+        let Rest { encoder, numbers, converter, friction } = *rest;
+        let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
+        Self { encoder, numbers, converter, hum, friction, comes_to_rest }
+    }
+}
+
 /// A judged scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
@@ -89,19 +117,34 @@ pub struct Report {
     /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
     /// Nyquist frequency.
     pub theta: Option<f64>,
+    /// Number format of the coefficients that were judged; `None`: as they were written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    /// What steps do at rest, where the scene is certified and they were stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<AtRest>,
     /// What the verdict rests on.
     pub assumptions: Vec<String>,
+    /// Those of the assumptions that do not hold.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// The answer as a sentence.
     pub message: String,
     /// Changes of one number each that would make a rejected scene pass.
     pub remedies: Vec<String>,
 }
 
-/// Judges a scene that the person calls `name`.
+/// Judges a scene as it was written, of a machine of which nothing more is known.
 pub fn judge(name: &str, scene: &Scene) -> Report {
-    let (assessment, rejection) = match certify(scene) {
+    judge_in(name, scene, Format::F64, &Steps::default())
+}
+
+/// Judges the coefficients of a scene as a number format rounds them, and its assumptions by what
+/// is known of the machine.
+pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Report {
+    let (assessment, rejection) = match certify_in(scene, format) {
         Ok(assessment) => (assessment, None),
-        Err(rejection) => (assess(scene), Some(rejection)),
+        Err(rejection) => (assess_in(scene, format), Some(rejection)),
     };
     let verdict = match &rejection {
         None => Verdict::Certified,
@@ -111,6 +154,12 @@ pub fn judge(name: &str, scene: &Scene) -> Report {
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin();
     let remedies = rejection.map(|rejection| rejection.remedies());
+    let assumptions = Assumptions::of(scene, &assessment, steps);
+    let failing = assumptions.iter().filter(|one| one.standing() == Standing::Fails);
+    let message = match rejection {
+        None => passed(delta, margin, assumptions.rest()),
+        Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
+    };
     Report {
         name: name.to_owned(),
         verdict,
@@ -122,18 +171,22 @@ pub fn judge(name: &str, scene: &Scene) -> Report {
         delta,
         margin,
         theta: minimum_angle(scene, &assessment),
-        assumptions: Assumptions::of(scene).iter().map(ToString::to_string).collect(),
-        message: rejection.map_or_else(|| passed(delta, margin), |rejection| rejection.to_string()),
+        format: (format != Format::F64).then(|| format.to_string()),
+        rest: assumptions.rest().map(AtRest::of),
+        warnings: failing.map(ToString::to_string).collect(),
+        assumptions: assumptions.iter().map(ToString::to_string).collect(),
+        message,
         remedies: remedies.iter().flat_map(|found| found.iter()).map(ToString::to_string).collect(),
     }
 }
 
-fn passed(delta: f64, margin: Option<f64>) -> String {
+fn passed(delta: f64, margin: Option<f64>, rest: Option<&Rest>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
         format!("; of the device's {delta} N m s/rad of damping {margin} are to spare")
     });
-    format!("certified: no passive hand can make it oscillate{to_spare}")
+    let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
+    format!("certified: no passive hand can make it oscillate{to_spare}{rest}")
 }
 
 fn answer(answer: Answer) -> RuleAnswer {
@@ -152,7 +205,7 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
 /// certificate has enclosed. None where the real part is the same all around.
 fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let cosine = assessment.cos_theta?;
-    let transfers = Loop::of(scene).ok()?;
+    let transfers = Loop::in_format(scene, assessment.format).ok()?;
     let judged = match assessment.rule {
         Rule::Exact => transfers.equivalent,
         Rule::Nonlinear => transfers.environment,

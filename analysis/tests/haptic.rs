@@ -29,6 +29,82 @@ fn yes_no_and_a_bad_question_have_their_exit_status() {
     assert_eq!(haptic(&["conjure"], b"").status.code(), Some(2));
 }
 
+/// Next to the line a number and its coefficient in fixed point lie on different sides of it.
+#[test]
+fn coefficients_are_judged_as_a_format_rounds_them() {
+    let judge = |text: &str, format: &str| {
+        let output = haptic(&["certify", "--json", "--format", format, "-"], text.as_bytes());
+        let [answer] = &lines(&output)[..] else { panic!("one object") };
+        assert_eq!(answer["verdict"] == "certified", output.status.code() == Some(0));
+        (answer["verdict"].clone(), answer["message"].as_str().unwrap().to_owned())
+    };
+    // A coupling that is rounded to be softer leaves less than K T / 2 of a spring needs.
+    let spring = common::WALL
+        .replace("damper-wall", "delayed-spring")
+        .replace("damping = 0.01\n", "")
+        .replace("stiffness = 22.0", "stiffness = 43.99999978");
+    assert_eq!(judge(&spring, "f64").0, "certified");
+    let (verdict, message) = judge(&spring, "I16F16");
+    assert_eq!(verdict, "rejected");
+    assert!(
+        message.starts_with("with its coefficients rounded to Q16.16: rejected: "),
+        "{message}"
+    );
+    // Without a coupling 3/2 K T may be used up; the stiffness is rounded to below that.
+    let rigid = spring
+        .replace("[coupling]\nstiffness = 44.0\n", "")
+        .replace("43.99999978", "14.6666666674");
+    assert_eq!(judge(&rigid, "f64").0, "rejected");
+    assert_eq!(judge(&rigid, "q16.16").0, "certified");
+
+    let refused = |text: &str, format: &str, words: &[&str]| {
+        let output = haptic(&["certify", "--format", format, "-"], text.as_bytes());
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    };
+    refused(common::WALL, "i16f17", &["i16f17", "i8f24"]);
+    let strong = format!("{}[limits]\ntorque = 1.5\n", common::WALL);
+    refused(&strong, "i1f31", &["limits.torque", "1.5", "Q1.31"]);
+}
+
+/// What the machine is besides decides whether it comes to rest; what fails is a warning.
+#[test]
+fn steps_are_held_against_friction() {
+    let judge = |friction: &str, limits: &str| {
+        let scene = common::WALL.replace("[servo]", &format!("{friction}\n[servo]"));
+        let scene = format!("{scene}[limits]\n{limits}\n");
+        let output = haptic(&["certify", "--json", "-"], scene.as_bytes());
+        let [answer] = &lines(&output)[..] else { panic!("one object") };
+        answer.clone()
+    };
+    let steps = "encoder_step = 1e-4\nfull_scale = 2.047";
+    let said = judge("", steps);
+    // The paper's wall makes at most 924 N m of 1 rad, and half of each step is an error.
+    let hum = 0.5e-4 * 924.0 + 0.5e-3;
+    assert!((said["rest"]["hum"].as_f64().unwrap() / hum - 1.0).abs() < 1e-9);
+    let message = said["message"].as_str().unwrap();
+    let unless =
+        "at rest it may hum by up to 0.0468 N m unless the device has 0.0468 N m of friction";
+    assert!(message.ends_with(unless), "{message}");
+    assert!(said["rest"]["comes_to_rest"].is_null() && said.get("warnings").is_none());
+    assert_eq!(judge("friction = 0.0468", steps)["rest"]["comes_to_rest"], true);
+    let weak = judge("friction = 0.0467", steps);
+    assert_eq!(weak["rest"]["comes_to_rest"], false);
+    let warning = weak["warnings"][0].as_str().unwrap();
+    assert!(
+        warning.contains("0.0467 N m is below") && warning.contains("(converter)"),
+        "{warning}"
+    );
+    // What is not stated is not judged, and the assumption says so.
+    let some = judge("friction = 0.05", "encoder_step = 1e-4");
+    assert!(some["rest"]["comes_to_rest"].is_null());
+    let assumptions = some["assumptions"].to_string();
+    assert!(assumptions.contains("the converter's step is not stated"), "{assumptions}");
+    let strong = judge("", "torque = 3.0\nfull_scale = 2.0");
+    assert!(strong["warnings"][0].as_str().unwrap().contains("full scale of 2 N m"));
+}
+
 #[test]
 fn json_has_the_fields_of_the_contract_and_nothing_else_is_printed() {
     let output = haptic(&["certify", "--json", "-"], WALL.as_bytes());

@@ -17,6 +17,7 @@ use analysis::twin::{Clock, Twin};
 use common::{answer, haptic, program};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
+use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::wire::message::{Changes, Outcome, Status};
 use serde_json::Value;
@@ -136,7 +137,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     assert_eq!(said["parameters"]["stiffness"], 12.5);
     assert_eq!(said["parameters"]["damping"], 0.002);
     assert_eq!(said["parameters"]["coupling.stiffness"], 44.0);
-    let margin = with(12.5, 0.002).certified().assessment().margin();
+    let margin = with(12.5, 0.002).certify_in(Format::F32).unwrap().assessment().margin();
     assert_eq!(said["margin"].as_f64(), margin);
     assert_eq!((&said["refused"], &said["sets"]), (&Value::Null, &Value::from(1)));
     assert_eq!(said["missed"], 0);
@@ -148,7 +149,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
 #[test]
 fn tune_prints_the_boards_sentence_where_it_refuses() {
     let rig = Rig::new(Clock::Free);
-    let sentence = with(30.0, 0.01).certify().unwrap_err().to_string();
+    let sentence = with(30.0, 0.01).certify_in(Format::F32).unwrap_err().to_string();
     let output = rig.haptic(&["tune", "stiffness=30"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert_eq!(text(&output.stderr).trim_end(), sentence);
@@ -307,7 +308,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
         let changes = [(Parameter::Stiffness, stiffness), (Parameter::Damping, damping)];
         rig.held.forget();
         let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
-        match with(stiffness, damping).certify() {
+        match with(stiffness, damping).certify_in(Format::F32) {
             Ok(_) => {
                 assert_eq!(outcome, Outcome::Done, "set {i}");
                 running = stiffness;

@@ -20,6 +20,7 @@ use common::{answer, haptic};
 use firmware::board::shown::Moved;
 use firmware::cycle::State;
 use firmware::environment::{DamperWall, OneSided};
+use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, Status, ToBoard, ToHost};
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
@@ -174,7 +175,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
         let output =
             board.tune(&[&format!("stiffness={stiffness}"), &format!("damping={damping}")]);
         let said = answer(&output);
-        match with(stiffness, damping).certify() {
+        match with(stiffness, damping).certify_in(Format::F32) {
             Ok(_) => {
                 assert_eq!(output.status.code(), Some(0), "set {i}: {output:?}");
                 running = stiffness;

@@ -11,7 +11,7 @@
 //! and that gain is known before the servo starts. The environment is always asked for the value
 //! at `x`, never for an intercept: near the state where it rests no large numbers cancel.
 
-use crate::number::Number;
+use crate::number::{Number, Rounding};
 use crate::scene::Coupling;
 use crate::servo::BuildError;
 
@@ -84,6 +84,7 @@ impl<N: Number> Solver<N> {
             Coupling::Spring { stiffness } => Some(stiffness),
         };
         let compliance = stiffness.map_or(0.0, |stiffness| 1.0 / stiffness);
+        let compliance = N::FORMAT.coefficient(compliance, Rounding::Outward);
         let compliance = BuildError::coefficient::<N>("1 / coupling stiffness", compliance)?;
         // From here on with the compliance as rounded: the solution shall be that of the loop
         // that runs.
@@ -101,7 +102,12 @@ impl<N: Number> Solver<N> {
             line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
             contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
             stiffness: match stiffness {
-                Some(k) => Some(BuildError::coefficient::<N>("coupling stiffness", k)?),
+                // Not above that of the compliance as rounded: while the environment slides on
+                // the face, it must not come back out as the device goes in.
+                Some(_) => {
+                    let stiffness = N::FORMAT.coefficient(1.0 / given, Rounding::Inward);
+                    Some(BuildError::coefficient::<N>("coupling stiffness", stiffness)?)
+                }
                 None => None,
             },
         })

@@ -145,6 +145,28 @@ impl fmt::Display for Written {
     }
 }
 
+/// A figure for a person, to three digits and not below what it is, to a part in 10^12.
+#[derive(Clone, Copy, Debug)]
+pub struct AtMost(pub f64);
+
+impl fmt::Display for AtMost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (mut unit, value) = (1.0, self.0);
+        if !value.is_finite() || value <= 0.0 {
+            return Written(value).fmt(f);
+        }
+        while value / unit >= 1000.0 {
+            unit *= 10.0;
+        }
+        while value / unit < 100.0 && unit > 1e-300 {
+            unit /= 10.0;
+        }
+        let whole = value / unit * (1.0 - 1e-12);
+        let steps = whole as u64 + u64::from(whole > (whole as u64) as f64);
+        Written(steps as f64 * unit).fmt(f)
+    }
+}
+
 impl<const N: usize> Default for Text<N> {
     fn default() -> Self {
         Self::new()
@@ -197,7 +219,24 @@ const fn decimal(value: f64) -> ([u8; DIGITS], i32) {
 
 #[cfg(test)]
 mod tests {
-    use super::Text;
+    use super::{AtMost, Text};
+
+    #[test]
+    fn figures_are_rounded_up() {
+        for (value, wanted) in [
+            (0.0467, "0.0467"),
+            (0.04670001, "0.0468"),
+            (999.1, "1000"),
+            (12345.0, "12400"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(AtMost(value).to_string(), wanted);
+        }
+        // What has no digits to round to is an answer as well.
+        for value in [f64::MAX, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 5e-324, -1.0] {
+            assert!(!AtMost(value).to_string().is_empty());
+        }
+    }
 
     #[test]
     fn numbers_read_as_people_write_them() {

@@ -15,6 +15,7 @@ pub mod plant;
 pub mod poly;
 pub mod remainders;
 pub mod replica;
+pub mod rounding;
 pub mod rules;
 pub mod scenes;
 pub mod vectors;

@@ -16,12 +16,13 @@ use firmware::board::question::{Ends, Reply};
 use firmware::board::trial::Trial;
 use firmware::certificate::{Certified, assess};
 use firmware::encoder::RawCount;
-use firmware::environment::{Environment, Renderable};
+use firmware::environment::Environment;
 use firmware::excitation::sines::Sine;
 use firmware::number::{Arithmetic, Number};
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use firmware::servo::{Servo, Transducers};
+use firmware::tuning::Tunable;
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -87,7 +88,7 @@ fn run<E, N>(
     transducers: &Transducers,
 ) -> Report
 where
-    E: Renderable<N>,
+    E: Tunable<N>,
     N: Number,
 {
     let elf = &PROGRAMS[&(name, format)];
@@ -239,7 +240,7 @@ macro_rules! emulated {
                 &$scene::CERTIFIED,
                 &$scene::TRANSDUCERS,
             );
-            check(&report, &$scene::CERTIFIED);
+            check(&report, &$scene::CERTIFIED.certified_in(<$number>::FORMAT));
             if let Some(most) = $most {
                 let interrupt = report.interrupt_instructions;
                 assert!(interrupt.max <= most, "{interrupt:?}");

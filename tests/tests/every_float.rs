@@ -1,8 +1,9 @@
 //! `certify` over all of `f64`: no input makes it panic, none that is not finite passes, and what
 //! it says is consistent.
 
-use firmware::certificate::{Answer, Rule, assess, certify};
+use firmware::certificate::{Answer, Assumptions, Rule, Steps, assess_in, certify};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use proptest::prelude::*;
@@ -77,6 +78,14 @@ fn scene() -> impl Strategy<Value = Scene> {
     )
 }
 
+fn format() -> impl Strategy<Value = Format> {
+    prop_oneof![
+        Just(Format::F64),
+        Just(Format::F32),
+        (0..=32_u32).prop_map(|fraction_bits| Format::Fixed { fraction_bits }),
+    ]
+}
+
 /// Whether every number of the scene is finite.
 fn is_finite(scene: &Scene) -> bool {
     let wall = |w: &Wall| {
@@ -110,8 +119,8 @@ fn is_finite(scene: &Scene) -> bool {
 }
 
 /// A pass that the numbers beside it do not bear out would be an unsafe machine.
-fn consistent(scene: &Scene) -> Result<(), TestCaseError> {
-    let assessment = assess(scene);
+fn consistent(scene: &Scene, format: Format) -> Result<(), TestCaseError> {
+    let assessment = assess_in(scene, format);
     let intervals =
         [assessment.alpha, assessment.alpha_coupled, assessment.bound, assessment.cos_theta];
     for interval in intervals.into_iter().flatten().chain([assessment.delta]) {
@@ -144,17 +153,20 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn what_is_said_is_consistent(scene in scene()) {
-        consistent(&scene)?;
+    fn what_is_said_is_consistent(scene in scene(), format in format()) {
+        consistent(&scene, format)?;
     }
 }
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..Default::default() })]
 
-    /// The whole answer, remedies and sentence included.
+    /// The whole answer, remedies, sentence and assumptions included.
     #[test]
-    fn every_scene_gets_an_answer(scene in scene()) {
+    fn every_scene_gets_an_answer(scene in scene(), encoder in float(), friction in float()) {
+        let steps = Steps { encoder: Some(encoder), full_scale: None, friction: Some(friction) };
+        let assumptions = Assumptions::of(&scene, &assess_in(&scene, Format::F32), &steps);
+        prop_assert!(assumptions.iter().all(|one| one.to_string().len() > 40));
         match certify(&scene) {
             Ok(assessment) => prop_assert!(assessment.outcome.is_ok()),
             Err(rejection) => {

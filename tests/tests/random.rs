@@ -4,14 +4,16 @@
 //! A rounding in the wrong direction, a lost box of the subdivision, a sign in the cross terms of
 //! the real part: each puts the index outside its enclosure for some of these scenes.
 
-use firmware::certificate::{Answer, assess};
+use firmware::certificate::{Answer, assess, assess_in};
 use firmware::environment::{Coefficients, Environment};
-use firmware::scene::Coupling;
+use firmware::number::Format;
+use firmware::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::agreement::{check, check_exact};
 use tests::exact::of_f64;
 use tests::poly::Poly;
+use tests::rounding;
 use tests::scenes::{self, Drawn, Poles};
 
 /// Judges `count` scenes and returns how many the exact and the paper's rule left open.
@@ -110,4 +112,77 @@ fn scale_to_the_line(drawn: &mut Drawn, share: f64) -> bool {
     let exact: Vec<_> = scaled.iter().map(|&c| of_f64(c).expect("finite")).collect();
     drawn.exact.numerator = Poly::descending(&exact);
     true
+}
+
+/// The same wall with another stiffness; `None` for an environment without one.
+fn with_stiffness(scene: &Scene, value: f64) -> Option<Scene> {
+    let mut changed = *scene;
+    match &mut changed.environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => wall.stiffness = value,
+        _ => return None,
+    }
+    Some(changed)
+}
+
+/// The stiffness at which the verdict on a scene changes, to a last place; `None` where it does
+/// not within a factor of eight.
+fn line(scene: &Scene, own: f64) -> Option<f64> {
+    let passes = |value| Some(assess(&with_stiffness(scene, value)?).outcome.is_ok());
+    let (mut inside, mut outside) = (own / 8.0, own * 8.0);
+    if !passes(inside)? || passes(outside)? {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        *(if passes(middle)? { &mut inside } else { &mut outside }) = middle;
+    }
+    Some(inside)
+}
+
+/// Coefficients as rounded to a format, next to the line: what is certified of them holds for them
+/// exactly, and near the line that is another verdict than for the numbers as they were written,
+/// in both directions.
+#[test]
+fn coefficients_as_they_run() {
+    let formats =
+        [Format::F32, Format::Fixed { fraction_bits: 24 }, Format::Fixed { fraction_bits: 16 }];
+    let (mut judged, mut refused, mut saved) = (0, [0; 3], [0; 3]);
+    for seed in 0..24 {
+        let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+        let drawn = if seed % 4 == 0 { scenes::free(rng) } else { scenes::wall(rng) };
+        let own = drawn.scene.device.damping / drawn.scene.timing.period;
+        let Some(line) = line(&drawn.scene, own) else { continue };
+        for step in [-1e-3, -1e-6, -1e-7, -2e-8, -3e-9, 3e-9, 2e-8, 1e-7, 1e-6, 1e-3] {
+            let scene = with_stiffness(&drawn.scene, line * (1.0 + step)).unwrap();
+            let as_written = assess(&scene).outcome.is_ok();
+            for (i, format) in formats.into_iter().enumerate() {
+                let exact = rounding::as_it_runs(&scene, format).unwrap();
+                let assessment = assess_in(&scene, format);
+                judged += 1;
+                if is_standard(&drawn) {
+                    // Judged by the paper's rule, which is stricter by the rounding.
+                    let passes = exact.passes_exact();
+                    let strict = passes && step > -1e-5 || assessment.outcome.is_ok() == passes;
+                    assert!(strict, "seed {seed} {step:e} {format}");
+                    assert!(passes || assessment.outcome.is_err(), "seed {seed} {step:e} {format}");
+                } else {
+                    check(&assessment, &exact).unwrap_or_else(|why| {
+                        panic!("seed {seed} {step:e} {format}: {why}\n{scene:?}\n{assessment:?}")
+                    });
+                }
+                let runs = assessment.outcome.is_ok();
+                refused[i] += u32::from(as_written && !runs);
+                saved[i] += u32::from(!as_written && runs);
+            }
+        }
+    }
+    println!("judged={judged} refused={refused:?} saved={saved:?}");
+    assert!(judged > 300 && refused.iter().chain(&saved).all(|&count| count > 0));
+}
+
+fn is_standard(drawn: &Drawn) -> bool {
+    let Coupling::Spring { stiffness } = drawn.scene.coupling else { return false };
+    stiffness == 2.0 * drawn.scene.device.damping / drawn.scene.timing.period
 }

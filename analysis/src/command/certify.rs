@@ -4,11 +4,11 @@ use std::io;
 
 use clap::Args;
 
-use super::common::{ForWhom, SceneArgument};
+use super::common::{Arithmetic, ForWhom, SceneArgument};
 use super::{Answer, CommandError};
 use crate::batch;
 use crate::quantity::significant;
-use crate::verdict::{self, Enclosure, Report, Verdict};
+use crate::verdict::{Enclosure, Report, Verdict};
 
 /// Arguments of `haptic certify`.
 #[derive(Debug, Args)]
@@ -19,6 +19,9 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: ForWhom,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub arithmetic: Arithmetic,
     /// FILE has a scene as JSON on each line; print a result a line, in the same order
     #[arg(long)]
     pub batch: bool,
@@ -28,11 +31,11 @@ pub struct Arguments {
 /// each of its lines has an answer of its own.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     if arguments.batch {
-        batch::certify(&arguments.scene.file, &mut io::stdout().lock())?;
+        let format = arguments.arithmetic.format;
+        batch::certify(&arguments.scene.file, format, &mut io::stdout().lock())?;
         return Ok(Answer::Yes);
     }
-    let scene = arguments.scene.load()?;
-    let report = verdict::judge(&scene.name, &scene.scene);
+    let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
     arguments.answer.print(&report, text)?;
     Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
 }
@@ -59,8 +62,11 @@ pub fn text(report: &Report) -> String {
     }
     rows.push(("rule of the paper", format!("{:?}", report.rules.paper).to_lowercase()));
     rows.push(("exact rule", format!("{:?}", report.rules.exact).to_lowercase()));
+    rows.extend(report.format.clone().map(|format| ("rounded to", format)));
     list(&mut rows, "remedies", &report.remedies);
-    list(&mut rows, "assumes", &report.assumptions);
+    list(&mut rows, "WARNING", &report.warnings);
+    let holding = report.assumptions.iter().filter(|one| !report.warnings.contains(one));
+    list(&mut rows, "assumes", &holding.cloned().collect::<Vec<_>>());
     rows.iter().map(|(label, value)| format!("{label:<18} {value}\n")).collect()
 }
 

@@ -5,12 +5,15 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use clap::Args;
+use firmware::number::Format;
 use serde::Serialize;
 
 use super::CommandError;
 use crate::file::{self, Purpose, SceneFile};
+use crate::number;
 use crate::simulation::Stride;
 use crate::simulation::method::Method;
+use crate::verdict::{Report, judge_in};
 
 /// The scene that a command is about.
 #[derive(Debug, Args)]
@@ -58,6 +61,23 @@ impl Steps {
     /// Method and steps.
     pub fn stride(&self) -> Stride {
         Stride { method: self.method, substeps: self.substeps }
+    }
+}
+
+/// What the servo computes in.
+#[derive(Debug, Args)]
+pub struct Arithmetic {
+    /// Judge the coefficients as this number format rounds them: f32, or fixed point of 32 bits
+    /// such as i8f24; f64 are the numbers as they were written
+    #[arg(long, default_value = "f64", value_parser = number::format)]
+    pub format: Format,
+}
+
+impl Arithmetic {
+    /// The verdict on a file's scene.
+    pub fn judge(&self, file: &SceneFile) -> Result<Report, CommandError> {
+        number::fits(&file.scene, self.format)?;
+        Ok(judge_in(&file.name, &file.scene, self.format, &file.steps()))
     }
 }
 

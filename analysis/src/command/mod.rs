@@ -151,6 +151,9 @@ pub enum CommandError {
     /// An angle does not fit the servo's number format.
     #[error("the device's angle: {0}")]
     Angle(#[from] firmware::number::OutOfRange),
+    /// A number of the scene does not fit the number format.
+    #[error(transparent)]
+    Number(#[from] crate::number::DoesNotFit),
     /// A bad recording.
     #[error(transparent)]
     Replay(#[from] TableError),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::chart::map;
-use super::common::SceneArgument;
+use super::common::{Arithmetic, SceneArgument};
 use super::{Answer, CommandError};
 use crate::chart::ChartError;
 use crate::chart::nyquist::nyquist;
@@ -13,7 +13,7 @@ use crate::chart::trace::{Trace, trace};
 use crate::map::MapError;
 use crate::report::{Figure, Page};
 use crate::simulation::SimulationError;
-use crate::verdict::{Verdict, judge};
+use crate::verdict::Verdict;
 
 /// Arguments of `haptic report`.
 #[derive(Debug, Args)]
@@ -21,6 +21,9 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub arithmetic: Arithmetic,
     /// The page, .html
     #[arg(short, long, value_name = "PAGE")]
     pub output: PathBuf,
@@ -36,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         return Err(CommandError::NoPage { path: arguments.output.clone() });
     }
     let file = arguments.scene.load()?;
-    let report = judge(&file.name, &file.scene);
+    let report = arguments.arithmetic.judge(&file)?;
     let named = [(file.name.clone(), file.scene)];
     let map = match map::of_file(&file, (None, None), SIDE) {
         Err(MapError::NoWall { .. }) => {

@@ -22,7 +22,9 @@ fn wall(stiffness: f64, damping: f64, delay: usize) -> Environment {
 fn file(scene: Scene) -> SceneFile {
     let chain = Chain::rigid(scene.device.inertia, scene.device.damping).unwrap();
     let name = "designed".to_owned();
-    SceneFile { name, scene, chain, simulation: None, hand: None, encoder_step: None }
+    let (simulation, hand) = (None, None);
+    let (encoder_step, full_scale, friction) = (None, None, None);
+    SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction }
 }
 
 /// The scene, as it is read from what is written.

@@ -40,13 +40,18 @@ pub fn read(text: &str, root: Node) -> Result<DeviceFile, Fault> {
         return Ok(DeviceFile { name: Some(scene.name), chain: scene.chain });
     }
     let name = top.text(&key::NAME)?.map(|found| found.value);
-    let (chain, _) = device(top.needed_table(&key::DEVICE)?, Purpose::Simulate)?;
+    let (chain, ..) = device(top.needed_table(&key::DEVICE)?, Purpose::Simulate)?;
     top.finish()?;
     Ok(DeviceFile { name, chain })
 }
 
-/// Reads `[device]`: the chain, and the rigid body that stands for it in a certificate.
-pub fn device(mut section: Section<'_>, purpose: Purpose) -> Result<(Chain, Device), Fault> {
+/// Reads `[device]`: the chain, the rigid body that stands for it in a certificate, and the dry
+/// friction of the motor's mass.
+pub fn device(
+    mut section: Section<'_>,
+    purpose: Purpose,
+) -> Result<(Chain, Device, Option<f64>), Fault> {
+    let friction = section.optional(&key::DEVICE_FRICTION)?;
     let masses = section.tables(&key::MASS)?;
     let is_rigid = masses.is_none();
     let chain = match masses {
@@ -74,7 +79,7 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Result<(Chain, Devi
     let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
     section.finish()?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok((chain, device))
+    Ok((chain, device, friction))
 }
 
 fn rigid(section: &mut Section<'_>) -> Result<Chain, Fault> {

@@ -113,6 +113,8 @@ keys! {
     DEVICE_DAMPING = "device.damping", "N m s/rad", Bound::NotNegative;
     /// Output strict passivity where it is not the damping.
     PASSIVITY = "device.passivity", "N m s/rad", Bound::NotNegative;
+    /// Dry friction at the motor.
+    DEVICE_FRICTION = "device.friction", "N m", Bound::NotNegative;
     /// Masses of a chain, in place of inertia and damping: first the motor's, last the hand's.
     MASS = "device.mass", "", Bound::Other("a list of 1 to 10 tables");
     /// Inertia of a mass.
@@ -200,7 +202,7 @@ keys! {
     /// How long a pulse lasts.
     PULSE_LENGTH = "simulation.torque_pulses.length", "samples", Bound::Whole(1, 100_000_000);
 
-    /// Dry friction of the device.
+    /// Dry friction in the simulation, where it is not the device's.
     FRICTION = "simulation.friction", "N m", Bound::NotNegative;
     /// Time from a sample to its torque.
     LATENCY = "simulation.latency", "s", Bound::NotNegative;
@@ -228,6 +230,8 @@ keys! {
     TORQUE_LIMIT = "limits.torque", "N m", Bound::Positive;
     /// Angle of one encoder count.
     ENCODER_STEP = "limits.encoder_step", "rad", Bound::Positive;
+    /// Torque of the motor at the converter's largest code.
+    FULL_SCALE = "limits.full_scale", "N m", Bound::Positive;
 }
 
 #[cfg(test)]

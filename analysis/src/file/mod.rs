@@ -9,6 +9,7 @@
 //! inertia = 2.2e-5              # kg m^2, for simulation
 //! damping = 0.022               # N m s/rad
 //! # passivity = 0.021           # optional: delta, where it is not the damping
+//! # friction = 0.003            # optional: N m, dry friction at the motor
 //! [servo]
 //! period = 0.001                # s
 //! # worst_period = 0.002        # optional: s, longest tolerated time between two updates
@@ -25,7 +26,10 @@
 //! `delay`), `free-mode-wall` (`residual` and the keys of a wall) and `rational` (`numerator`,
 //! `denominator`; optional: `delay`, `unit_zeros`). A wall must say its delay, because a delay
 //! that is forgotten is one that is not accounted for. `[simulation]`, `[human]` and `[limits]`
-//! are optional; `limits.torque` makes the torque limit part of what is certified.
+//! are optional; `limits.torque` makes the torque limit part of what is certified. With the angle
+//! of one encoder count, `limits.encoder_step`, with the torque at the converter's largest code,
+//! `limits.full_scale`, and with `device.friction` the certificate says whether the device comes
+//! to rest.
 //!
 //! ```toml
 //! [simulation]
@@ -34,7 +38,7 @@
 //! velocity = 0.0                # optional: rad/s at sample 0
 //! torque_sine = { amplitude = 0.01, omega = 60.0, phase = 0.0 } # optional: N m, rad/s, rad
 //! # torque = [0.1, 0.2]         # instead: N m, one a sample; or torque_file, numbers in a file
-//! friction = 0.002              # optional: N m, dry friction on the motor's mass
+//! friction = 0.002              # optional: N m, where it is not `device.friction`
 //! latency = 0.0002              # optional: s from sample to torque, less than the period
 //! missed = { fraction = 0.01, seed = 1 } # optional: ticks without a servo; or { every = 2 }
 //! ```

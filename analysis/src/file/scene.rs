@@ -1,5 +1,6 @@
 //! A scene file's tables turned into a [`Scene`].
 
+use firmware::certificate::Steps;
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use firmware::scene::{Coupling, Scene, Timing};
 
@@ -26,26 +27,40 @@ pub struct SceneFile {
     pub simulation: Option<Simulation>,
     /// A passive hand that holds the device, for simulation.
     pub hand: Option<Hand>,
-    /// Angle of one encoder count in rad, for simulation.
+    /// Angle of one encoder count in rad.
     pub encoder_step: Option<f64>,
+    /// Torque of the motor in N m at the converter's largest code.
+    pub full_scale: Option<f64>,
+    /// Dry friction of the device in N m.
+    pub friction: Option<f64>,
+}
+
+impl SceneFile {
+    /// What the file says of the machine, for the certificate's assumptions.
+    pub fn steps(&self) -> Steps {
+        let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
+        Steps { encoder, full_scale, friction }
+    }
 }
 
 /// Reads the tables of a parsed file.
 pub fn read(text: &str, root: Node, purpose: Purpose) -> Result<SceneFile, Fault> {
     let mut top = Section::new(text, "a scene", &ROOT, root)?;
     let name = top.needed_text(&key::NAME)?.value;
-    let (chain, device) = device::device(top.needed_table(&key::DEVICE)?, purpose)?;
+    let (chain, device, friction) = device::device(top.needed_table(&key::DEVICE)?, purpose)?;
     let timing = timing(top.needed_table(&key::SERVO)?)?;
     let coupling = top.table(&key::COUPLING)?.map_or(Ok(Coupling::Rigid), coupling)?;
     let environment = environment(top.needed_table(&key::ENVIRONMENT)?)?;
     let simulation = top.table(&key::SIMULATION)?;
-    let simulation = simulation.map(|table| simulation::simulation(table, timing.period));
+    let rubs = friction.unwrap_or(0.0);
+    let simulation = simulation.map(|table| simulation::simulation(table, timing.period, rubs));
     let simulation = simulation.transpose()?;
     let hand = top.table(&key::HUMAN)?.map(simulation::hand).transpose()?;
-    let (torque_limit, encoder_step) = top.table(&key::LIMITS)?.map_or(Ok((None, None)), limits)?;
+    let [torque_limit, encoder_step, full_scale] =
+        top.table(&key::LIMITS)?.map_or(Ok([None; 3]), limits)?;
     top.finish()?;
     let scene = Scene { device, timing, coupling, environment, torque_limit };
-    Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step })
+    Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction })
 }
 
 /// The file as a whole: it has no name, and must be a table.
@@ -74,11 +89,14 @@ fn coupling(mut section: Section<'_>) -> Result<Coupling, Fault> {
     Ok(Coupling::Spring { stiffness })
 }
 
-fn limits(mut section: Section<'_>) -> Result<(Option<f64>, Option<f64>), Fault> {
-    let torque = section.optional(&key::TORQUE_LIMIT)?;
-    let step = section.optional(&key::ENCODER_STEP)?;
+fn limits(mut section: Section<'_>) -> Result<[Option<f64>; 3], Fault> {
+    let keys = [&key::TORQUE_LIMIT, &key::ENCODER_STEP, &key::FULL_SCALE];
+    let mut found = [None; 3];
+    for (place, key) in found.iter_mut().zip(keys) {
+        *place = section.optional(key)?;
+    }
     section.finish()?;
-    Ok((torque, step))
+    Ok(found)
 }
 
 fn environment(mut section: Section<'_>) -> Result<Environment, Fault> {

@@ -61,12 +61,16 @@ pub enum HandTorque {
 }
 
 /// Reads `[simulation]` of a servo with this period in s.
-pub fn simulation(mut section: Section<'_>, period: f64) -> Result<Simulation, Fault> {
+pub fn simulation(
+    mut section: Section<'_>,
+    period: f64,
+    friction: f64,
+) -> Result<Simulation, Fault> {
     let samples = section.number(&key::SAMPLES)? as usize;
     let position = section.optional(&key::POSITION)?.unwrap_or(0.0);
     let velocity = section.optional(&key::VELOCITY)?.unwrap_or(0.0);
     let torque = torque(&mut section)?;
-    let friction = section.optional(&key::FRICTION)?.unwrap_or(0.0);
+    let friction = section.optional(&key::FRICTION)?.unwrap_or(friction);
     let latency = latency(&mut section, period)?;
     let missed = section.table(&key::MISSED)?.map_or(Ok(Missed::None), missed)?;
     section.finish()?;

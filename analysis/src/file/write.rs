@@ -12,9 +12,10 @@ use crate::chain::{Chain, EncoderPlace};
 
 /// The text of a scene file in TOML: everything that the file says, and nothing that it did not.
 pub fn toml(file: &SceneFile) -> String {
-    let SceneFile { name, scene, chain, simulation, hand, encoder_step } = file;
+    let SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction } =
+        file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
-    device(&mut lines, chain, &scene.device);
+    device(&mut lines, chain, &scene.device, *friction);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
     number(&mut lines, "worst_period", scene.timing.worst_period);
     if let Coupling::Spring { stiffness } = scene.coupling {
@@ -28,10 +29,16 @@ pub fn toml(file: &SceneFile) -> String {
     if let Some(hand) = hand {
         moving::hand(&mut lines, hand);
     }
-    if scene.torque_limit.is_some() || encoder_step.is_some() {
+    let limits = [
+        ("torque", scene.torque_limit),
+        ("encoder_step", *encoder_step),
+        ("full_scale", *full_scale),
+    ];
+    if limits.iter().any(|(_, value)| value.is_some()) {
         lines.push("[limits]".to_owned());
-        number(&mut lines, "torque", scene.torque_limit);
-        number(&mut lines, "encoder_step", *encoder_step);
+    }
+    for (key, value) in limits {
+        number(&mut lines, key, value);
     }
     lines.join("\n") + "\n"
 }
@@ -42,7 +49,7 @@ fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
 }
 
 /// A passivity is written where somebody declared it: not where it is what the chain has.
-fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device) {
+fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Option<f64>) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
     let declared = device.passivity.filter(|passivity| !passivity.is_nan());
     let passivity = declared.filter(|&declared| Some(declared) != own);
@@ -50,6 +57,7 @@ fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device) {
         lines.push(format!("inertia = {:?}\ndamping = {:?}", mass.inertia, mass.damping));
     }
     number(lines, "passivity", passivity);
+    number(lines, "friction", friction);
     if chain.encoder() == EncoderPlace::Hand {
         lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
     }
@@ -141,7 +149,7 @@ mod tests {
         [first, second]
     }
 
-    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\n";
+    const RIGID: &str = "inertia = 2.2e-5\ndamping = 0.1\npassivity = 0.07\nfriction = 0.003\n";
     const SPRING: &str = "[environment]\ntype = \"delayed-spring\"\nstiffness = 0.1\ndelay = 3\n";
 
     fn text(device: &str, rest: &str) -> String {
@@ -201,7 +209,7 @@ mod tests {
         ] {
             let rest = format!(
                 "{SPRING}[simulation]\nsamples = 9\n{torque}\n[human]\ninertia = 0.1\n\
-                 stiffness = 3\n[limits]\nencoder_step = 1e-4\n"
+                 stiffness = 3\n[limits]\nencoder_step = 1e-4\nfull_scale = 0.7\n"
             );
             let [first, second] = again(&text(RIGID, &rest));
             assert_eq!(first, second);

@@ -1,4 +1,6 @@
+use firmware::certificate::{Assumption, Assumptions, Rest, Steps, assess};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::number::Format;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::torque::LimitReason;
 
@@ -146,6 +148,66 @@ fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
     };
     assert!(end(0.0) > step);
     assert_eq!(end(0.5 * 500.0 * step), 0.0);
+}
+
+/// Theory, sections 6 and 8, behind a coupling: what the certificate says of an encoder's step
+/// bounds what the step does to the torque, and as much friction lets the device rest where half of
+/// the smallest torque that moves does not.
+#[test]
+fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
+    let scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));
+    let step = 1e-4;
+    let run = |friction: f64| {
+        let experiment =
+            Experiment { friction, encoder_step: Some(step), ..moving(&scene, 3000, 0.02) };
+        simulate(&experiment, Stride::default()).unwrap()
+    };
+    let steps = Steps { encoder: Some(step), ..Steps::default() };
+    let hum = Rest::of(&scene, Format::F64, &steps).unwrap().hum();
+    // K x / (1 - r) adds up to 924 N m/rad (theory, section 6).
+    assert!((hum / (0.5 * step * 924.0) - 1.0).abs() < 1e-9, "{hum}");
+
+    let free = run(0.0);
+    let moves = |velocity: &[f64]| velocity[2500..].iter().any(|&v| v != 0.0);
+    assert!(moves(&free.velocity));
+    // The torque of the linear loop for the same motion, one sample late. The encoder rounds down,
+    // which is to the nearest of half a step less.
+    let (mut linear, mut torque, mut last) = (Vec::new(), 0.0, 0.0);
+    for x in &free.position {
+        linear.push(torque);
+        let x_e = x - 0.5 * step - torque / 44.0;
+        torque = 22.0 * x_e + 10.0 * (x_e - last);
+        last = x_e;
+    }
+    let off = linear.iter().zip(&free.torque).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off <= hum * (1.0 + 1e-9) && off > 0.05 * hum, "{off} {hum}");
+
+    assert!(!moves(&run(hum).velocity));
+}
+
+/// Theory, section 8: with b < K T/2 friction alone keeps small motion from growing, up to a speed.
+#[test]
+fn friction_alone_quiets_what_is_slower_than_the_certificate_says() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    for (stiffness, friction) in [(1400.0, 0.05), (1200.0, 0.02)] {
+        let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
+        let steps = Steps { friction: Some(friction), ..Steps::default() };
+        let assumptions = Assumptions::of(&scene, &assess(&scene), &steps);
+        let speed = assumptions.iter().find_map(|one| match one {
+            Assumption::FrictionOnly { speed, .. } => Some(*speed),
+            _ => None,
+        });
+        let speed = speed.expect("it is short of damping");
+        let should = 4.0 * friction / (std::f64::consts::PI * (0.5e-3 * stiffness - 0.5));
+        assert!((speed / should - 1.0).abs() < 1e-9, "{speed} {should}");
+        let later = |start: f64| {
+            let start = Motion { position: 0.0, velocity: start };
+            let experiment = Experiment { friction, start, ..moving(&scene, 400, 0.0) };
+            let motion = simulate(&experiment, Stride::default()).unwrap();
+            motion.velocity[300..].iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+        };
+        assert!(later(0.95 * speed) < 0.95 * speed && later(1.05 * speed) > 1.05 * speed);
+    }
 }
 
 #[test]

@@ -93,7 +93,8 @@ impl core::fmt::Display for StartError {
 ///
 /// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), the
 /// transducers, and the type to compute in: `float` by default, `fixed` with the feature
-/// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
+/// `fixed-point`; and, if it is known, the dry `friction` of the device in N m, by which the
+/// certificate says whether it comes to rest. On a board the program runs the servo; on the host it prints the certificate.
 #[macro_export]
 macro_rules! scene_program {
     (
@@ -101,17 +102,37 @@ macro_rules! scene_program {
         certified: $certified:ident,
         transducers: $transducers:ident,
         float: $float:ty,
-        fixed: $fixed:ty $(,)?
+        fixed: $fixed:ty
+        $(, friction: $friction:expr)? $(,)?
     ) => {
+        /// The certificate of the coefficients that the program multiplies by: where rounding
+        /// them to its number format took it away, this does not compile.
+        pub const CERTIFIED_AS_IT_RUNS: $crate::certificate::Certified<
+            $crate::scene::Scene<$environment>,
+        > = $certified.certified_in(
+            <$crate::chosen_number!($float, $fixed) as $crate::number::Number>::FORMAT,
+        );
+
+        // On the host both formats are judged, whichever a board will be built for.
+        #[cfg(not(target_os = "none"))]
+        const _: () = {
+            let _ = $certified.certified_in(<$float as $crate::number::Number>::FORMAT);
+            let _ = $certified.certified_in(<$fixed as $crate::number::Number>::FORMAT);
+        };
+
         /// Prints the certificate.
         #[cfg(not(target_os = "none"))]
         pub fn main() {
             let data = $certified.scene().as_data();
-            print!("{}", $crate::board::report::Report::new(&$certified, &data));
+            #[allow(unused_mut, unused_assignments)]
+            let mut friction = None;
+            $(friction = Some($friction);)?
+            let steps = $crate::certificate::Steps::of(&$transducers, friction);
+            print!("{}", $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps));
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_program!($scene: $environment, $certified, $transducers, $crate::chosen_number!($float, $fixed));
+        $crate::board_program!($scene: $environment, CERTIFIED_AS_IT_RUNS, $transducers, $crate::chosen_number!($float, $fixed));
     };
 }
 

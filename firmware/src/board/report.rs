@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::certificate::{Answer, Assessment, Assumptions, Certified, Rule};
+use crate::certificate::{Answer, Assessment, Assumptions, Certified, Rule, Standing, Steps};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -14,20 +14,22 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a certified scene, and of the same scene with its environment as data.
-    pub const fn new<E>(certified: &Certified<Scene<E>>, data: &Scene) -> Self {
-        Self { assessment: *certified.assessment(), assumptions: Assumptions::of(data) }
+    /// Of a certified scene, of the same scene with its environment as data, and of the machine.
+    pub fn new<E>(certified: &Certified<Scene<E>>, data: &Scene, steps: &Steps) -> Self {
+        let assessment = *certified.assessment();
+        Self { assessment, assumptions: Assumptions::of(data, &assessment, steps) }
     }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Assessment { alpha, alpha_coupled, bound, delta, paper, exact, rule, .. } =
+        let Assessment { alpha, alpha_coupled, bound, delta, paper, exact, rule, format, .. } =
             self.assessment;
         // Only a certified scene has a report.
         writeln!(f, "verdict        certified")?;
         writeln!(f, "rules          paper {}, exact {}", word(paper), word(exact))?;
         writeln!(f, "judged by      {}", sentence(rule))?;
+        writeln!(f, "computed in    {format}, with its coefficients as rounded")?;
         let indices =
             [("alpha", alpha), ("alpha, coupled", alpha_coupled), ("alpha, bound", bound)];
         for (name, index) in indices {
@@ -39,9 +41,13 @@ impl fmt::Display for Report {
         if let Some(margin) = self.assessment.margin() {
             writeln!(f, "margin         {margin:.9} N m s/rad")?;
         }
+        if let Some(rest) = self.assumptions.rest() {
+            writeln!(f, "at rest        {rest}")?;
+        }
         writeln!(f, "provided that")?;
         for assumption in self.assumptions.iter() {
-            writeln!(f, "  - {assumption}")?;
+            let failed = assumption.standing() == Standing::Fails;
+            writeln!(f, "  - {}{assumption}", if failed { "WARNING: " } else { "" })?;
         }
         Ok(())
     }

@@ -1,12 +1,20 @@
-//! What a verdict rests on: only what the scene uses.
+//! What a verdict rests on: only what the scene uses, each with its condition (theory, section 8)
+//! and with whether that holds.
 
+use core::f64::consts::PI;
 use core::fmt;
 
-use super::rules::{is_nonlinear, wall_of};
+use super::model::{Loop, Numbers, nonlinear_bound};
+use super::rest::{Rest, Steps};
+use super::rules::{Answer, Assessment, compare, is_nonlinear, paper_limit, wall_of};
 use crate::environment::Environment;
+use crate::passivity::discrete::index;
+use crate::passivity::interval::Interval;
+use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
+use crate::text::{AtMost, Written};
 
-/// One thing that a certificate takes for granted.
+/// One thing that a verdict takes for granted, or a condition of it that was checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Assumption {
     /// A1 of theory, section 4.
@@ -16,30 +24,97 @@ pub enum Assumption {
     },
     /// A2 of theory, section 4.
     Hold {
+        /// Time in s between two updates, where none may be missed.
+        period: Option<f64>,
+    },
+    /// Updates may be missed.
+    WorstPeriod {
         /// Longest time in s between two updates.
         longest: f64,
+        /// What is left of the device's passivity, in N m s/rad.
+        delta: f64,
     },
     /// The delay is what the scene says.
     Delay {
         /// Whole samples.
         samples: usize,
     },
-    /// The scene has no torque limit, so the converter must never saturate.
-    NeverSaturates,
+    /// The wall is felt on one side only.
+    OneSided {
+        /// The bound that it was judged by, in N m s/rad.
+        bound: Option<f64>,
+    },
     /// The torque is limited between environment and coupling.
     Limited {
         /// Largest torque in N m.
         torque: f64,
+        /// Torque in N m at the converter's largest code, where it was stated.
+        full_scale: Option<f64>,
     },
-    /// The wall is felt on one side only.
-    OneSided,
+    /// The scene has no torque limit, and the converter has one.
+    Saturates {
+        /// The bound in N m s/rad by which it would pass with a limit; `None` where it would not.
+        bound: Option<f64>,
+    },
     /// The canceller removes damping that must be there.
     CancelledDamping {
         /// Declared device damping in N m s/rad.
         damping: f64,
     },
-    /// Encoder and converter steps are outside the linear verdict.
-    Quantisation,
+    /// Steps of encoder, numbers and converter are outside the linear verdict.
+    Quantisation(Rest),
+    /// The same where nothing is known of encoder and converter.
+    StepsNotStated,
+    /// The same where the controller's response does not end.
+    StepsUnbounded,
+    /// Without a certificate there is still the device's friction.
+    FrictionOnly {
+        /// Declared friction in N m.
+        friction: f64,
+        /// Speed in rad/s below which it takes more than the controller puts in.
+        speed: f64,
+    },
+}
+
+/// Whether an assumption holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It is about the machine: nothing in the scene can tell.
+    TakenForGranted,
+    /// Its condition was checked and holds.
+    Holds,
+    /// Its condition could be checked, if more were stated.
+    NotStated,
+    /// Its condition was checked and does not hold.
+    Fails,
+}
+
+impl Assumption {
+    /// Whether it holds.
+    pub fn standing(&self) -> Standing {
+        match self {
+            Self::DevicePassivity { .. }
+            | Self::Hold { .. }
+            | Self::Delay { .. }
+            | Self::CancelledDamping { .. }
+            | Self::StepsUnbounded
+            | Self::Saturates { bound: None } => Standing::TakenForGranted,
+            Self::WorstPeriod { .. } | Self::Saturates { bound: Some(_) } => Standing::Holds,
+            Self::OneSided { bound } if bound.is_some() => Standing::Holds,
+            Self::Limited { full_scale: None, .. } | Self::StepsNotStated => Standing::NotStated,
+            Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
+                Standing::Holds
+            }
+            Self::OneSided { .. } | Self::Limited { .. } | Self::FrictionOnly { .. } => {
+                Standing::Fails
+            }
+            Self::Quantisation(rest) => match rest.comes_to_rest() {
+                None => Standing::NotStated,
+                Some(true) => Standing::Holds,
+                Some(false) => Standing::Fails,
+            },
+        }
+    }
 }
 
 impl fmt::Display for Assumption {
@@ -50,80 +125,147 @@ impl fmt::Display for Assumption {
                 "whatever passive hand holds it, the device is output strictly passive from motor \
                  torque to velocity at the encoder with delta = {delta} N m s/rad"
             ),
-            Self::Hold { longest } => write!(
+            Self::Hold { period } => {
+                f.write_str(
+                    "position and torque belong to the same instant, and the torque is held until \
+                     the next",
+                )?;
+                match period {
+                    Some(period) => write!(f, ", {period} s later: no update is missed"),
+                    None => Ok(()),
+                }
+            }
+            Self::WorstPeriod { longest, delta } => write!(
                 f,
-                "position and torque belong to the same instant, the torque is held until the \
-                 next, and no two updates are more than {longest} s apart"
+                "no two updates are more than {longest} s apart: judged with what that leaves of \
+                 delta, {} N m s/rad",
+                Written(*delta)
             ),
             Self::Delay { samples } => {
                 write!(f, "the environment is late by exactly {samples} whole sample(s)")
             }
-            Self::NeverSaturates => {
-                f.write_str("the torque never reaches the limit of motor or converter")
+            Self::OneSided { bound } => {
+                f.write_str("one-sided wall; judged by the nonlinear bound")?;
+                write_bound(f, *bound)
             }
-            Self::Limited { torque } => write!(
+            Self::Limited { torque, full_scale } => write_limit(f, *torque, *full_scale),
+            Self::Saturates { bound: Some(bound) } => write!(
                 f,
-                "torque limited to {torque} N m between environment and coupling; judged by the \
-                 nonlinear bound"
+                "the torque may reach the converter's full scale: with a torque limit it passes \
+                 too, by the nonlinear bound of {} N m s/rad",
+                Written(*bound)
             ),
-            Self::OneSided => f.write_str("one-sided wall; judged by the nonlinear bound"),
+            Self::Saturates { bound: None } => f.write_str(
+                "the torque never reaches the limit of motor or converter: with a torque limit it \
+                 would not pass",
+            ),
             Self::CancelledDamping { damping } => write!(
                 f,
                 "the device really has the damping {damping} N m s/rad that is partly cancelled"
             ),
-            Self::Quantisation => f.write_str(
-                "encoder and converter steps are not part of the verdict: without friction of at \
-                 least the torque of one step the device may hum at rest by that much",
+            Self::Quantisation(rest) => write_rest(f, rest),
+            Self::StepsNotStated => f.write_str(
+                "the steps of encoder and converter are not stated and not judged: without \
+                 friction of the torque that they move the device may hum at rest by that much",
+            ),
+            Self::StepsUnbounded => f.write_str(
+                "the steps of encoder, numbers and converter are not judged: the controller's \
+                 response hardly ends, so that no friction makes up for them",
+            ),
+            Self::FrictionOnly { friction, speed } => write!(
+                f,
+                "its friction of {} N m alone takes more than the controller puts in, but only \
+                 below {} rad/s: it is quiet until something moves it faster",
+                Written(*friction),
+                Written(*speed)
             ),
         }
     }
 }
 
+fn write_bound(f: &mut fmt::Formatter<'_>, bound: Option<f64>) -> fmt::Result {
+    match bound {
+        Some(bound) => write!(f, " of {} N m s/rad", Written(bound)),
+        None => f.write_str(", of which none is known for this environment"),
+    }
+}
+
+fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>) -> fmt::Result {
+    write!(
+        f,
+        "torque limited to {torque} N m between environment and coupling; judged by the nonlinear \
+         bound"
+    )?;
+    match full_scale {
+        Some(full_scale) if torque <= full_scale => {
+            write!(f, ", and within the converter's full scale of {full_scale} N m")
+        }
+        Some(full_scale) => write!(
+            f,
+            ", but above the converter's full scale of {full_scale} N m, which would limit it \
+             again: lower the limit to that"
+        ),
+        None => f.write_str("; the converter's full scale must not be below, and is not stated"),
+    }
+}
+
+/// What moves the torque at rest, what is not stated of it, and whether friction is enough.
+fn write_rest(f: &mut fmt::Formatter<'_>, rest: &Rest) -> fmt::Result {
+    f.write_str("at rest the torque is off by at most")?;
+    let parts = rest.parts();
+    let mut between = " ";
+    for (name, part) in parts {
+        if let Some(part) = part {
+            write!(f, "{between}{} N m ({name})", AtMost(part))?;
+            between = ", ";
+        }
+    }
+    for (name, _) in parts.iter().filter(|(_, part)| part.is_none()) {
+        write!(f, "; the {name}'s step is not stated and not in this")?;
+    }
+    write!(f, ": {rest}")
+}
+
+const MOST: usize = 9;
+
 /// The assumptions of a scene's verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumptions {
-    all: [Option<Assumption>; 8],
+    all: [Option<Assumption>; MOST],
 }
 
 impl Assumptions {
-    /// Lists what the verdict on `scene` rests on.
-    pub const fn of(scene: &Scene) -> Self {
-        let delta = match scene.device.passivity {
-            Some(passivity) => passivity,
-            None => scene.device.damping,
-        };
-        let longest = match scene.timing.worst_period {
-            Some(worst) => worst,
-            None => scene.timing.period,
-        };
-        let limited = match scene.torque_limit {
-            Some(torque) => Assumption::Limited { torque },
-            None => Assumption::NeverSaturates,
-        };
-        let wall = wall_of(&scene.environment);
-        let delay = match (&scene.environment, wall) {
-            (_, Some(wall)) => wall.delay,
-            (Environment::FreeMode { delay, .. }, _) => *delay,
-            (Environment::Rational(rational), _) => rational.delay,
-            _ => 0,
-        };
+    /// Lists what a verdict on `scene` rests on, given what is known of the machine.
+    pub fn of(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Self {
+        let mut list = Self { all: [None; MOST] };
+        let delta = scene.device.passivity.unwrap_or(scene.device.damping);
+        list.push(Some(Assumption::DevicePassivity { delta }));
+        let worst = scene.timing.worst_period.filter(|&worst| worst != scene.timing.period);
+        let period = worst.is_none().then_some(scene.timing.period);
+        list.push(Some(Assumption::Hold { period }));
+        list.push(worst.map(|longest| Assumption::WorstPeriod {
+            longest,
+            delta: assessment.delta.midpoint(),
+        }));
+        list.push(delay(&scene.environment));
+        let one_sided = wall_of(&scene.environment).is_some_and(|wall| wall.one_sided);
+        let bound = assessment.bound.map(Interval::hi);
+        list.push(one_sided.then_some(Assumption::OneSided { bound }));
+        list.push(saturation(scene, assessment, steps));
         let cancels = matches!(
             scene.environment,
             Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
         );
-        let one_sided = is_nonlinear(scene) && matches!(wall, Some(w) if w.one_sided);
         let damping = scene.device.damping;
-        Self {
-            all: [
-                Some(Assumption::DevicePassivity { delta }),
-                Some(Assumption::Hold { longest }),
-                if delay > 0 { Some(Assumption::Delay { samples: delay }) } else { None },
-                if one_sided { Some(Assumption::OneSided) } else { None },
-                Some(limited),
-                if cancels { Some(Assumption::CancelledDamping { damping }) } else { None },
-                Some(Assumption::Quantisation),
-                None,
-            ],
+        list.push(cancels.then_some(Assumption::CancelledDamping { damping }));
+        list.push(assessment.outcome.is_ok().then(|| quantisation(scene, assessment, steps)));
+        list.push(friction_only(scene, assessment, steps));
+        list
+    }
+
+    fn push(&mut self, assumption: Option<Assumption>) {
+        if let Some(place) = self.all.iter_mut().find(|place| place.is_none()) {
+            *place = assumption;
         }
     }
 
@@ -131,4 +273,69 @@ impl Assumptions {
     pub fn iter(&self) -> impl Iterator<Item = &Assumption> {
         self.all.iter().flatten()
     }
+
+    /// What the steps of encoder, numbers and converter do at rest, where the scene is certified
+    /// and they were stated.
+    pub fn rest(&self) -> Option<&Rest> {
+        self.iter().find_map(|assumption| match assumption {
+            Assumption::Quantisation(rest) => Some(rest),
+            _ => None,
+        })
+    }
+}
+
+fn delay(environment: &Environment) -> Option<Assumption> {
+    let samples = match (environment, wall_of(environment)) {
+        (_, Some(wall)) => wall.delay,
+        (Environment::FreeMode { delay, .. }, _) => *delay,
+        (Environment::Rational(rational), _) => rational.delay,
+        _ => 0,
+    };
+    (samples > 0).then_some(Assumption::Delay { samples })
+}
+
+/// A limit that the scene has, or the converter's: the servo limits there in the same place, so
+/// that a linear scene goes on to be passive if the nonlinear bound passes too.
+fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<Assumption> {
+    if let Some(torque) = scene.torque_limit {
+        return Some(Assumption::Limited { torque, full_scale: steps.full_scale });
+    }
+    if is_nonlinear(scene) {
+        // Judged by that bound already.
+        return None;
+    }
+    let numbers = Numbers::of(scene, assessment.format);
+    let bound = nonlinear_bound(&scene.environment, &numbers).filter(|bound| {
+        let limit = paper_limit(&numbers);
+        assessment.alpha.is_some()
+            && limit.is_some_and(|limit| compare(*bound, limit) == Answer::Pass)
+    });
+    Some(Assumption::Saturates { bound: bound.map(Interval::hi) })
+}
+
+fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assumption {
+    if steps.encoder.or(steps.full_scale).is_none() {
+        return Assumption::StepsNotStated;
+    }
+    match Rest::of(scene, assessment.format, steps) {
+        Some(rest) => Assumption::Quantisation(rest),
+        None => Assumption::StepsUnbounded,
+    }
+}
+
+/// Of a scene that has no certificate: how far its friction goes without one. A controller that
+/// needs `alpha` of damping where there is `delta` puts in `pi (alpha - delta) omega A^2` a cycle
+/// of amplitude `A`, of which friction takes `4 f_c A`. The index is that of the whole controller
+/// one sample later, which is the condition without a coupling (theory, section 5).
+fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<Assumption> {
+    let friction = steps.friction.filter(|&friction| friction > 0.0)?;
+    if assessment.outcome.is_ok() {
+        return None;
+    }
+    let controller = Loop::in_format(scene, assessment.format).ok()?.controller;
+    let later = Transfer { shift: controller.shift - 1, ..controller };
+    let needed = index(later, Interval::decimal(scene.timing.period), false).ok()?.minimum;
+    let shortage = needed.midpoint() - assessment.delta.midpoint();
+    let speed = 4.0 * friction / (PI * shortage);
+    (shortage > 0.0).then_some(Assumption::FrictionOnly { friction, speed })
 }

@@ -33,19 +33,22 @@ mod parameter;
 mod posed;
 mod rejection;
 mod remedy;
+mod rest;
 mod rules;
 mod timed;
 
-pub use assumption::{Assumption, Assumptions};
+pub use assumption::{Assumption, Assumptions, Standing};
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Relation, Remedies, Remedy};
-pub use rules::{Answer, Assessment, Rule, assess, gamma};
+pub use rest::{Rest, Steps};
+pub use rules::{Answer, Assessment, Rule, assess, assess_in, gamma};
 pub use timed::{Timed, TimingError};
 
 use crate::environment::*;
+use crate::number::Format;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, Renders};
 
@@ -71,12 +74,18 @@ impl<S> Certified<S> {
     }
 }
 
-/// Judges a scene given as data: the certificate's numbers, or why there is no certificate.
+/// Judges a scene given as data, as it was written: the certificate's numbers, or why there is no
+/// certificate.
 pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
-    let assessment = assess(scene);
+    certify_in(scene, Format::F64)
+}
+
+/// The same of the coefficients that a servo in this number format multiplies by.
+pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
+    let assessment = assess_in(scene, format);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies(rejection, scene)),
+        Err(rejection) => Err(remedy::with_remedies(rejection, scene, format)),
     }
 }
 
@@ -100,9 +109,15 @@ macro_rules! certify_for {
                 }
             }
 
-            /// Judges the scene; only one that is proved passive becomes [`Certified`].
+            /// Judges the scene as it was written; only one that is proved passive becomes
+            /// [`Certified`].
             pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
-                match certify(&self.as_data()) {
+                self.certify_in(Format::F64)
+            }
+
+            /// Judges the coefficients that a servo in this number format multiplies by.
+            pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
+                match certify_in(&self.as_data(), format) {
                     Ok(assessment) => Ok(Certified { scene: self, assessment }),
                     Err(rejection) => Err(rejection),
                 }
@@ -122,6 +137,20 @@ macro_rules! certify_for {
         }
 
         impl<$($generics)*> Certified<Scene<$environment>> {
+            /// For constants: the same scene's certificate in the number format that it runs in,
+            /// or a compile error that says why it has none there.
+            ///
+            /// # Panics
+            /// If the coefficients as rounded to the format are not certified; in a constant that
+            /// is the compile error.
+            #[track_caller]
+            pub const fn certified_in(self, format: Format) -> Self {
+                match self.scene.certify_in(format) {
+                    Ok(certified) => certified,
+                    Err(rejection) => refuse(&rejection.sentence_in(format)),
+                }
+            }
+
             /// Pairs the scene with the mode in which a board puts its torques out.
             ///
             /// # Errors

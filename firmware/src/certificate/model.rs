@@ -1,9 +1,14 @@
 //! The environments as transfer functions with interval coefficients (theory, section 5), and the
 //! bound on their index when they are one-sided or limited.
+//!
+//! What is judged is what a servo multiplies by: each coefficient is taken as its number format
+//! rounds it, and the transfer function put together from these. For [`Format::F64`] a coefficient
+//! is what was written, to the digits of a double.
 
-use crate::environment::{Environment, Rational, Wall};
+use crate::environment::{Environment, MAX_DEGREE, Rational, Wall};
+use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
-use crate::passivity::polynomial::Polynomial;
+use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::{Coupling, Scene};
 
@@ -17,12 +22,19 @@ pub(super) struct Numbers {
     pub delta: Interval,
     /// Damping that a canceller takes away, `be = b - epsilon`; zero without a canceller.
     pub cancelled: Interval,
-    /// Coupling stiffness; `None`: rigid.
+    /// Coupling stiffness as it was written; `None`: rigid.
     pub coupling: Option<Interval>,
+    /// Compliance `V` of the coupling in rad/(N m).
+    pub compliance: Interval,
+    /// Whether the coupling is the standard one, `V = T / (2 delta)`, to the digits that were
+    /// written. The compliance as rounded is then that or a little more.
+    pub is_standard: bool,
+    /// The number format of the servo's coefficients.
+    pub format: Format,
 }
 
 impl Numbers {
-    pub const fn of(scene: &Scene) -> Self {
+    pub const fn of(scene: &Scene, format: Format) -> Self {
         let period = Interval::decimal(scene.timing.period);
         let delta = Interval::decimal(match scene.device.passivity {
             Some(passivity) => passivity,
@@ -40,33 +52,66 @@ impl Numbers {
             }
             _ => Interval::ZERO,
         };
-        let coupling = match scene.coupling {
-            Coupling::Rigid => None,
-            Coupling::Spring { stiffness } => Some(Interval::decimal(stiffness)),
+        let (coupling, written) = match scene.coupling {
+            Coupling::Rigid => (None, Interval::ZERO),
+            Coupling::Spring { stiffness } => {
+                let stiffness = Interval::decimal(stiffness);
+                (Some(stiffness), Interval::ONE.div(stiffness))
+            }
         };
-        Self { period, delta, cancelled, coupling }
+        let compliance = rounded(written, format, Rounding::Outward);
+        let is_standard = written.sub(standard(period, delta)).contains(0.0);
+        Self { period, delta, cancelled, coupling, compliance, is_standard, format }
     }
 
-    /// Compliance `V` of the coupling in rad/(N m).
-    pub const fn compliance(&self) -> Interval {
-        match self.coupling {
-            None => Interval::ZERO,
-            Some(stiffness) => Interval::ONE.div(stiffness),
-        }
+    /// The coefficient that a servo makes of a value.
+    const fn coefficient(&self, value: Interval) -> Interval {
+        rounded(value, self.format, Rounding::Nearest)
     }
 
     /// `K_vc T / 2`, the damping that the coupling stands for; `None`: rigid.
     pub const fn coupling_damping(&self) -> Option<Interval> {
-        match self.coupling {
-            None => None,
-            Some(stiffness) => Some(stiffness.mul(self.period).half()),
+        match (self.coupling, self.format) {
+            (None, _) => None,
+            (Some(stiffness), Format::F64) => Some(stiffness.mul(self.period).half()),
+            (Some(_), _) => Some(self.period.div(self.compliance).half()),
         }
     }
 
-    /// `V - T / (2 delta)`: what the coupling has over the standard one. Contains 0 where the
-    /// coupling is the standard one to the digits that were written.
+    /// `V - T / (2 delta)`: what the coupling has over the standard one.
     pub const fn excess_compliance(&self) -> Interval {
-        self.compliance().sub(self.period.div(self.delta.double()))
+        self.compliance.sub(standard(self.period, self.delta))
+    }
+
+    /// What the servo's gains make of an environment with this feedthrough.
+    ///
+    /// It solves the loop of coupling and environment by a gain `g`, which is `1 / (1 + f V)`
+    /// rounded. The torque `g v`, with `v` the one for the device's own position, is that of the
+    /// environment times `k = g / (1 - f V g)` behind the same coupling: exactly 1 for the exact
+    /// gain, and where nothing is fed through.
+    pub const fn solved(&self, feedthrough: Interval) -> Interval {
+        if feedthrough.is_zero() || matches!(self.format, Format::F64) {
+            return Interval::ONE;
+        }
+        let fed_back = feedthrough.mul(self.compliance);
+        let gain = self.coefficient(Interval::ONE.div(Interval::ONE.add(fed_back)));
+        gain.div(Interval::ONE.sub(fed_back.mul(gain)))
+    }
+}
+
+/// `T / (2 delta)`: compliance of the standard coupling.
+const fn standard(period: Interval, delta: Interval) -> Interval {
+    period.div(delta.double())
+}
+
+/// All coefficients that a format makes of the values of an interval.
+const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interval {
+    match format {
+        Format::F64 => value,
+        _ => Interval::new(
+            format.coefficient(value.lo(), rounding),
+            format.coefficient(value.hi(), rounding),
+        ),
     }
 }
 
@@ -83,25 +128,24 @@ pub(super) const fn transfer(
             Some(Transfer { shift: free.shift - *delay as i32, ..free })
         }
         Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(wall(w, n)),
-        Environment::Rational(r) => Some(rational(r)),
+        Environment::Rational(r) => rational(r, n),
     };
     match built {
         None => Err(Unbuildable::OutOfRange),
-        Some(transfer) => match transfer.check() {
-            Ok(()) => Ok(transfer),
-            Err(error) => Err(error),
-        },
+        Some(transfer) => {
+            let transfer = Transfer { scale: n.solved(transfer.feedthrough()), ..transfer };
+            match transfer.check() {
+                Ok(()) => Ok(transfer),
+                Err(error) => Err(error),
+            }
+        }
     }
 }
 
 /// `z^-n (K + B (1 - a)(z - 1) / (T (z - a)))`, `a = 0` without a filter (equation 24).
 const fn wall(w: &Wall, n: &Numbers) -> Transfer {
-    let (k, b) = (Interval::decimal(w.stiffness), Interval::decimal(w.damping));
-    let a = match w.filter {
-        Some(a) if w.damping != 0.0 => Interval::decimal(a),
-        _ => Interval::ZERO,
-    };
-    let b = b.mul(Interval::ONE.sub(a));
+    let k = n.coefficient(Interval::decimal(w.stiffness));
+    let Washout { gain: b, pole: a } = damper(w, n);
     let denominator = Polynomial::ascending(&[a.neg().mul(n.period), n.period]);
     let shift = -(w.delay as i32);
     if w.stiffness == 0.0 {
@@ -114,30 +158,107 @@ const fn wall(w: &Wall, n: &Numbers) -> Transfer {
     Transfer { shift, ..Transfer::new(numerator, denominator) }
 }
 
+/// `(gain / T) (z - 1) / (z - pole)`, as a servo computes it: from the gain over the period and
+/// from the rate `1 - pole`.
+pub(super) struct Washout {
+    pub gain: Interval,
+    pub pole: Interval,
+}
+
+impl Washout {
+    /// From the gain over the period and the rate as they were before rounding.
+    const fn rounded(gain: Interval, rate: Interval, n: &Numbers) -> Self {
+        let gain = n.coefficient(gain).mul(n.period);
+        Self { gain, pole: Interval::ONE.sub(n.coefficient(rate)) }
+    }
+
+    /// `sum abs(h)` of its impulse response from velocity to torque.
+    const fn l1_norm(&self) -> Interval {
+        self.gain.abs().div(Interval::ONE.sub(self.pole.abs()))
+    }
+}
+
+/// The damper of a wall.
+pub(super) const fn damper(w: &Wall, n: &Numbers) -> Washout {
+    let b = Interval::decimal(w.damping);
+    let rate = match w.filter {
+        Some(a) if w.damping != 0.0 => Interval::ONE.sub(Interval::decimal(a)),
+        _ => Interval::ONE,
+    };
+    match (n.format, w.filter) {
+        (Format::F64, Some(a)) if w.damping != 0.0 => {
+            Washout { gain: b.mul(rate), pole: Interval::decimal(a) }
+        }
+        (Format::F64, _) => Washout { gain: b, pole: Interval::ZERO },
+        _ => Washout::rounded(b.div(n.period).mul(rate), rate, n),
+    }
+}
+
 /// `-be K (z - 1) / ((K T + be) z - be)`, for a rigid coupling `-be (z - 1) / (T z)` (equation
 /// 23, generalised from `K = 2 b / T` to any coupling spring).
 const fn free_mode(n: &Numbers) -> Transfer {
     let be = n.cancelled;
-    let (gain, denominator) = match n.coupling {
-        Some(k) => {
+    let (gain, denominator) = match (n.format, n.coupling) {
+        (Format::F64, Some(k)) => {
             let kt = k.mul(n.period);
             (be.mul(k), Polynomial::ascending(&[be.neg(), kt.add(be)]))
         }
-        None => (be, Polynomial::ascending(&[Interval::ZERO, n.period])),
+        (Format::F64, None) => (be, Polynomial::ascending(&[Interval::ZERO, n.period])),
+        _ => {
+            let Washout { gain, pole } = canceller(n);
+            (gain, Polynomial::ascending(&[pole.neg().mul(n.period), n.period]))
+        }
     };
     let numerator = Polynomial::ascending(&[gain.neg()]);
     Transfer { ones: 1, ..Transfer::new(numerator, denominator) }
 }
 
-const fn rational(r: &Rational) -> Transfer {
-    Transfer {
+/// The canceller as a servo computes it, with the opposite sign.
+pub(super) const fn canceller(n: &Numbers) -> Washout {
+    let be = n.cancelled;
+    match n.coupling {
+        Some(k) => {
+            let kt = k.mul(n.period);
+            let leading = kt.add(be);
+            Washout::rounded(be.mul(k).div(leading), kt.div(leading), n)
+        }
+        None => Washout::rounded(be.div(n.period), Interval::ONE, n),
+    }
+}
+
+const fn rational(r: &Rational, n: &Numbers) -> Option<Transfer> {
+    let numerator = Polynomial::descending(r.numerator.as_slice(), false);
+    let denominator = Polynomial::descending(r.denominator.as_slice(), false);
+    let transfer = Transfer {
         shift: -(r.delay as i32),
         ones: r.unit_zeros as i32,
-        ..Transfer::new(
-            Polynomial::descending(r.numerator.as_slice(), false),
-            Polynomial::descending(r.denominator.as_slice(), false),
-        )
+        ..Transfer::new(numerator, denominator)
+    };
+    if matches!(n.format, Format::F64) || denominator.is_zero() {
+        return Some(transfer);
     }
+    // A servo has the zeros multiplied out and the leading coefficient divided out.
+    let Some(numerator) = numerator.times_unit_root(UnitRoot::Plus, r.unit_zeros) else {
+        return None;
+    };
+    let leading = denominator.leading();
+    Some(Transfer {
+        ones: 0,
+        numerator: divided(&numerator, leading, n),
+        denominator: divided(&denominator, leading, n),
+        ..transfer
+    })
+}
+
+/// The coefficients that a servo makes of those of a polynomial over `leading`.
+const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
+    let mut coefficients = [Interval::ZERO; 2 * MAX_DEGREE + 1];
+    let mut i = 0;
+    while i < p.len() && i < coefficients.len() {
+        coefficients[i] = n.coefficient(p.coefficient(i).div(leading));
+        i += 1;
+    }
+    Polynomial::ascending(&coefficients)
 }
 
 /// Upper bound on `alpha` that holds for one-sided walls, switching and a torque limit between
@@ -148,7 +269,32 @@ const fn rational(r: &Rational) -> Transfer {
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
+///
+/// Where the loop is solved in the tick, out of contact by one rounded gain and in contact by
+/// another, the larger of what they make of the torque multiplies all of it.
 pub(super) const fn nonlinear_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
+    let bound = exactly_solved_bound(environment, n);
+    match (bound, n.format) {
+        (Some(bound), format) if !matches!(format, Format::F64) => {
+            Some(bound.mul(largest_solved(environment, n)))
+        }
+        _ => bound,
+    }
+}
+
+/// The larger of [`Numbers::solved`] out of contact and in contact.
+const fn largest_solved(environment: &Environment, n: &Numbers) -> Interval {
+    let free = match environment {
+        Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()),
+        _ => Interval::ONE,
+    };
+    match transfer(environment, n) {
+        Ok(contact) => free.max(contact.scale),
+        Err(_) => Interval::ENTIRE,
+    }
+}
+
+const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
     match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall_bound(w, n)),
         Environment::FreeMode { .. } => canceller_bound(n),
@@ -161,25 +307,34 @@ pub(super) const fn nonlinear_bound(environment: &Environment, n: &Numbers) -> O
 }
 
 const fn wall_bound(w: &Wall, n: &Numbers) -> Interval {
-    let (k, b) = (Interval::decimal(w.stiffness), Interval::decimal(w.damping));
+    let damping = match n.format {
+        Format::F64 => Interval::decimal(w.damping).abs(),
+        _ => damper(w, n).l1_norm(),
+    };
     if w.delay == 0 {
         let passive = w.filter.is_none() && w.damping >= 0.0;
-        return if passive { Interval::ZERO } else { b.abs() };
+        return if passive { Interval::ZERO } else { damping };
     }
     let samples = Interval::exact(w.delay as f64 - 0.5);
-    k.mul(n.period).mul(samples).add(b.abs())
+    let k = n.coefficient(Interval::decimal(w.stiffness));
+    k.mul(n.period).mul(samples).add(damping)
 }
 
 const fn canceller_bound(n: &Numbers) -> Option<Interval> {
     let be = n.cancelled;
-    match n.coupling {
-        Some(k) if be.lo() < 0.0 => {
+    match (n.format, n.coupling) {
+        (Format::F64, Some(k)) if be.lo() < 0.0 => {
             // Added damping: the lag's pole be / (K T + be) is negative, its l1 norm larger.
             let kt = k.mul(n.period);
             let room = kt.sub(be.abs().double());
             if room.is_positive() { Some(kt.mul(be.abs()).div(room)) } else { None }
         }
-        _ => Some(be.abs()),
+        (Format::F64, _) => Some(be.abs()),
+        _ => {
+            let canceller = canceller(n);
+            let settles = Interval::ONE.sub(canceller.pole.abs()).is_positive();
+            if settles { Some(canceller.l1_norm()) } else { None }
+        }
     }
 }
 
@@ -196,26 +351,34 @@ pub struct Loop {
 }
 
 impl Loop {
-    /// The transfer functions of a scene, one-sidedness and torque limit left out.
+    /// The transfer functions of a scene as it was written, one-sidedness and torque limit left
+    /// out.
     ///
     /// # Errors
     /// Where the environment is not causal, the loop of coupling and environment has no solution,
     /// or a number is out of range.
     pub const fn of(scene: &Scene) -> Result<Self, Unbuildable> {
-        let n = Numbers::of(scene);
+        Self::in_format(scene, Format::F64)
+    }
+
+    /// The same of the coefficients that a servo in a number format multiplies by.
+    ///
+    /// # Errors
+    /// As [`Loop::of`].
+    pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
+        let n = Numbers::of(scene, format);
         let environment = match transfer(&scene.environment, &n) {
             Ok(environment) => environment,
             Err(error) => return Err(error),
         };
-        let controller = match environment.behind(n.compliance()) {
+        let controller = match environment.behind(n.compliance) {
             Ok(controller) => controller,
             Err(error) => return Err(error),
         };
-        let excess = n.excess_compliance();
-        let equivalent = if excess.contains(0.0) {
+        let equivalent = if n.is_standard {
             environment
         } else {
-            match environment.behind(excess) {
+            match environment.behind(n.excess_compliance()) {
                 Ok(equivalent) => equivalent,
                 Err(error) => return Err(error),
             }

@@ -5,6 +5,7 @@ use super::parameter::first_invalid;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
+use crate::number::Format;
 use crate::passivity::discrete::{RealPart, index_near};
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle, cancelled};
@@ -51,15 +52,23 @@ pub struct Posed {
 }
 
 impl Posed {
-    /// Poses a scene.
+    /// Poses a scene as it was written.
     ///
     /// # Errors
     /// What stands against judging it: an invalid number, a device without passivity, an
     /// environment that is not causal, or a loop without one solution.
     pub const fn of(scene: &Scene) -> Result<Self, Rejection> {
+        Self::in_format(scene, Format::F64)
+    }
+
+    /// The same with the coefficients that a servo in a number format multiplies by.
+    ///
+    /// # Errors
+    /// As [`Posed::of`].
+    pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
         match first_invalid(scene) {
             Some(invalid) => Err(Rejection::Invalid(invalid)),
-            None => Self::with(scene, Numbers::of(scene)),
+            None => Self::with(scene, Numbers::of(scene, format)),
         }
     }
 
@@ -72,7 +81,7 @@ impl Posed {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
         };
-        let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance()));
+        let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance));
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
@@ -140,9 +149,10 @@ impl Posed {
     }
 
     /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
-    /// the environment itself.
+    /// the environment itself. Where the compliance was rounded, the coupling is a little softer,
+    /// and [`exact_limit`] is what the paper's rule asks for then (theory, section 6).
     pub(super) const fn is_standard(&self) -> bool {
-        self.numbers.excess_compliance().contains(0.0)
+        self.numbers.is_standard
     }
 
     /// Index of the environment alone, looked at closely only near `limit`.

@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::parameter::InvalidParameter;
 use super::remedy::Remedies;
+use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::Doubt;
 use crate::text::Text;
@@ -121,7 +122,17 @@ impl Rejection {
 
     /// The rejection as a sentence, the same at compile time, on the host and on the board.
     pub const fn sentence(&self) -> Sentence {
+        self.sentence_in(Format::F64)
+    }
+
+    /// The same, saying first which rounding the numbers had.
+    pub const fn sentence_in(&self, format: Format) -> Sentence {
         let mut t = Sentence::new();
+        if !matches!(format, Format::F64) {
+            t.push("with its coefficients rounded to ");
+            t.push(format.name().as_str());
+            t.push(": ");
+        }
         t.push(if self.is_undecided() { "undecided: " } else { "rejected: " });
         match self {
             Self::Invalid(invalid) => invalid.write(&mut t),

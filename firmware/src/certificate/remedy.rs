@@ -7,6 +7,7 @@ use super::parameter::Parameter;
 use super::posed::Posed;
 use super::rejection::Rejection;
 use crate::environment::Environment;
+use crate::number::Format;
 use crate::scene::{Coupling, Scene};
 use crate::text::Text;
 
@@ -87,18 +88,22 @@ impl Remedies {
 }
 
 /// The rejection with the remedies that there are, where a remedy makes sense.
-pub(super) const fn with_remedies(rejection: Rejection, scene: &Scene) -> Rejection {
+pub(super) const fn with_remedies(
+    rejection: Rejection,
+    scene: &Scene,
+    format: Format,
+) -> Rejection {
     let mut out = rejection;
     match &mut out {
         Rejection::Shortage { remedies, .. }
         | Rejection::Coupling { remedies, .. }
-        | Rejection::Undecided { remedies, .. } => *remedies = search(scene),
+        | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
         _ => {}
     }
     out
 }
 
-const fn search(scene: &Scene) -> Remedies {
+const fn search(scene: &Scene, format: Format) -> Remedies {
     const ORDER: [(Parameter, Relation); CANDIDATES] = [
         (Parameter::Stiffness, Relation::AtMost),
         (Parameter::Damping, Relation::AtMost),
@@ -112,8 +117,8 @@ const fn search(scene: &Scene) -> Remedies {
     while i < CANDIDATES {
         let (parameter, relation) = ORDER[i];
         found.found[i] = match relation {
-            Relation::Exactly => standard_coupling(scene),
-            _ => invert(scene, parameter, relation),
+            Relation::Exactly => standard_coupling(scene, format),
+            _ => invert(scene, format, parameter, relation),
         };
         i += 1;
     }
@@ -121,14 +126,14 @@ const fn search(scene: &Scene) -> Remedies {
 }
 
 /// The standard coupling, `2 delta / T`, if that passes and is not what the scene has.
-const fn standard_coupling(scene: &Scene) -> Option<Remedy> {
-    let numbers = Numbers::of(scene);
-    if numbers.excess_compliance().contains(0.0) {
+const fn standard_coupling(scene: &Scene, format: Format) -> Option<Remedy> {
+    let numbers = Numbers::of(scene, format);
+    if numbers.is_standard {
         return None;
     }
     let parameter = Parameter::CouplingStiffness;
     let value = numbers.delta.double().div(numbers.period).midpoint();
-    if is_certified(scene, parameter, value) {
+    if is_certified(scene, format, parameter, value) {
         Some(Remedy { parameter, relation: Relation::Exactly, value })
     } else {
         None
@@ -142,7 +147,12 @@ const REFINEMENTS: u32 = 10;
 
 /// Looks for the nearest value of one number that passes, by bisection with the certificate
 /// itself; rounds it to the safe side and certifies the rounded value.
-const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Option<Remedy> {
+const fn invert(
+    scene: &Scene,
+    format: Format,
+    parameter: Parameter,
+    relation: Relation,
+) -> Option<Remedy> {
     let Some(start) = get(scene, parameter) else { return None };
     if start.is_nan() || start <= 0.0 {
         return None;
@@ -154,7 +164,7 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
     // A residual that was not positive starts the search at a small one, which may pass at once.
     let (mut fails, mut passes) = (start, start);
     let mut octave = 0;
-    while !is_certified(scene, parameter, passes) {
+    while !is_certified(scene, format, parameter, passes) {
         if octave == MAX_OCTAVES {
             return None;
         }
@@ -168,7 +178,7 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
     let mut i = 0;
     while i < REFINEMENTS && fails != passes {
         let middle = 0.5 * (fails + passes);
-        if is_certified(scene, parameter, middle) {
+        if is_certified(scene, format, parameter, middle) {
             passes = middle;
         } else {
             fails = middle;
@@ -176,16 +186,16 @@ const fn invert(scene: &Scene, parameter: Parameter, relation: Relation) -> Opti
         i += 1;
     }
     let value = three_digits(passes, relation);
-    if is_certified(scene, parameter, value) {
+    if is_certified(scene, format, parameter, value) {
         Some(Remedy { parameter, relation, value })
     } else {
         None
     }
 }
 
-const fn is_certified(scene: &Scene, parameter: Parameter, value: f64) -> bool {
+const fn is_certified(scene: &Scene, format: Format, parameter: Parameter, value: f64) -> bool {
     match with(scene, parameter, value) {
-        Some(changed) => match Posed::of(&changed) {
+        Some(changed) => match Posed::in_format(&changed, format) {
             Ok(posed) => posed.is_certified(),
             Err(_) => false,
         },

@@ -6,6 +6,7 @@ use super::posed::Posed;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use crate::environment::{Environment, Wall};
+use crate::number::Format;
 use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle};
@@ -51,6 +52,8 @@ pub struct Assessment {
     pub exact: Answer,
     /// Which of the two the verdict follows.
     pub rule: Rule,
+    /// The number format whose coefficients were judged.
+    pub format: Format,
     /// The verdict: `Ok` is `certified`.
     pub outcome: Result<(), Rejection>,
 }
@@ -86,9 +89,15 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
     Some(if gamma.is_finite() { gamma } else { Interval::new(f64::MAX, f64::INFINITY) })
 }
 
-/// Judges a scene by both rules, without looking for remedies.
-#[inline(never)]
+/// Judges a scene as it was written by both rules, without looking for remedies.
 pub const fn assess(scene: &Scene) -> Assessment {
+    assess_in(scene, Format::F64)
+}
+
+/// Judges the coefficients that a servo in this number format multiplies by, without looking for
+/// remedies.
+#[inline(never)]
+pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
     let rule = if is_nonlinear(scene) { Rule::Nonlinear } else { Rule::Exact };
     let mut out = Assessment {
         alpha: None,
@@ -99,13 +108,14 @@ pub const fn assess(scene: &Scene) -> Assessment {
         paper: Answer::Fail,
         exact: Answer::Fail,
         rule,
+        format,
         outcome: Ok(()),
     };
     if let Some(invalid) = first_invalid(scene) {
         out.outcome = Err(Rejection::Invalid(invalid));
         return out;
     }
-    let numbers = Numbers::of(scene);
+    let numbers = Numbers::of(scene, format);
     out.delta = numbers.delta;
     out.outcome = match Posed::with(scene, numbers) {
         Ok(posed) => judge(&posed, &mut out),
@@ -152,10 +162,10 @@ pub(super) const fn compare(index: Interval, limit: Interval) -> Answer {
 }
 
 /// What `alpha_coupled` has to stay below: `delta`; at the standard coupling also the `K_vc T / 2`
-/// that equals it to the digits that were written.
+/// that equals it to the digits that were written and to the rounding of the compliance.
 pub(super) const fn exact_limit(n: &Numbers) -> Interval {
     match n.coupling_damping() {
-        Some(damping) if n.excess_compliance().contains(0.0) => n.delta.min(damping),
+        Some(damping) if n.is_standard => n.delta.min(damping),
         _ => n.delta,
     }
 }

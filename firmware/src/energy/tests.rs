@@ -191,7 +191,8 @@ fn no_more_is_injected_than_the_certificate_has_room_for() {
     assert_eq!(inject(0.01749), Ok(()));
     let refused = inject(0.0176).unwrap_err();
     let BuildError::Injection { damping, room } = refused else { panic!("{refused}") };
-    assert!(damping == 0.0176 && (room - 0.0175).abs() < 1e-12);
+    // The coupling's compliance is rounded up to f32, which leaves that much less.
+    assert!(damping == 0.0176 && room <= 0.0175 && room > 0.0175 * (1.0 - 2e-7));
     assert!(refused.to_string().starts_with("a damping of 0.0176 N m s/rad that is switched"));
     assert!(matches!(inject(-0.001), Err(BuildError::NotPositive { .. })));
     assert!(matches!(inject(f64::NAN), Err(BuildError::Injection { .. })));

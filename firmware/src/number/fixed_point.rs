@@ -5,7 +5,10 @@ use core::hint::cold_path;
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
-use super::{Format, Number, OutOfRange, bounded};
+use super::{Format, Number, OutOfRange, Rounding, bounded};
+
+/// Largest magnitude of a coefficient.
+pub(super) const LARGEST: f64 = i32::MAX as f64;
 
 /// A coefficient of the fixed-point formats: `mantissa / 2^shift`.
 ///
@@ -24,24 +27,45 @@ impl Scaled {
     /// in place of eight.
     const LARGEST_SHIFT: u32 = 31;
 
-    /// Rounds `value`; an error from 2^31 on. Once a coefficient and never in a tick, so that it is
-    /// in a program once.
+    /// The nearest to `value`; an error from 2^31 on. Once a coefficient and never in a tick, so
+    /// that it is in a program once.
     #[inline(never)]
     pub(super) fn new(value: f64, format: Format) -> Result<Self, OutOfRange> {
-        let bound = f64::from(i32::MAX);
-        let magnitude = bounded(value, bound, format)?.abs();
-        let (mut scaled, mut shift) = (magnitude, 0);
-        while shift < Self::LARGEST_SHIFT && scaled * 2.0 + 0.5 <= bound {
-            scaled *= 2.0;
-            shift += 1;
+        bounded(value, LARGEST, format).map(|value| Self::of(value, Rounding::Nearest))
+    }
+
+    /// The nearest to `value` that is not farther from zero.
+    fn inward(value: f64, format: Format) -> Result<Self, OutOfRange> {
+        bounded(value, LARGEST, format).map(|value| Self::of(value, Rounding::Inward))
+    }
+
+    /// Rounds a value of magnitude up to [`LARGEST`]. The binary point moves with the value's
+    /// power of two alone, so that of two values the larger never gives the smaller coefficient.
+    pub(super) const fn of(value: f64, rounding: Rounding) -> Self {
+        let magnitude = value.abs();
+        let exponent = (magnitude.to_bits() >> 52) as i32 - 1023;
+        let mut shift = if exponent < 0 { Self::LARGEST_SHIFT } else { (30 - exponent) as u32 };
+        // Both the product and what its whole part leaves are exact.
+        let scaled = magnitude * (1_u32 << shift) as f64;
+        let whole = scaled as u32;
+        let rest = scaled - whole as f64;
+        let up = match rounding {
+            Rounding::Nearest => rest >= 0.5,
+            Rounding::Inward => false,
+            Rounding::Outward => rest > 0.0,
+        };
+        let mut mantissa = whole + up as u32;
+        if mantissa > i32::MAX as u32 {
+            // Rounded up to the next power of two.
+            (mantissa, shift) = (mantissa >> 1, shift - 1);
         }
-        let mantissa = (scaled + 0.5) as i32;
-        Ok(Self { mantissa: if value < 0.0 { -mantissa } else { mantissa }, shift })
+        let mantissa = mantissa as i32;
+        Self { mantissa: if value < 0.0 { -mantissa } else { mantissa }, shift }
     }
 
     /// The exact value.
-    pub(super) fn to_f64(self) -> f64 {
-        f64::from(self.mantissa) / f64::from(1_u32 << self.shift)
+    pub(super) const fn to_f64(self) -> f64 {
+        self.mantissa as f64 / (1_u32 << self.shift) as f64
     }
 
     /// `bits * self` rounded to nearest: the nearest `i32`, and whether it is that of the product.
@@ -133,7 +157,8 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
     }
 
     fn angle_scale(radians_per_count: f64) -> Result<Scaled, OutOfRange> {
-        Scaled::new(radians_per_count * Self::DELTA.to_num::<f64>().recip(), Self::FORMAT)
+        let steps = radians_per_count * Self::DELTA.to_num::<f64>().recip();
+        Scaled::inward(steps, Self::FORMAT)
     }
 
     #[inline(always)]
@@ -143,7 +168,8 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
     }
 
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {
-        Scaled::new(codes_per_torque * Self::DELTA.to_num::<f64>(), Self::FORMAT)
+        let codes = codes_per_torque * Self::DELTA.to_num::<f64>();
+        Scaled::inward(codes, Self::FORMAT)
     }
 
     #[inline(always)]

@@ -1,10 +1,10 @@
 //! The formats of the floating-point unit: `f32` on the target, `f64` as the host's reference.
 
-use super::{Format, Number, OutOfRange, bounded};
+use super::{Format, Number, OutOfRange, Rounding, bounded};
 
 /// Largest magnitude of a coefficient or a constant. An angle is below 2^34 rad, so that no
 /// product of the tick comes near the 2^127 where `f32` would turn infinite.
-const LARGEST: f64 = (1u64 << 40) as f64;
+pub(super) const LARGEST: f64 = (1u64 << 40) as f64;
 
 macro_rules! floating_point {
     ($float:ident, $bits:literal, $format:expr, $integers_from:expr) => {
@@ -69,7 +69,7 @@ macro_rules! floating_point {
             }
 
             fn angle_scale(radians_per_count: f64) -> Result<Self, OutOfRange> {
-                Self::from_f64(radians_per_count)
+                Self::from_f64($format.coefficient(radians_per_count, Rounding::Inward))
             }
 
             #[inline(always)]
@@ -78,7 +78,7 @@ macro_rules! floating_point {
             }
 
             fn code_scale(codes_per_torque: f64) -> Result<Self, OutOfRange> {
-                Self::from_f64(codes_per_torque)
+                Self::from_f64($format.coefficient(codes_per_torque, Rounding::Inward))
             }
 
             #[inline(always)]

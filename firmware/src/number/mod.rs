@@ -7,17 +7,19 @@
 mod arithmetic;
 mod fixed_point;
 mod float;
+mod rounding;
 #[cfg(test)]
 mod tests;
 mod truncated;
 
 pub use arithmetic::{Arithmetic, InEach};
 pub use fixed_point::Scaled;
+pub use rounding::Rounding;
 pub use truncated::Truncated;
 
 use core::fmt;
 
-use crate::text::Written;
+use crate::text::{Text, Written};
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
@@ -63,12 +65,13 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
         if self > other { self } else { other }
     }
 
-    /// The factor for [`Number::angle`] from the encoder's step in rad.
+    /// The factor for [`Number::angle`] from the encoder's step in rad, rounded [`Rounding::Inward`].
     fn angle_scale(radians_per_count: f64) -> Result<Self::Coefficient, OutOfRange>;
     /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
     /// the format's range.
     fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
-    /// The factor for [`Number::codes_below`] from the converter's codes per N m.
+    /// The factor for [`Number::codes_below`] from the converter's codes per N m, rounded
+    /// [`Rounding::Inward`].
     fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;
     /// `centre - torque * scale` rounded to the nearest whole code, for results in `0..=4095`.
     fn codes_below(self, centre: u16, scale: Self::Coefficient) -> u16;
@@ -93,16 +96,30 @@ pub enum Format {
     },
 }
 
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Format {
+    /// The name, such as `f32` or `Q8.24`.
+    pub const fn name(self) -> Text<16> {
+        let mut name = Text::new();
         match self {
-            Self::F32 => f.write_str("f32"),
-            Self::F64 => f.write_str("f64"),
-            Self::Fixed { fraction_bits } => write!(f, "Q{}.{fraction_bits}", 32 - fraction_bits),
-            Self::Truncated { fraction_bits } => {
-                write!(f, "Q{}.{fraction_bits} truncated", 32 - fraction_bits)
+            Self::F32 => name.push("f32"),
+            Self::F64 => name.push("f64"),
+            Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
+                name.push("Q");
+                name.push_number(32.0 - fraction_bits as f64);
+                name.push(".");
+                name.push_number(fraction_bits as f64);
+                if matches!(self, Self::Truncated { .. }) {
+                    name.push(" truncated");
+                }
             }
         }
+        name
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name().as_str())
     }
 }
 

@@ -90,6 +90,21 @@ fn what_does_not_fit_is_named() {
     }
 }
 
+/// Of two values the larger never becomes the smaller coefficient, across powers of two as well.
+#[test]
+fn rounding_keeps_the_order() {
+    for format in [Format::F32, Q16::FORMAT] {
+        for power in [2_f64.powi(-3), 1.0, 2.0, 2_f64.powi(20), 2_f64.powi(30)] {
+            for rounding in [Rounding::Nearest, Rounding::Inward, Rounding::Outward] {
+                let around = (-4000..4000).map(|i| power * (1.0 + f64::from(i) * 2_f64.powi(-40)));
+                let rounded: Vec<f64> =
+                    around.map(|value| format.coefficient(value, rounding)).collect();
+                assert!(rounded.is_sorted(), "{format} {power} {rounding:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_positive_part() {
     fn of<N: Number>() {
@@ -110,6 +125,27 @@ proptest! {
         prop_assert_eq!(coefficient::<f64>(value), value);
         let bound = (value.abs() * 2_f64.powi(-31)).max(2_f64.powi(-32));
         prop_assert!((coefficient::<Q16>(value) - value).abs() <= bound);
+    }
+
+    /// What the certificate takes the coefficients for is what they are.
+    #[test]
+    fn a_coefficient_is_known_without_its_type(value in -2e9..2e9_f64, power in 0..25) {
+        fn same<N: Number>(value: f64) -> Result<(), TestCaseError> {
+            let [nearest, inward, outward] = [Rounding::Nearest, Rounding::Inward, Rounding::Outward]
+                .map(|rounding| N::FORMAT.coefficient(value, rounding));
+            prop_assert_eq!(nearest, coefficient::<N>(value));
+            prop_assert!(inward.abs() <= value.abs() && value.abs() <= outward.abs());
+            prop_assert!(nearest == inward || nearest == outward);
+            // Nothing lies between the two: what is there is one of them.
+            let between = 0.5 * (inward + outward);
+            prop_assert!([inward, outward].contains(&coefficient::<N>(between)));
+            Ok(())
+        }
+        let value = value / 10_f64.powi(power);
+        same::<f32>(value)?;
+        same::<f64>(value)?;
+        same::<Q16>(value)?;
+        same::<FixedI32<U31>>(value)?;
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::number::{Number, OutOfRange};
+use crate::number::{Format, Number, OutOfRange};
 use crate::text::Written;
 
 /// Why a certified scene cannot run with these transducers in this number format.
@@ -28,6 +28,12 @@ pub enum BuildError {
         name: &'static str,
         /// Value, bound and format.
         reason: OutOfRange,
+    },
+    /// The scene is certified as it was written, or in another number format, and its coefficients
+    /// as rounded to this one are not.
+    Uncertified {
+        /// This format.
+        format: Format,
     },
     /// The loop of coupling and environment has no solution, or more than one.
     IllPosed {
@@ -105,6 +111,11 @@ impl fmt::Display for BuildError {
                 full_scale = Written(*full_scale),
             ),
             Self::Unrepresentable { name, reason } => write!(f, "the {name}: {reason}"),
+            Self::Uncertified { format } => write!(
+                f,
+                "the scene is certified, but not with its coefficients rounded to {format}: ask \
+                 for its certificate in that format, which says why, and leave more margin"
+            ),
             Self::IllPosed { line, contact } => write!(
                 f,
                 "coupling and environment have no unique solution: the loop gain 1 + f / K is \

@@ -22,6 +22,7 @@ use crate::environment::{Law, Renderable, Setting};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
+use crate::tuning::Tunable;
 
 /// What a tick gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,15 +71,22 @@ pub struct Servo<E: Renderable<N>, N: Number> {
     radians_per_count: f64,
 }
 
-impl<E: Renderable<N>, N: Number> Servo<E, N> {
-    /// The servo of a certified scene, at rest at zero.
+impl<E: Tunable<N>, N: Number> Servo<E, N> {
+    /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
+    /// this number format's, such as the scene's as it was written, is taken again.
     ///
     /// # Errors
     /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
+        let format = N::FORMAT;
+        if scene.assessment().format != format && E::certify(*scene.scene()).is_err() {
+            return Err(BuildError::Uncertified { format });
+        }
         Self::build(scene.scene(), transducers)
     }
+}
 
+impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// The servo of a scene that somebody else has judged.
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;

@@ -3,13 +3,14 @@
 use core::hint::cold_path;
 use core::marker::PhantomData;
 
-use super::{BuildError, Output, OutputMode, Servo, Transducers};
+use super::{BuildError, Output, OutputMode, Renders, Servo, Transducers};
 use crate::certificate::Timed;
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::Renderable;
 use crate::number::Number;
 use crate::scene::{Scene, Timing};
+use crate::tuning::Tunable;
 
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,12 +56,31 @@ pub struct Pace {
     span: u32,
 }
 
-impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
-    /// The servo of a timed scene, at rest at zero and with its clamp shut.
+impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
+    /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
+    /// coefficients than this number format's, such as the scene's as it was written, is taken
+    /// again.
     ///
     /// # Errors
     /// Where the scene, the transducers or the options cannot be had in this number format.
     pub fn new(
+        timed: &Timed<Scene<E>, M>,
+        transducers: &Transducers,
+        options: &RenderingOptions,
+    ) -> Result<Self, BuildError> {
+        let format = N::FORMAT;
+        if timed.assessment().format == format {
+            return Self::build(timed, transducers, options);
+        }
+        let again = E::certify(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
+        let again = again.ok_or(BuildError::Uncertified { format })?;
+        Self::build(&again, transducers, options)
+    }
+}
+
+impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
+    /// From a certificate in this number format.
+    pub(crate) fn build(
         timed: &Timed<Scene<E>, M>,
         transducers: &Transducers,
         options: &RenderingOptions,

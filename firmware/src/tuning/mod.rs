@@ -158,7 +158,7 @@ where
 {
     let scene = apply(scene, changes)?;
     let timed = E::time(E::certify(scene)?)?;
-    let rendering = Rendering::new(&timed, transducers, options)?;
+    let rendering = Rendering::build(&timed, transducers, options)?;
     Ok(Prepared { scene, margin: timed.assessment().margin(), rendering })
 }
 

@@ -10,7 +10,7 @@ use crate::servo::{OutputMode, Renders};
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
 pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
-    /// [`Scene::certify`].
+    /// The certificate of the coefficients as rounded to the number format.
     ///
     /// # Errors
     /// Why the scene is not certified.
@@ -34,7 +34,7 @@ macro_rules! tunable {
     ($([$($generics:tt)*] $environment:ty;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
-                scene.certify()
+                scene.certify_in(F::FORMAT)
             }
 
             fn time<M: OutputMode>(

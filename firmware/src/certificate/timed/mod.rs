@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use super::model::Numbers;
 use super::rejection::Rejection;
 use super::rules::paper_limit;
-use super::{Assessment, Certified, Rule, Sentence, assess};
+use super::{Assessment, Certified, Rule, Sentence, assess_in};
 use crate::environment::{Environment, Wall};
 use crate::scene::Scene;
 use crate::servo::{OutputMode, OutputTiming};
@@ -137,7 +137,7 @@ pub(super) const fn agree<M: OutputMode>(
         return Err(TimingError::Latency { latency, period });
     }
     let earlier = Scene { environment, ..*scene };
-    let assessment = assess(&earlier);
+    let assessment = assess_in(&earlier, assessment.format);
     if let Err(rejection) = assessment.outcome {
         return Err(TimingError::Early(rejection));
     }
@@ -153,7 +153,10 @@ const fn room(scene: &Scene, assessment: &Assessment) -> Option<f64> {
         Rule::Exact => assessment.alpha,
         Rule::Nonlinear => assessment.bound,
     };
-    let (Some(index), Some(limit)) = (index, paper_limit(&Numbers::of(scene))) else { return None };
+    let (Some(index), Some(limit)) = (index, paper_limit(&Numbers::of(scene, assessment.format)))
+    else {
+        return None;
+    };
     let room = limit.sub(index).lo();
     if room > 0.0 { Some(room) } else { None }
 }

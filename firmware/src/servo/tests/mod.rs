@@ -2,6 +2,7 @@
 //! its limits.
 
 mod ahead;
+mod as_it_runs;
 mod reference;
 mod robustness;
 

@@ -13,6 +13,7 @@ use crate::cycle::{Cycle, Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, S
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
+use crate::number::Format;
 use crate::scene::{Coupling, Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Transducers};
 use crate::wire::message::LONGEST_TO_HOST;
@@ -184,7 +185,7 @@ fn greets_with_what_its_numbers_mean() {
 fn a_certified_set_runs_whole() {
     let mut bench = Bench::new(None);
     assert_eq!(bench.running().sets, 0);
-    let margin = SCENE.certified().assessment().margin();
+    let margin = SCENE.certify_in(Format::F32).unwrap().assessment().margin();
     assert_eq!(bench.running().margin, margin);
     let changes = [(Parameter::Stiffness, 12.0), (Parameter::Damping, 0.002)];
     assert_eq!(bench.set(1, &changes), Outcome::Done);
@@ -207,7 +208,7 @@ fn a_refused_set_changes_nothing_and_comes_back_with_the_compilers_sentence() {
     let (before, code) = (bench.running(), bench.hardware.code);
     let mut scene = SCENE;
     scene.environment.wall.stiffness = 30.0;
-    let sentence = scene.certify().unwrap_err().to_string();
+    let sentence = scene.certify_in(Format::F32).unwrap_err().to_string();
     assert!(sentence.starts_with("rejected: "));
     let changes = [(Parameter::Damping, 0.01), (Parameter::Stiffness, 30.0)];
     assert_eq!(bench.set(2, &changes), Outcome::Refused(sentence));
@@ -410,7 +411,7 @@ proptest! {
                 (Parameter::Stiffness, stiffness),
             ];
             let outcome = bench.set(id as Id, &changes);
-            match wanted.certify() {
+            match wanted.certify_in(Format::F32) {
                 Ok(_) => {
                     scene = wanted;
                     prop_assert_eq!(outcome, Outcome::Done);

@@ -1,0 +1,82 @@
+//! Number formats by name, and what of a scene does not fit them.
+
+use std::fmt;
+
+use firmware::environment::{Environment, Wall};
+use firmware::number::{Format, OutOfRange};
+use firmware::scene::Scene;
+
+/// The format of a name such as `f32`, `f64`, `i8f24`, `i8f24-truncated` or `q8.24`.
+///
+/// # Errors
+/// A sentence that says what there is.
+pub fn format(name: &str) -> Result<Format, String> {
+    let lower = name.to_ascii_lowercase();
+    if let Some(rounded) = lower.strip_suffix("-truncated") {
+        return match format(rounded)? {
+            Format::Fixed { fraction_bits } => Ok(Format::Truncated { fraction_bits }),
+            _ => Err("only fixed point is truncated, such as i8f24-truncated".to_owned()),
+        };
+    }
+    match lower.as_str() {
+        "f32" => return Ok(Format::F32),
+        "f64" => return Ok(Format::F64),
+        _ => (),
+    }
+    let parts = match lower.strip_prefix('q') {
+        Some(parts) => parts.split_once('.'),
+        None => lower.strip_prefix('i').and_then(|parts| parts.split_once('f')),
+    };
+    let whole = |digits: &str| digits.parse::<u32>().ok().filter(|&bits| bits <= 32);
+    match parts.map(|(before, behind)| (whole(before), whole(behind))) {
+        Some((Some(before), Some(fraction_bits))) if before + fraction_bits == 32 => {
+            Ok(Format::Fixed { fraction_bits })
+        }
+        _ => Err("it must be f32, f64, or bits before and behind the point that make 32, such as \
+                  i8f24 or i16f16"
+            .to_owned()),
+    }
+}
+
+/// A number of a scene that a format does not hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DoesNotFit {
+    /// Its key in a file.
+    pub key: &'static str,
+    /// Value, bound and format.
+    pub reason: OutOfRange,
+}
+
+impl fmt::Display for DoesNotFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`: {}", self.key, self.reason)
+    }
+}
+
+impl std::error::Error for DoesNotFit {}
+
+/// Whether a format holds a scene's angles and torques. That it holds the coefficients is seen by
+/// their certificate: they are as they were written where it does not.
+///
+/// # Errors
+/// The first number that it does not hold.
+pub fn fits(scene: &Scene, format: Format) -> Result<(), DoesNotFit> {
+    let (Format::Fixed { fraction_bits } | Format::Truncated { fraction_bits }) = format else {
+        return Ok(());
+    };
+    let bound = f64::from(i32::MAX) / (1_u64 << fraction_bits) as f64;
+    let face = match scene.environment {
+        Environment::DelayedSpring(Wall { face, .. })
+        | Environment::DamperWall(Wall { face, .. })
+        | Environment::FreeModeWall { wall: Wall { face, .. }, .. } => face,
+        Environment::FreeMode { .. } | Environment::Rational(_) => 0.0,
+    };
+    for (key, value) in
+        [("environment.face", face), ("limits.torque", scene.torque_limit.unwrap_or(0.0))]
+    {
+        if value.abs() > bound {
+            return Err(DoesNotFit { key, reason: OutOfRange { value, bound, format } });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,238 @@
+//! Whether a device comes to rest: the torque of everything that is not linear, held against the
+//! friction that the device has (theory, sections 6, 8 and 9).
+//!
+//! The certificate is about a linear controller. Encoder, converter and the rounding of numbers
+//! make its torque another, by no more than some `e` for whatever motion. A dry friction of `e` or
+//! more takes from any motion what that error puts in, `f_c abs(v) >= e v`, so that the device is
+//! as passive as it was certified to be. With less it may hum at rest.
+
+use core::f64::consts::TAU;
+use core::fmt;
+
+use super::model::{Loop, Numbers, Washout, canceller, damper};
+use super::rules::{is_nonlinear, wall_of};
+use crate::dac::DacCode;
+use crate::environment::{Environment, Rational};
+use crate::number::Format;
+use crate::passivity::polynomial::{Polynomial, UnitRoot};
+use crate::passivity::transfer::Transfer;
+use crate::scene::Scene;
+use crate::servo::Transducers;
+use crate::text::{AtMost, Written};
+
+/// What a device is besides the numbers of a scene, as far as it was stated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steps {
+    /// Angle of one encoder count in rad.
+    pub encoder: Option<f64>,
+    /// Torque of the motor in N m at the converter's largest code.
+    pub full_scale: Option<f64>,
+    /// Coulomb friction of the device in N m, at the motor.
+    pub friction: Option<f64>,
+}
+
+impl Steps {
+    /// Those of a program's transducers, and the friction of its device.
+    pub fn of(transducers: &Transducers, friction: Option<f64>) -> Self {
+        Self {
+            encoder: Some(TAU / transducers.counts_per_turn),
+            full_scale: Some(transducers.full_scale_torque),
+            friction,
+        }
+    }
+
+    /// Torque of one code of the converter in N m.
+    fn converter(&self) -> Option<f64> {
+        self.full_scale.map(|torque| torque / f64::from(DacCode::CODES_TO_FULL_SCALE))
+    }
+}
+
+/// The most that each step moves the torque, in N m, and the friction against it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Of the encoder: half a count times the controller's peak torque a position. `K Delta / 2 +
+    /// B Delta / T` for a wall without a coupling.
+    pub encoder: Option<f64>,
+    /// Of the servo's numbers, within a turn of its zero.
+    pub numbers: f64,
+    /// Of the converter: half a code.
+    pub converter: Option<f64>,
+    /// Declared friction of the device.
+    pub friction: Option<f64>,
+}
+
+impl Rest {
+    /// Of a scene that runs in a number format. `None` where the controller has no finite peak
+    /// torque a position: where it is not stable, or so nearly that its response does not end.
+    pub fn of(scene: &Scene, format: Format, steps: &Steps) -> Option<Self> {
+        let peak = peak(scene, format)?;
+        Some(Self {
+            encoder: steps.encoder.map(|step| 0.5 * step * peak),
+            numbers: numbers(scene, format, steps, peak)?,
+            converter: steps.converter().map(|step| 0.5 * step),
+            friction: steps.friction,
+        })
+    }
+
+    /// The most that the steps that were stated move the torque together, in N m: the friction
+    /// with which the device comes to rest, and what it may hum by without.
+    pub fn hum(&self) -> f64 {
+        self.parts().iter().filter_map(|(_, part)| *part).sum()
+    }
+
+    /// Its parts by name, as far as they were stated.
+    pub fn parts(&self) -> [(&'static str, Option<f64>); 3] {
+        let Self { encoder, numbers, converter, .. } = *self;
+        [("encoder", encoder), ("numbers", Some(numbers)), ("converter", converter)]
+    }
+
+    /// Whether the declared friction is enough; `None` where that cannot be said.
+    pub fn comes_to_rest(&self) -> Option<bool> {
+        let enough = self.friction? >= self.hum();
+        let all_stated = self.encoder.is_some() && self.converter.is_some();
+        (all_stated || !enough).then_some(enough)
+    }
+}
+
+impl fmt::Display for Rest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let hum = AtMost(self.hum());
+        match (self.friction.map(Written), self.comes_to_rest()) {
+            (None, _) => {
+                write!(
+                    f,
+                    "it may hum by up to {hum} N m unless the device has {hum} N m of friction"
+                )
+            }
+            (Some(friction), None) => write!(
+                f,
+                "the device's friction of {friction} N m keeps it still, as far as the steps were \
+                 stated"
+            ),
+            (Some(friction), Some(true)) => {
+                write!(f, "the device's friction of {friction} N m keeps it still")
+            }
+            (Some(friction), Some(false)) => write!(
+                f,
+                "it may hum by up to {hum} N m: the device's friction of {friction} N m is below \
+                 that"
+            ),
+        }
+    }
+}
+
+/// Largest torque in N m for positions that are off by up to 1 rad each: the l1 norm of the
+/// controller's impulse response (theory, section 6).
+///
+/// A wall in and out of contact and a torque limit make the response vary. Then, for an
+/// environment of norm `e` behind a compliance `V`, no torque is more than `e + V e` times the last
+/// one, which for `V e < 1` adds up to `e / (1 - V e)`; where that is not so, the norm is the one
+/// in contact.
+fn peak(scene: &Scene, format: Format) -> Option<f64> {
+    let Loop { controller, environment, .. } = Loop::in_format(scene, format).ok()?;
+    let linear = l1_norm(&controller)?;
+    if !is_nonlinear(scene) {
+        return Some(linear);
+    }
+    let alone = l1_norm(&environment)?;
+    let fed_back = alone * compliance(scene, format);
+    Some(if fed_back < 1.0 { linear.max(alone / (1.0 - fed_back)) } else { linear })
+}
+
+fn compliance(scene: &Scene, format: Format) -> f64 {
+    Numbers::of(scene, format).compliance.hi()
+}
+
+/// Roundings of one kind in a tick: fixed point rounds products, floating point also sums.
+fn roundings(format: Format, products: f64, sums: f64) -> f64 {
+    match format {
+        Format::Fixed { .. } | Format::Truncated { .. } => products,
+        Format::F32 | Format::F64 => products + sums,
+    }
+}
+
+/// The most by which the servo's arithmetic moves the torque: each rounding in a tick times the
+/// norm from where it happens to the torque.
+///
+/// Positions are rounded as the count becomes an angle and behind the coupling, and differ from a
+/// face and from a state; torques by stiffness, damper and the two gains of the coupling. These
+/// come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times the controller's.
+fn numbers(scene: &Scene, format: Format, steps: &Steps, peak: f64) -> Option<f64> {
+    // Torques where none is stated are small beside the positions that they come from.
+    let torque = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
+    let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(torque));
+    let at_torque = match &scene.environment {
+        // Its sums may cancel: they are as large as the torque of a turn.
+        Environment::Rational(rational) => {
+            let sum = format.rounding_error(peak * TAU);
+            sum * roundings(format, 2.0, 2.0) * sections(rational)?
+        }
+        _ => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
+    };
+    let at_position = angle * roundings(format, 2.0, 3.0);
+    Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
+}
+
+/// Torque in N m by which the states of filter and canceller are off: each moves by a share of what
+/// is left of its way, and stops where that share is rounded away.
+fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
+    let n = Numbers::of(scene, format);
+    let stops = |state: Washout| {
+        let gain = state.gain.magnitude() / scene.timing.period;
+        gain * angle * roundings(format, 1.0, 2.0) / (1.0 - state.pole.magnitude())
+    };
+    let filter = wall_of(&scene.environment).filter(|wall| wall.filter.is_some());
+    let cancels = matches!(
+        scene.environment,
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
+    );
+    filter.map_or(0.0, |wall| stops(damper(wall, &n)))
+        + if cancels { stops(canceller(&n)) } else { 0.0 }
+}
+
+/// The norm from a rational environment's sums to its torque, for all of them: a sum a degree, and
+/// `1 / denominator` from each.
+fn sections(rational: &Rational) -> Option<f64> {
+    let denominator = Polynomial::descending(rational.denominator.as_slice(), false);
+    let leading = Polynomial::ascending(&[denominator.leading()]);
+    let norm = l1_norm(&Transfer::new(leading, denominator))?;
+    Some(norm * (1.0 + denominator.degree() as f64))
+}
+
+/// Powers of `1/z` that a controller has at most: degree 8, 8 samples of delay, 8 zeros at 1.
+const TAPS: usize = 40;
+/// Samples after which a response is said not to end: that of a pole at `1 - 1e-3` does.
+const LONGEST: u32 = 1 << 16;
+
+/// Sum of the magnitudes of an impulse response, to twelve digits; `None` where it does not end.
+fn l1_norm(g: &Transfer) -> Option<f64> {
+    let ones = usize::try_from(g.ones).ok()?;
+    let numerator = g.numerator.times_unit_root(UnitRoot::Plus, ones)?;
+    let scale = g.scale.midpoint() / g.denominator.leading().midpoint();
+    // In powers of 1/z from the first that is there: a delay changes nothing.
+    let taps = |p: &Polynomial, factor: f64| {
+        let mut taps = [0.0; TAPS];
+        for (i, tap) in taps.iter_mut().enumerate().take(p.len()) {
+            *tap = p.coefficient(p.len() - 1 - i).midpoint() * factor;
+        }
+        taps
+    };
+    let forward = taps(&numerator, scale);
+    let back = taps(&g.denominator, 1.0 / g.denominator.leading().midpoint());
+    let used = numerator.len().max(g.denominator.len());
+    let mut state = [0.0; TAPS];
+    let (mut input, mut sum) = (1.0, 0.0);
+    for _ in 0..LONGEST {
+        let output = forward[0] * input + state[0];
+        sum += output.abs();
+        for i in 1..used {
+            let next = state.get(i).copied().unwrap_or(0.0);
+            state[i - 1] = forward[i] * input - back[i] * output + next;
+        }
+        input = 0.0;
+        if state.iter().take(used).all(|s| s.abs() <= 1e-15 * sum) {
+            return sum.is_finite().then_some(sum);
+        }
+    }
+    None
+}
