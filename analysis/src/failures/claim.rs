@@ -1,6 +1,7 @@
 //! What somebody or something says about a loop, and whether that is so.
 
-use firmware::certificate::{Rejection, assess, certify};
+use firmware::certificate::{Rejection, Rest, Steps, assess, certify};
+use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use serde::Serialize;
@@ -105,6 +106,18 @@ impl Claim {
             Err(rejection) => (Says::Unsafe, rejection.to_string()),
         };
         Self { by: "certificate".into(), says, figure: index.map(|alpha| alpha.hi()), because }
+    }
+
+    /// What the certificate says about a certified scene at rest, on a device with these steps and
+    /// this friction, computed in a number format; the figure is the friction in N m that is enough.
+    pub fn at_rest(scene: &Scene, format: Format, steps: &Steps) -> Self {
+        let rest = Rest::of(scene, format, steps);
+        let says = match rest.and_then(|rest| rest.comes_to_rest()) {
+            Some(comes) => Says::of(comes),
+            None => Says::Undecided,
+        };
+        let because = rest.map_or_else(String::new, |rest| format!("certified, but {rest}"));
+        Self { by: "certificate".into(), says, figure: rest.map(|rest| rest.hum()), because }
     }
 
     /// How it is wrong, if it is.

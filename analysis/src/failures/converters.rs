@@ -1,17 +1,17 @@
 //! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
 
-use firmware::number::Arithmetic;
+use firmware::certificate::Steps;
+use firmware::number::{Arithmetic, Format};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
-use super::claim::{Claim, Says};
+use super::claim::Claim;
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, trial, wall_of};
 use super::trial::Trial;
 use super::{FailureError, Study};
-use crate::limits::error_gain;
 use crate::simulation::drive::Drive;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Stride};
 
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
@@ -21,20 +21,18 @@ const SAMPLES: usize = 5000;
 /// Fixed point with 16 bits behind the point, on a device without friction.
 pub fn fixed_point() -> Result<Study, FailureError> {
     let scene = paper();
-    let step = (-16.0_f64).exp2();
-    let bound = error_gain(&scene).map_err(SimulationError::from)? * 0.5 * step;
-    let because = "certified; half a step of Q16.16 may hum by {} N m unless friction holds it";
-    let certificate = Claim::new("certificate", Says::Unsafe, bound, because);
     // Encoder and converter as fine as they get: their steps hum, too.
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 0.3, ..PADDLES };
+    let format = Format::Fixed { fraction_bits: 16 };
+    let certificate = Claim::at_rest(&scene, format, &Steps::of(&fine, Some(0.0)));
     let trial = |what, friction, expected| Trial {
         arithmetic: Arithmetic::I16F16,
         ..leaning(what, &scene, fine, expected, friction)
     };
     let hums = trial("no friction", 0.0, End::Hums);
-    let needed = bound + friction_for_rest(&scene, &fine);
-    let rests = trial("the friction that the bound asks for", needed, End::Rests);
+    let needed = certificate.figure.unwrap_or_default();
+    let rests = trial("the friction that it asks for", needed, End::Rests);
     let truth = Claim::simulated("simulation in Q16.16", &hums)?;
     Ok(Study { claims: ideal(&scene)?, certificate, truth, trials: vec![hums, rests] })
 }
@@ -43,8 +41,8 @@ pub fn fixed_point() -> Result<Study, FailureError> {
 pub fn encoder() -> Result<Study, FailureError> {
     let scene = paper();
     let needed = friction_for_rest(&scene, &PADDLES);
-    let because = "certified; at rest it may hum unless the device has {} N m of friction";
-    let certificate = Claim::new("certificate", Says::Unsafe, needed, because);
+    let steps = Steps::of(&PADDLES, Some(0.0));
+    let certificate = Claim::at_rest(&scene, Format::F32, &steps);
     let hums = leaning("no friction", &scene, PADDLES, End::Hums, 0.0);
     let rests = leaning("K Delta/2 + B Delta/T of friction", &scene, PADDLES, End::Rests, needed);
     let truth = Claim::simulated("simulation with the encoder", &hums)?;

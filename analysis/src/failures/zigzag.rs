@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use firmware::certificate::Steps;
+use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
 
@@ -24,8 +26,9 @@ const ALMOST: f64 = 0.99;
 pub fn zigzag() -> Result<Study, FailureError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
-    let because = "certified; passive with {} N m of friction or more";
-    let certificate = Claim::new("certificate", Says::Unsafe, needed, because);
+    // Whatever the converter's steps are.
+    let steps = Steps { full_scale: None, ..Steps::of(&PADDLES, Some(ALMOST * needed)) };
+    let certificate = Claim::at_rest(&scene, Format::F64, &steps);
     let mut rests = trial("in no hand", &scene, PADDLES, End::Rests).pushed(1.0, 2000);
     rests.experiment.encoder_step = Some(TAU / PADDLES.counts_per_turn);
     rests.experiment.friction = ALMOST * needed;

@@ -48,7 +48,9 @@ impl Stage {
 
     /// Judges a scene and, if it is certified, is its servo.
     fn play<N: Number>(&mut self, play: &Play) -> Result<(), Error> {
-        let Ok(certified) = play.scene.certify() else { return self.draw(Curtain::Refused) };
+        let Ok(certified) = play.scene.certify_in(N::FORMAT) else {
+            return self.draw(Curtain::Refused);
+        };
         let Ok(mut servo) = Servo::<_, N>::new(&certified, &play.transducers) else {
             return self.draw(Curtain::Unbuildable);
         };
