@@ -53,13 +53,12 @@ impl Fate {
     pub fn end(&self) -> End {
         /// Part of the first swing that is no motion any more.
         const STILL: f64 = 1e-6;
-        // Written so that what is not a number grows.
-        if self.last <= STILL * self.first {
-            End::Rests
-        } else if self.last <= self.first {
-            End::Hums
-        } else {
+        if !self.last.is_finite() || self.last > self.first {
             End::Grows
+        } else if self.last <= STILL * self.first {
+            End::Rests
+        } else {
+            End::Hums
         }
     }
 }
