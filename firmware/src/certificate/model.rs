@@ -105,6 +105,7 @@ const fn standard(period: Interval, delta: Interval) -> Interval {
 }
 
 /// All coefficients that a format makes of the values of an interval.
+#[cfg_attr(target_os = "none", inline(never))]
 const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interval {
     match format {
         Format::F64 => value,

@@ -23,6 +23,7 @@ pub enum Rounding {
 impl Format {
     /// The value of the coefficient that this format makes of `value`. What the format does not
     /// hold is given back as it is: it is refused by name where the servo is built.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn coefficient(self, value: f64, rounding: Rounding) -> f64 {
         match self {
             Self::F32 if value.abs() <= float::LARGEST => to_f32(value, rounding) as f64,
