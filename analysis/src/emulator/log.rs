@@ -16,11 +16,6 @@ pub struct LogDecoder {
 }
 
 impl LogReader {
-    /// A decoder for the program in an ELF file; a program without a log has empty ones.
-    pub fn of_program(elf: Vec<u8>) -> LogDecoder {
-        LogDecoder { table: Table::parse(&elf).ok().flatten() }
-    }
-
     /// The lines, once the program has ended.
     pub fn lines(self) -> Vec<String> {
         self.lines.join().unwrap_or_else(|_| vec!["the log could not be decoded".into()])
@@ -28,6 +23,11 @@ impl LogReader {
 }
 
 impl LogDecoder {
+    /// A decoder for the program in an ELF file; a program without a log has empty ones.
+    pub fn of_program(elf: &[u8]) -> Self {
+        Self { table: Table::parse(elf).ok().flatten() }
+    }
+
     /// Reads until the program ends. It has to be read while the program runs: a full pipe would
     /// stop the board.
     pub fn follow(self, mut output: impl Read + Send + 'static) -> LogReader {
@@ -41,7 +41,8 @@ impl LogDecoder {
         }
     }
 
-    fn decode(&self, bytes: &[u8]) -> Vec<String> {
+    /// The lines in these bytes, which begin with a frame; a frame that is not whole is left out.
+    pub fn decode(&self, bytes: &[u8]) -> Vec<String> {
         let Some(table) = &self.table else { return Vec::new() };
         let mut decoder = table.new_stream_decoder();
         decoder.received(bytes);

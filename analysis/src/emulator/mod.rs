@@ -5,7 +5,7 @@
 //! not answer within [`PATIENCE`] is an error, and an emulator is never left behind.
 
 mod judge;
-mod log;
+pub mod log;
 mod pipes;
 mod player;
 mod report;
@@ -27,7 +27,7 @@ pub use player::Player;
 pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
 pub use trials::Trials;
 
-use log::LogReader;
+use log::{LogDecoder, LogReader};
 use pipes::Pipes;
 
 /// The emulator's program.
@@ -222,7 +222,7 @@ impl Guest {
     fn boot(elf: &Path, more: &[&str]) -> Result<Self, EmulatorError> {
         let program = |source| EmulatorError::Program { path: elf.into(), source };
         let path = elf.canonicalize().map_err(program)?;
-        let decoder = LogReader::of_program(std::fs::read(&path).map_err(program)?);
+        let decoder = LogDecoder::of_program(&std::fs::read(&path).map_err(program)?);
         let folder = TempDir::with_prefix("haptic-").map_err(EmulatorError::Pipe)?;
         let pipes = Pipes::make(folder.path()).map_err(EmulatorError::Pipe)?;
         let errors = File::create(folder.path().join(ERRORS)).map_err(EmulatorError::Pipe)?;

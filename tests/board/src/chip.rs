@@ -1,0 +1,229 @@
+//! The chips: where each peripheral is, by whom it is clocked, and what is wired to its pins.
+
+use analysis::toolchain::Board as Name;
+
+use crate::peripheral::clock::{self, Layout};
+use crate::peripheral::pins::Pins;
+use crate::peripheral::plain::Plain;
+use crate::peripheral::serial::Face;
+use crate::peripheral::{clock_f4, clock_g4, converter, flash, power};
+
+/// A peripheral of either chip, by what it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Reset and clock control.
+    Clock,
+    /// Power control.
+    Power,
+    /// The flash memory's interface.
+    Flash,
+    /// System configuration.
+    Configuration,
+    /// What keeps clocks running for a debugger.
+    Debug,
+    /// A port of pins: 0 is A.
+    Pins(usize),
+    /// TIM6.
+    Pacer,
+    /// The free-running clock.
+    FreeClock,
+    /// The encoder's counter.
+    Encoder,
+    /// The converter.
+    Converter,
+    /// The serial port.
+    Serial,
+    /// The independent watchdog.
+    Watchdog,
+}
+
+/// Where a unit is and what it is called.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Its first address.
+    pub base: u32,
+    /// Its name in the reference manual.
+    pub name: &'static str,
+    /// What it is.
+    pub unit: Unit,
+    /// The register of the clock control that clocks it, the one that resets it, and its bit there;
+    /// none where it is always clocked.
+    pub clocked: Option<(u32, u32, u32)>,
+}
+
+/// Bytes that a unit takes of the map.
+pub const SPAN: u32 = 0x400;
+
+/// A chip on its board.
+#[derive(Debug)]
+pub struct Chip {
+    /// The board that it is on.
+    pub board: Name,
+    /// Flash in bytes.
+    pub flash: u32,
+    /// RAM in bytes, from 0x20000000 on.
+    pub ram: u32,
+    /// Core-coupled memory in bytes, from 0x10000000 on, and whether instructions come from there.
+    pub coupled: (u32, bool),
+    /// The board's crystal in Hz.
+    pub crystal: u64,
+    /// The core's clock in Hz once the program has set it up.
+    pub core: u64,
+    /// The map of its peripherals.
+    pub map: &'static [Place],
+    /// Bits of the encoder's counter.
+    pub counter: u32,
+    /// The pin that switches the amplifier on, as port and number; high is on, on both boards.
+    pub amplifier: (usize, u32),
+    /// The encoder's two pins and the alternate function that is its timer.
+    pub encoder: ([(usize, u32); 2], u32),
+    /// The serial port's two pins and the alternate function that is that port.
+    pub serial: ([(usize, u32); 2], u32),
+    /// The serial port's interrupt.
+    pub serial_interrupt: u16,
+    /// Registers of its clock control.
+    pub clock: &'static clock::Layout,
+    /// Its converter's bits.
+    pub converter: converter::Layout,
+    /// Its serial port's registers.
+    pub face: Face,
+    /// Its power control.
+    pub power: fn() -> Plain,
+    /// Its flash interface.
+    pub flash_interface: fn() -> Plain,
+    /// Its system configuration.
+    pub configuration: fn() -> Plain,
+    /// Its ports out of reset.
+    pub ports: fn(usize) -> Pins,
+}
+
+/// TIM6 with the converter's underrun: the servo's interrupt.
+pub const PACER_INTERRUPT: u16 = 54;
+/// The pin that the converter drives: PA4 on both.
+pub const TORQUE: (usize, u32) = (0, 4);
+
+const fn place(base: u32, name: &'static str, unit: Unit, enable: u32, reset: u32, bit: u32) -> Place {
+    Place { base, name, unit, clocked: Some((enable, reset, bit)) }
+}
+
+const fn always(base: u32, name: &'static str, unit: Unit) -> Place {
+    Place { base, name, unit, clocked: None }
+}
+
+/// Keeps clocks running for a debugger: what is written has no effect here.
+pub const DEBUG: &[(u32, u32, u32)] = &[(0x04, 0, 0b111)];
+
+static G4: &Layout = &clock_g4::LAYOUT;
+static F4: &Layout = &clock_f4::LAYOUT;
+
+/// STM32G474RE on a NUCLEO-G474RE.
+pub static NUCLEO_G474RE: Chip = Chip {
+    board: Name::NucleoG474re,
+    flash: 512 << 10,
+    ram: 96 << 10,
+    coupled: (32 << 10, true),
+    crystal: 24_000_000,
+    core: 170_000_000,
+    map: &[
+        place(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
+        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+        place(0x4000_1000, "TIM6", Unit::Pacer, 0x58, 0x38, 4),
+        always(0x4000_3000, "IWDG", Unit::Watchdog),
+        place(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
+        place(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
+        place(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+        always(0x4002_1000, "RCC", Unit::Clock),
+        place(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
+        place(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
+        place(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
+        place(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
+        place(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
+        place(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
+        place(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
+        place(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
+        place(0x5000_0800, "DAC1", Unit::Converter, 0x4C, 0x2C, 16),
+        always(0xE004_2000, "DBGMCU", Unit::Debug),
+    ],
+    counter: 32,
+    amplifier: (1, 10),
+    // TIM2_CH1 and TIM2_CH2.
+    encoder: ([(0, 0), (0, 1)], 1),
+    // USART2_TX and USART2_RX.
+    serial: ([(0, 2), (0, 3)], 7),
+    serial_interrupt: 38,
+    clock: G4,
+    converter: converter::G4,
+    face: Face::G4,
+    power: power::g4,
+    flash_interface: flash::g4,
+    configuration: || Plain::new(&[]),
+    ports: |port| match port {
+        // The debug port's pins are not analog out of reset; A's and B's differ.
+        0 => Pins::new(0xABFF_FFFF, 0x0C00_0000, 0x6400_0000),
+        1 => Pins::new(0xFFFF_FEBF, 0x0000_00C0, 0x0000_0100),
+        _ => Pins::new(0xFFFF_FFFF, 0, 0),
+    },
+};
+
+/// STM32F405RG on a board of the VESC class.
+pub static STM32F405: Chip = Chip {
+    board: Name::Stm32f405,
+    flash: 1 << 20,
+    ram: 128 << 10,
+    coupled: (64 << 10, false),
+    crystal: 8_000_000,
+    core: 168_000_000,
+    map: &[
+        place(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
+        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
+        place(0x4000_1000, "TIM6", Unit::Pacer, 0x40, 0x20, 4),
+        always(0x4000_3000, "IWDG", Unit::Watchdog),
+        place(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
+        place(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),
+        place(0x4000_7400, "DAC", Unit::Converter, 0x40, 0x20, 29),
+        place(0x4001_3800, "SYSCFG", Unit::Configuration, 0x44, 0x24, 14),
+        place(0x4002_0000, "GPIOA", Unit::Pins(0), 0x30, 0x10, 0),
+        place(0x4002_0400, "GPIOB", Unit::Pins(1), 0x30, 0x10, 1),
+        place(0x4002_0800, "GPIOC", Unit::Pins(2), 0x30, 0x10, 2),
+        place(0x4002_0C00, "GPIOD", Unit::Pins(3), 0x30, 0x10, 3),
+        place(0x4002_1000, "GPIOE", Unit::Pins(4), 0x30, 0x10, 4),
+        place(0x4002_1400, "GPIOF", Unit::Pins(5), 0x30, 0x10, 5),
+        place(0x4002_1800, "GPIOG", Unit::Pins(6), 0x30, 0x10, 6),
+        place(0x4002_1C00, "GPIOH", Unit::Pins(7), 0x30, 0x10, 7),
+        place(0x4002_2000, "GPIOI", Unit::Pins(8), 0x30, 0x10, 8),
+        always(0x4002_3800, "RCC", Unit::Clock),
+        always(0x4002_3C00, "FLASH", Unit::Flash),
+        always(0xE004_2000, "DBGMCU", Unit::Debug),
+    ],
+    counter: 16,
+    amplifier: (1, 6),
+    // TIM3_CH1 and TIM3_CH2.
+    encoder: ([(2, 6), (2, 7)], 2),
+    // USART3_TX and USART3_RX.
+    serial: ([(1, 10), (1, 11)], 7),
+    serial_interrupt: 39,
+    clock: F4,
+    converter: converter::F405,
+    face: Face::F405,
+    power: power::f405,
+    flash_interface: flash::f405,
+    configuration: || Plain::new(&[]),
+    ports: |port| match port {
+        0 => Pins::new(0xA800_0000, 0x0C00_0000, 0x6400_0000),
+        1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),
+        _ => Pins::new(0, 0, 0),
+    },
+};
+
+impl Chip {
+    /// The chip of a board, where there is a virtual one.
+    pub fn of(board: Name) -> Option<&'static Self> {
+        [&NUCLEO_G474RE, &STM32F405].into_iter().find(|chip| chip.board == board)
+    }
+
+    /// The unit at an address.
+    pub fn at(&self, address: u32) -> Option<&'static Place> {
+        let place = |chip: &'static [Place]| chip.iter().find(|place| address & !(SPAN - 1) == place.base);
+        place(self.map)
+    }
+}

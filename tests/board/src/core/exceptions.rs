@@ -1,0 +1,296 @@
+//! Which exceptions are pending, which are active and which comes next (ARM DDI 0403E, B1.5).
+
+/// Number of an exception: the core's own below 16, interrupts from there on.
+pub type Number = u16;
+
+/// What the core takes when nothing else may take a fault.
+pub const HARD_FAULT: Number = 3;
+/// The service call.
+pub const SV_CALL: Number = 11;
+/// The request for service at leisure.
+pub const PEND_SV: Number = 14;
+/// The core's own timer.
+pub const SYS_TICK: Number = 15;
+/// The first interrupt.
+pub const FIRST_INTERRUPT: Number = 16;
+
+/// Interrupts that a chip of these families may have at most.
+pub const INTERRUPTS: usize = 112;
+const NUMBERS: usize = FIRST_INTERRUPT as usize + INTERRUPTS;
+
+/// Bits of a priority that these chips have, at the top of its byte.
+pub const PRIORITY_BITS: u8 = 0xF0;
+
+/// Priority of a program that no exception has interrupted: below all others.
+const THREAD: i16 = 256;
+
+/// The core's registers that hold exceptions off.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Masks {
+    /// PRIMASK: all but faults.
+    pub primask: bool,
+    /// FAULTMASK: all but the non-maskable interrupt.
+    pub faultmask: bool,
+    /// BASEPRI: this priority and those below it; 0 for none.
+    pub basepri: u8,
+}
+
+impl Masks {
+    /// The priority that they raise the running program to.
+    fn priority(self) -> i16 {
+        let base = if self.basepri == 0 { THREAD } else { i16::from(self.basepri) };
+        if self.faultmask {
+            -1
+        } else if self.primask {
+            base.min(0)
+        } else {
+            base
+        }
+    }
+
+    /// As they are, but for PRIMASK.
+    fn without_primask(self) -> Self {
+        Self { primask: false, ..self }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct State {
+    enabled: bool,
+    /// Asked for, by an edge or by the program.
+    pending: bool,
+    /// The line from a peripheral, which asks for as long as it is up.
+    line: bool,
+    active: bool,
+    priority: u8,
+}
+
+/// The controller of exceptions.
+#[derive(Clone, Debug)]
+pub struct Exceptions {
+    states: [State; NUMBERS],
+    /// Those that have begun and not ended, the latest last.
+    nested: Vec<Number>,
+}
+
+impl Default for Exceptions {
+    fn default() -> Self {
+        let mut states = [State::default(); NUMBERS];
+        // Interrupts have to be enabled; the core's own exceptions that are here cannot be.
+        for own in &mut states[..FIRST_INTERRUPT.into()] {
+            own.enabled = true;
+        }
+        Self { states, nested: Vec::new() }
+    }
+}
+
+impl Exceptions {
+    /// The one that is being served; none in a program that nothing has interrupted.
+    pub fn current(&self) -> Option<Number> {
+        self.nested.last().copied()
+    }
+
+    /// Exceptions that are being served.
+    pub fn depth(&self) -> usize {
+        self.nested.len()
+    }
+
+    /// Asks for one.
+    pub fn pend(&mut self, number: Number) {
+        self.states[usize::from(number)].pending = true;
+    }
+
+    /// Takes that back.
+    pub fn unpend(&mut self, number: Number) {
+        self.states[usize::from(number)].pending = false;
+    }
+
+    /// Whether one is asked for.
+    pub fn is_pending(&self, number: Number) -> bool {
+        let state = &self.states[usize::from(number)];
+        state.pending || (state.line && !state.active)
+    }
+
+    /// Whether one is being served.
+    pub fn is_active(&self, number: Number) -> bool {
+        self.states[usize::from(number)].active
+    }
+
+    /// A peripheral's line goes up or down. An interrupt that was asked for stays so.
+    pub fn set_line(&mut self, number: Number, up: bool) {
+        let state = &mut self.states[usize::from(number)];
+        // What rises while it is served comes again at its end.
+        state.pending |= up && !state.line;
+        state.line = up;
+    }
+
+    /// Enables an interrupt or disables it.
+    pub fn enable(&mut self, number: Number, enabled: bool) {
+        self.states[usize::from(number)].enabled = enabled;
+    }
+
+    /// Whether it is enabled.
+    pub fn is_enabled(&self, number: Number) -> bool {
+        self.states[usize::from(number)].enabled
+    }
+
+    /// Sets its priority, of which the chips have the upper bits. Of an interrupt that the chips do
+    /// not have, it is ignored.
+    pub fn set_priority(&mut self, number: Number, priority: u8) {
+        if let Some(state) = self.states.get_mut(usize::from(number)) {
+            state.priority = priority & PRIORITY_BITS;
+        }
+    }
+
+    /// Its priority as the program reads it.
+    pub fn priority(&self, number: Number) -> u8 {
+        self.states.get(usize::from(number)).map_or(0, |state| state.priority)
+    }
+
+    /// Whether any is asked for and enabled, masked or not.
+    pub fn any_pending(&self) -> bool {
+        (0..NUMBERS as Number).any(|number| self.is_enabled(number) && self.is_pending(number))
+    }
+
+    /// The one to be served next, if it may interrupt what runs now.
+    pub fn next(&self, masks: Masks) -> Option<Number> {
+        let (priority, number) = (0..NUMBERS as Number)
+            .filter(|&number| self.is_enabled(number) && self.is_pending(number))
+            .map(|number| (self.rank(number), number))
+            .min()?;
+        (priority < self.running(masks)).then_some(number)
+    }
+
+    /// Whether one would end a wait for interrupts: PRIMASK does not keep it from that.
+    pub fn wakes(&self, masks: Masks) -> bool {
+        self.next(masks.without_primask()).is_some()
+    }
+
+    /// Begins to serve one.
+    pub fn enter(&mut self, number: Number) {
+        let state = &mut self.states[usize::from(number)];
+        state.pending = false;
+        state.active = true;
+        self.nested.push(number);
+    }
+
+    /// Ends the one that is being served; a line that is still up asks again.
+    pub fn leave(&mut self) {
+        if let Some(number) = self.nested.pop() {
+            self.states[usize::from(number)].active = false;
+        }
+    }
+
+    /// Whether a fault can be served where the core is now: not in or above its own priority.
+    pub fn can_fault(&self, masks: Masks) -> bool {
+        self.running(masks) > -1
+    }
+
+    /// The priority of what runs now.
+    fn running(&self, masks: Masks) -> i16 {
+        let nested = self.nested.iter().map(|&number| self.rank(number)).min();
+        nested.unwrap_or(THREAD).min(masks.priority())
+    }
+
+    fn rank(&self, number: Number) -> i16 {
+        if number <= HARD_FAULT {
+            number as i16 - 4
+        } else {
+            self.priority(number).into()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OPEN: Masks = Masks { primask: false, faultmask: false, basepri: 0 };
+    const LOW: Number = 54;
+    const HIGH: Number = 70;
+
+    fn two() -> Exceptions {
+        let mut exceptions = Exceptions::default();
+        exceptions.set_priority(LOW, 0x10);
+        exceptions.set_priority(HIGH, 0x00);
+        for number in [LOW, HIGH] {
+            exceptions.enable(number, true);
+        }
+        exceptions
+    }
+
+    #[test]
+    fn the_higher_priority_comes_first_and_interrupts_the_lower() {
+        let mut exceptions = two();
+        exceptions.pend(LOW);
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+        exceptions.enter(LOW);
+        exceptions.pend(LOW);
+        assert_eq!(exceptions.next(OPEN), None, "it does not interrupt itself");
+        exceptions.pend(HIGH);
+        assert_eq!(exceptions.next(OPEN), Some(HIGH));
+        exceptions.enter(HIGH);
+        assert_eq!(exceptions.depth(), 2);
+        exceptions.leave();
+        exceptions.leave();
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+    }
+
+    #[test]
+    fn masks_hold_off_what_they_name() {
+        let mut exceptions = two();
+        let base = Masks { basepri: 0x10, ..OPEN };
+        let all = Masks { primask: true, ..OPEN };
+        exceptions.pend(LOW);
+        assert_eq!(exceptions.next(base), None);
+        assert_eq!(exceptions.next(all), None);
+        assert!(exceptions.wakes(all));
+        assert!(!exceptions.wakes(base));
+        exceptions.pend(HIGH);
+        assert_eq!(exceptions.next(base), Some(HIGH));
+        assert_eq!(exceptions.next(all), None);
+        exceptions.pend(HARD_FAULT);
+        assert_eq!(exceptions.next(all), Some(HARD_FAULT));
+    }
+
+    #[test]
+    fn a_line_that_stays_up_asks_again_and_one_that_fell_does_not() {
+        let mut exceptions = two();
+        exceptions.set_line(LOW, true);
+        exceptions.enter(LOW);
+        assert!(!exceptions.is_pending(LOW));
+        exceptions.leave();
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+        exceptions.enter(LOW);
+        exceptions.set_line(LOW, false);
+        exceptions.leave();
+        assert_eq!(exceptions.next(OPEN), None);
+        // Down and up again while it is served: an edge that is not lost.
+        exceptions.set_line(LOW, true);
+        exceptions.enter(LOW);
+        exceptions.set_line(LOW, false);
+        exceptions.set_line(LOW, true);
+        exceptions.set_line(LOW, false);
+        exceptions.leave();
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+    }
+
+    #[test]
+    fn of_equal_priorities_the_lower_number_comes_first() {
+        let mut exceptions = two();
+        exceptions.set_priority(LOW, 0);
+        exceptions.pend(HIGH);
+        exceptions.pend(LOW);
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+    }
+
+    #[test]
+    fn a_disabled_interrupt_waits() {
+        let mut exceptions = two();
+        exceptions.enable(LOW, false);
+        exceptions.pend(LOW);
+        assert!(!exceptions.any_pending());
+        exceptions.enable(LOW, true);
+        assert_eq!(exceptions.next(OPEN), Some(LOW));
+    }
+}

@@ -1,0 +1,9 @@
+//! What a Cortex-M4 has besides its instructions: exceptions and the system registers
+//! (ARM DDI 0403E).
+
+pub mod exceptions;
+pub mod system;
+pub mod systick;
+
+pub use exceptions::Exceptions;
+pub use system::System;

@@ -1,0 +1,270 @@
+//! The system control space and the cycle counter (ARM DDI 0403E, B3.2, B3.4 and C1.8).
+
+use super::exceptions::{
+    Exceptions, FIRST_INTERRUPT, HARD_FAULT, INTERRUPTS, Number, PEND_SV, SYS_TICK,
+};
+use super::systick::SysTick;
+use crate::peripheral::{Access, Unmodelled, only};
+
+/// Where it begins.
+pub const SYSTEM: u32 = 0xE000_E000;
+/// Where the unit with the cycle counter begins.
+pub const WATCH: u32 = 0xE000_1000;
+
+/// AIRCR: what must be written with it, and what is read instead.
+const KEY: u32 = 0x05FA;
+const KEY_READ: u32 = 0xFA05 << 16;
+/// AIRCR: a reset is asked for.
+const RESET_REQUEST: u32 = 1 << 2;
+/// AIRCR: which bits of a priority tell who interrupts whom. Zero: all that there are.
+const GROUPING: u32 = 0b111 << 8;
+/// CPACR: full access to the floating-point unit.
+const FLOATING_POINT: u32 = 0xF << 20;
+/// FPCCR: the floating-point registers are kept for whoever is interrupted, and later if possible.
+const KEPT: u32 = 0b11 << 30;
+/// HFSR: a fault that could not be served as itself.
+const FORCED: u32 = 1 << 30;
+/// CCR out of reset: frames are aligned to 8 bytes.
+const ALIGNED_FRAMES: u32 = 1 << 9;
+/// CPUID of a Cortex-M4, revision 0, patch 1.
+const CPUID: u32 = 0x410F_C241;
+
+/// The registers of the core that are memory to the program.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Which exceptions are pending and active.
+    pub exceptions: Exceptions,
+    /// The core's timer.
+    pub systick: SysTick,
+    /// Somebody asked for a reset.
+    pub reset_requested: bool,
+    vectors: u32,
+    coprocessors: u32,
+    sleep: u32,
+    /// CFSR, HFSR.
+    faults: (u32, u32),
+    fault_address: u32,
+    monitor: u32,
+    watch: u32,
+    /// The cycle counter's zero.
+    cycles_from: u64,
+}
+
+impl Default for System {
+    fn default() -> Self {
+        Self {
+            exceptions: Exceptions::default(),
+            systick: SysTick::default(),
+            reset_requested: false,
+            vectors: 0,
+            coprocessors: 0,
+            sleep: 0,
+            faults: (0, 0),
+            fault_address: 0,
+            monitor: 0,
+            watch: 0,
+            cycles_from: 0,
+        }
+    }
+}
+
+/// CFSR's bits that can be met here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum FaultStatus {
+    /// An instruction was fetched where there is no memory.
+    Fetch = 1 << 8,
+    /// Data where there is none; the address is known.
+    Data = (1 << 9) | (1 << 15),
+    /// No such instruction.
+    Undefined = 1 << 16,
+    /// Not a Thumb instruction, or a return from an exception that is none.
+    State = 1 << 17,
+}
+
+impl System {
+    /// Where the vector table is.
+    pub fn vectors(&self) -> u32 {
+        self.vectors
+    }
+
+    /// Whether the floating-point unit may be used.
+    pub fn has_floating_point(&self) -> bool {
+        self.coprocessors & FLOATING_POINT == FLOATING_POINT
+    }
+
+    /// Whether a wait for an interrupt goes on after the exception that ended it.
+    pub fn sleeps_on_exit(&self) -> bool {
+        self.sleep & (1 << 1) != 0
+    }
+
+    /// Takes a fault down and asks for the exception that serves it, which is the hard fault: the
+    /// programs enable no other.
+    pub fn fault(&mut self, status: FaultStatus, address: u32) {
+        self.faults.0 |= status as u32;
+        self.faults.1 |= FORCED;
+        self.fault_address = address;
+        self.exceptions.pend(HARD_FAULT);
+    }
+
+    /// Reads a word of the system control space.
+    pub fn read(&mut self, offset: u32, now: u64) -> Access<u32> {
+        Ok(match offset {
+            0x010..=0x018 => self.systick.read(offset - 0x010, now)?,
+            0x100..0x180 => self.bits(offset & 0x7F, Exceptions::is_enabled),
+            0x180..0x200 => self.bits(offset & 0x7F, Exceptions::is_enabled),
+            0x200..0x280 => self.bits(offset & 0x7F, Exceptions::is_pending),
+            0x280..0x300 => self.bits(offset & 0x7F, Exceptions::is_pending),
+            0x300..0x380 => self.bits(offset & 0x7F, Exceptions::is_active),
+            0xD00 => CPUID,
+            0xD04 => self.control_state(),
+            0xD08 => self.vectors,
+            0xD0C => KEY_READ,
+            0xD10 => self.sleep,
+            0xD14 => ALIGNED_FRAMES,
+            // No fault but the hard one is enabled.
+            0xD24 => 0,
+            0xD28 => self.faults.0,
+            0xD2C => self.faults.1,
+            0xD34 | 0xD38 => self.fault_address,
+            0xD88 => self.coprocessors,
+            // No debugger is connected.
+            0xDF0 => 0,
+            0xDFC => self.monitor,
+            0xF34 => KEPT,
+            _ => return Err(Unmodelled::Register),
+        })
+    }
+
+    /// Writes a word of the system control space.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
+        match offset {
+            0x010..=0x018 => self.systick.write(offset - 0x010, value, now)?,
+            0x100..0x180 => self.each(offset & 0x7F, value, |e, n| e.enable(n, true)),
+            0x180..0x200 => self.each(offset & 0x7F, value, |e, n| e.enable(n, false)),
+            0x200..0x280 => self.each(offset & 0x7F, value, Exceptions::pend),
+            0x280..0x300 => self.each(offset & 0x7F, value, Exceptions::unpend),
+            0xD04 => self.set_control_state(value)?,
+            0xD08 => self.vectors = value,
+            0xD0C => self.set_control(value)?,
+            0xD10 => {
+                // Sleep on exit; deep sleep and events of pending interrupts are not modelled.
+                only(value, 1 << 1)?;
+                self.sleep = value;
+            }
+            // Written bits are cleared.
+            0xD28 => self.faults.0 &= !value,
+            0xD2C => self.faults.1 &= !value,
+            0xD88 => {
+                only(value, FLOATING_POINT)?;
+                self.coprocessors = value;
+            }
+            0xDFC => {
+                only(value, 1 << 24)?;
+                self.monitor = value;
+            }
+            0xF34 if value == KEPT => {}
+            _ => return Err(Unmodelled::Register),
+        }
+        Ok(())
+    }
+
+    /// The priority byte of a place behind the first interrupt's or the system handlers', if that is
+    /// what is there: these alone may be accessed by bytes.
+    pub fn priority_at(offset: u32) -> Option<Number> {
+        match offset {
+            0x400..0x5F0 => Some(FIRST_INTERRUPT + (offset - 0x400) as Number),
+            // From the memory fault's on.
+            0xD18..0xD24 => Some(4 + (offset - 0xD18) as Number),
+            _ => None,
+        }
+    }
+
+    /// Reads the unit with the cycle counter.
+    pub fn read_watch(&self, offset: u32, now: u64) -> Access<u32> {
+        match offset {
+            0x0 => Ok(self.watch),
+            0x4 if self.watch & 1 != 0 => Ok((now - self.cycles_from) as u32),
+            0x4 => Ok(0),
+            _ => Err(Unmodelled::Register),
+        }
+    }
+
+    /// Writes it.
+    pub fn write_watch(&mut self, offset: u32, value: u32, now: u64) -> Access<()> {
+        match offset {
+            0x0 => {
+                only(value, 1)?;
+                self.watch = value;
+            }
+            0x4 => self.cycles_from = now.wrapping_sub(value.into()),
+            // The lock of software access, which this core does not have: ignored there too.
+            0xFB0 => {}
+            _ => return Err(Unmodelled::Register),
+        }
+        Ok(())
+    }
+
+    /// ICSR: which exceptions are pending and active.
+    fn control_state(&self) -> u32 {
+        let exceptions = &self.exceptions;
+        let pending = (FIRST_INTERRUPT..FIRST_INTERRUPT + INTERRUPTS as Number)
+            .find(|&number| exceptions.is_enabled(number) && exceptions.is_pending(number));
+        u32::from(exceptions.current().unwrap_or(0))
+            | u32::from(exceptions.depth() <= 1) << 11
+            | u32::from(pending.unwrap_or(0)) << 12
+            | u32::from(pending.is_some()) << 22
+            | u32::from(exceptions.is_pending(SYS_TICK)) << 26
+            | u32::from(exceptions.is_pending(PEND_SV)) << 28
+    }
+
+    fn set_control_state(&mut self, value: u32) -> Access<()> {
+        only(value, 0b1111 << 25)?;
+        for (bit, number) in [(28, PEND_SV), (26, SYS_TICK)] {
+            if value & (1 << bit) != 0 {
+                self.exceptions.pend(number);
+            }
+            if value & (1 << (bit - 1)) != 0 {
+                self.exceptions.unpend(number);
+            }
+        }
+        Ok(())
+    }
+
+    /// AIRCR.
+    fn set_control(&mut self, value: u32) -> Access<()> {
+        // Without its key a write does nothing.
+        if value >> 16 != KEY {
+            return Ok(());
+        }
+        only(value & 0xFFFF, RESET_REQUEST)?;
+        if value & GROUPING != 0 {
+            return Err(Unmodelled::Bits(value & GROUPING));
+        }
+        self.reset_requested |= value & RESET_REQUEST != 0;
+        Ok(())
+    }
+
+    fn bits(&self, offset: u32, is: fn(&Exceptions, Number) -> bool) -> u32 {
+        numbers(offset).enumerate().fold(0, |bits, (bit, number)| {
+            bits | u32::from(number.is_some_and(|n| is(&self.exceptions, n))) << bit
+        })
+    }
+
+    fn each(&mut self, offset: u32, value: u32, act: impl Fn(&mut Exceptions, Number)) {
+        for (bit, number) in numbers(offset).enumerate() {
+            if let Some(number) = number
+                && value & (1 << bit) != 0
+            {
+                act(&mut self.exceptions, number);
+            }
+        }
+    }
+}
+
+/// The interrupts of a word of the controller's bits, lowest first; none where the chips have none.
+fn numbers(offset: u32) -> impl Iterator<Item = Option<Number>> {
+    let first = usize::try_from(offset).unwrap_or(0) * 8;
+    (first..first + 32)
+        .map(|interrupt| (interrupt < INTERRUPTS).then(|| FIRST_INTERRUPT + interrupt as Number))
+}

@@ -1,0 +1,41 @@
+//! A program's file: what of it goes to memory.
+
+use object::elf::{FileHeader32, PT_LOAD};
+use object::read::elf::{FileHeader, ProgramHeader};
+use object::{Endianness, Object, ObjectSymbol};
+
+/// A program.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Its pieces, each with its address in flash.
+    pub pieces: Vec<(u32, Vec<u8>)>,
+    /// Its file.
+    pub file: Vec<u8>,
+}
+
+impl Image {
+    /// The program in an ELF file.
+    ///
+    /// # Errors
+    /// Where it is none.
+    pub fn of_elf(file: Vec<u8>) -> Result<Self, object::Error> {
+        let data = file.as_slice();
+        let header = FileHeader32::<Endianness>::parse(data)?;
+        let endian = header.endian()?;
+        let mut pieces = Vec::new();
+        for segment in header.program_headers(endian, data)? {
+            let bytes = segment.data(endian, data).unwrap_or_default();
+            if segment.p_type(endian) == PT_LOAD && !bytes.is_empty() {
+                pieces.push((segment.p_paddr(endian), bytes.to_vec()));
+            }
+        }
+        Ok(Self { pieces, file })
+    }
+
+    /// The address of a symbol.
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        let file = object::File::parse(self.file.as_slice()).ok()?;
+        let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name))?;
+        u32::try_from(symbol.address()).ok()
+    }
+}

@@ -1,0 +1,404 @@
+//! The board with its power on: instructions, exceptions between them, and time.
+
+use std::path::Path;
+
+use analysis::emulator::log::LogDecoder;
+use unicorn_engine::RegisterARM;
+
+use crate::board::{Board, Device, NotModelled};
+use crate::chip::Chip;
+use crate::core::exceptions::Number;
+use crate::core::system::FaultStatus;
+use crate::image::Image;
+use crate::peripheral::clock::Cause;
+use crate::processor::{Halt, KEPT, Processor};
+
+/// A frame of an exception, and one with the floating-point registers, in bytes.
+const FRAME: u32 = 0x20;
+const LONG_FRAME: u32 = 0x68;
+/// The frame's status: the stack was moved by a word to align it.
+const REALIGNED: u32 = 1 << 9;
+/// The status: Thumb.
+const THUMB: u32 = 1 << 24;
+/// A return from an exception: all that is the same in each.
+const RETURN: u32 = 0xFFFF_FFE1;
+/// To the program and not to another exception; without the floating-point registers.
+const TO_PROGRAM: u32 = 1 << 3;
+const SHORT: u32 = 1 << 4;
+/// To the stack that exceptions do not use.
+const OTHER_STACK: u32 = 1 << 2;
+
+/// Why a board cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Trouble {
+    /// The program uses what is not modelled.
+    #[error("{what}; instruction {now} at {address:#010x}")]
+    NotModelled {
+        /// What.
+        what: NotModelled,
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
+    /// The core is locked up: a fault where none can be served.
+    #[error("the core is locked up by a fault within a fault; instruction {now} at {address:#010x}")]
+    LockedUp {
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
+    /// What was waited for did not come.
+    #[error("{what} has not happened within {instructions} instructions")]
+    Late {
+        /// What was waited for.
+        what: &'static str,
+        /// How long.
+        instructions: u64,
+    },
+}
+
+/// Why there is no board.
+#[derive(Debug, thiserror::Error)]
+pub enum BootError {
+    /// The program's file could not be read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is no program.
+    #[error("{path}: {source}")]
+    Image {
+        /// The file.
+        path: String,
+        /// Why.
+        source: object::Error,
+    },
+    /// It is not for this chip's memory.
+    #[error("the program has {size} bytes at {address:#010x}, where the chip has no flash")]
+    NoFlash {
+        /// Where.
+        address: u32,
+        /// How many.
+        size: usize,
+    },
+}
+
+/// A board with its power on.
+pub struct Machine {
+    core: Processor,
+    image: Image,
+    waiting: bool,
+    resets: Vec<(u64, Cause)>,
+    log: Vec<u8>,
+}
+
+impl Machine {
+    /// Switches a board on that has this program in its flash and this device at its pins.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is no program for the chip.
+    pub fn boot(
+        elf: &Path,
+        chip: &'static Chip,
+        device: Box<dyn Device + Send>,
+    ) -> Result<Self, BootError> {
+        let path = || elf.display().to_string();
+        let file = std::fs::read(elf).map_err(|source| BootError::File { path: path(), source })?;
+        let image =
+            Image::of_elf(file).map_err(|source| BootError::Image { path: path(), source })?;
+        let mut core = Processor::new(Board::new(chip, device));
+        for (address, bytes) in &image.pieces {
+            if !core.set_memory(*address, bytes) {
+                return Err(BootError::NoFlash { address: *address, size: bytes.len() });
+            }
+        }
+        let mut machine =
+            Self { core, image, waiting: false, resets: Vec::new(), log: Vec::new() };
+        machine.start();
+        Ok(machine)
+    }
+
+    /// The board.
+    pub fn board(&self) -> &Board {
+        self.core.board()
+    }
+
+    /// The board, to do something to it from outside.
+    pub fn board_mut(&mut self) -> &mut Board {
+        self.core.board_mut()
+    }
+
+    /// The core, to do something to its memory.
+    pub fn core_mut(&mut self) -> &mut Processor {
+        &mut self.core
+    }
+
+    /// The program.
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Resets so far, with their times.
+    pub fn resets(&self) -> &[(u64, Cause)] {
+        &self.resets
+    }
+
+    /// Runs for so many instructions.
+    ///
+    /// # Errors
+    /// Where the board cannot go on.
+    pub fn run_for(&mut self, instructions: u64) -> Result<(), Trouble> {
+        let end = self.board().now + instructions;
+        while self.board().now < end {
+            self.step(end)?;
+        }
+        Ok(())
+    }
+
+    /// Runs until something is so, which is looked at whenever something has happened.
+    ///
+    /// # Errors
+    /// Where the board cannot go on, or it is not so within so many instructions.
+    pub fn run_until(
+        &mut self,
+        what: &'static str,
+        instructions: u64,
+        mut is_so: impl FnMut(&Board) -> bool,
+    ) -> Result<(), Trouble> {
+        let end = self.board().now + instructions;
+        while !is_so(self.board()) {
+            if self.board().now >= end {
+                return Err(Trouble::Late { what, instructions });
+            }
+            self.step(end)?;
+        }
+        Ok(())
+    }
+
+    /// Runs so many samples of the servo.
+    ///
+    /// # Errors
+    /// Where the board cannot go on, or the pacing timer does not come.
+    pub fn run_samples(&mut self, samples: u64) -> Result<(), Trouble> {
+        for _ in 0..samples {
+            let next = self.board().samples + 1;
+            self.run_until("an update of the pacing timer", LONGEST, |board| {
+                board.samples >= next
+            })?;
+        }
+        Ok(())
+    }
+
+    /// What the program has logged so far, as lines.
+    pub fn log(&mut self) -> Vec<String> {
+        self.drain_log();
+        LogDecoder::of_program(&self.image.file).decode(&self.log)
+    }
+
+    /// From one event to the next, at most up to a time.
+    fn step(&mut self, end: u64) -> Result<(), Trouble> {
+        if self.core.board_mut().advance() {
+            self.reset(Cause::Watchdog);
+        }
+        if self.core.board().system.reset_requested {
+            self.reset(Cause::Software);
+        }
+        if let Some(what) = self.core.board().stopped.clone() {
+            let (now, address) = (self.board().now, self.core.last_address());
+            return Err(Trouble::NotModelled { what, now, address });
+        }
+        if let Some(address) = self.core.board_mut().bus_error.take() {
+            // The access has failed; the instruction is the one that made it.
+            let at = self.core.last_address();
+            self.core.set_register(RegisterARM::PC, at | 1);
+            self.fault(FaultStatus::Data, address)?;
+        }
+        let masks = self.core.masks();
+        let exceptions = &self.core.board().system.exceptions;
+        if let Some(number) = exceptions.next(masks) {
+            self.waiting = false;
+            self.enter(number);
+        } else if self.waiting && exceptions.wakes(masks) {
+            self.waiting = false;
+        }
+        let until = end.min(self.core.board().due());
+        if self.waiting {
+            let board = self.core.board_mut();
+            board.now = board.now.max(until);
+            return Ok(());
+        }
+        let masked = self.core.board().system.exceptions.any_pending();
+        match self.core.run(until, masked) {
+            Halt::Attention => {}
+            Halt::Waiting => self.waiting = true,
+            Halt::Returning(word) => self.leave(word)?,
+            Halt::NoMemory { fetch, address } => {
+                let status = if fetch { FaultStatus::Fetch } else { FaultStatus::Data };
+                self.fault(status, address)?;
+            }
+            Halt::Undefined => self.fault(FaultStatus::Undefined, 0)?,
+            Halt::Invalid => self.fault(FaultStatus::State, 0)?,
+        }
+        Ok(())
+    }
+
+    /// A fault at the instruction where the core stands.
+    fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), Trouble> {
+        let masks = self.core.masks();
+        let board = self.core.board_mut();
+        if !board.system.exceptions.can_fault(masks) {
+            return Err(Trouble::LockedUp { now: board.now, address: self.core.last_address() });
+        }
+        board.system.fault(status, address);
+        Ok(())
+    }
+
+    /// Out of reset: the stack and the first instruction are the vector table's first words.
+    fn start(&mut self) {
+        for register in [RegisterARM::PRIMASK, RegisterARM::FAULTMASK, RegisterARM::BASEPRI] {
+            self.core.set_register(register, 0);
+        }
+        self.core.set_uses_floating_point(false);
+        self.core.set_register(RegisterARM::XPSR, THUMB);
+        let (stack, entry) = (self.vector(0), self.vector(1));
+        self.core.set_register(RegisterARM::MSP, stack);
+        self.core.set_register(RegisterARM::LR, u32::MAX);
+        self.core.set_register(RegisterARM::PC, entry);
+        self.waiting = false;
+    }
+
+    fn reset(&mut self, cause: Cause) {
+        self.drain_log();
+        self.resets.push((self.board().now, cause));
+        self.core.board_mut().reset(cause);
+        self.start();
+    }
+
+    /// A word of the vector table, which is at the beginning of flash out of reset.
+    fn vector(&self, number: u32) -> u32 {
+        const FLASH: u32 = 0x0800_0000;
+        let table = match self.core.board().system.vectors() {
+            0 => FLASH,
+            table => table,
+        };
+        self.core.word(table + 4 * number).unwrap_or(0)
+    }
+
+    /// Begins to serve an exception (ARM DDI 0403E, B1.5.6): its frame on the stack, its vector.
+    ///
+    /// The floating-point registers are put into the frame at once. A core that puts them there
+    /// only when the handler uses some itself leaves the frame's words as they were; nothing but
+    /// time tells the difference.
+    fn enter(&mut self, number: Number) {
+        let core = &mut self.core;
+        let long = core.uses_floating_point();
+        let stack = core.register(RegisterARM::MSP);
+        let frame = stack.wrapping_sub(if long { LONG_FRAME } else { FRAME }) & !7;
+        let realigned = if stack & 4 != 0 { REALIGNED } else { 0 };
+        let mut words = KEPT.map(|register| core.register(register)).to_vec();
+        words.push(core.register(RegisterARM::PC));
+        words.push(core.register(RegisterARM::XPSR) & !REALIGNED | realigned);
+        if long {
+            words.extend(FLOATING.map(|register| core.register(register)));
+            words.extend([core.register(RegisterARM::FPSCR), 0]);
+        }
+        let bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+        // A stack that has run over keeps nothing; the handler of faults does not count on it.
+        core.set_memory(frame, &bytes);
+        let nested = core.board().system.exceptions.current().is_some();
+        let word = RETURN
+            | if nested { 0 } else { TO_PROGRAM }
+            | if long { 0 } else { SHORT };
+        core.board_mut().system.exceptions.enter(number);
+        core.set_uses_floating_point(false);
+        core.set_register(RegisterARM::MSP, frame);
+        core.set_register(RegisterARM::LR, word);
+        core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
+        let vector = self.vector(number.into());
+        self.core.set_register(RegisterARM::PC, vector);
+    }
+
+    /// Ends the exception that is being served (B1.5.8): back to what its frame says.
+    fn leave(&mut self, word: u32) -> Result<(), Trouble> {
+        let is_return = word & !(TO_PROGRAM | SHORT | OTHER_STACK) | 1 == RETURN;
+        let frame = self.core.register(RegisterARM::MSP);
+        let size = if word & SHORT == 0 { LONG_FRAME } else { FRAME };
+        let kept = self.core.memory(frame, size as usize);
+        let Some(kept) = kept.filter(|_| is_return && word & OTHER_STACK == 0) else {
+            return self.fault(FaultStatus::State, frame);
+        };
+        let words: Vec<u32> =
+            kept.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+        let core = &mut self.core;
+        core.board_mut().system.exceptions.leave();
+        for (register, value) in KEPT.into_iter().zip(&words) {
+            core.set_register(register, *value);
+        }
+        let (pc, status) = (words[6], words[7]);
+        if word & SHORT == 0 {
+            for (register, value) in FLOATING.into_iter().zip(&words[8..]) {
+                core.set_register(register, *value);
+            }
+            core.set_register(RegisterARM::FPSCR, words[24]);
+        }
+        core.set_uses_floating_point(word & SHORT == 0);
+        let realigned = if status & REALIGNED != 0 { 4 } else { 0 };
+        core.set_register(RegisterARM::MSP, (frame + size) | realigned);
+        core.set_register(RegisterARM::XPSR, status & !REALIGNED);
+        core.set_register(RegisterARM::XPSR_G, status & !REALIGNED);
+        core.set_register(RegisterARM::FAULTMASK, 0);
+        core.set_register(RegisterARM::PC, pc | 1);
+        let sleeps = core.board().system.sleeps_on_exit() && word & TO_PROGRAM != 0;
+        self.waiting = sleeps;
+        Ok(())
+    }
+
+    /// Takes the log's bytes out of its ring in RAM (SEGGER's real-time transfer), as a debug probe
+    /// does.
+    fn drain_log(&mut self) {
+        let Some(block) = self.image.symbol("_SEGGER_RTT") else { return };
+        let mut channel = [0; 6];
+        // Behind the mark of 16 bytes and the two numbers of channels.
+        for (i, word) in channel.iter_mut().enumerate() {
+            *word = self.core.word(block + 24 + 4 * i as u32).unwrap_or(0);
+        }
+        let [_, buffer, size, write, read, _] = channel;
+        if self.core.memory(block, 16).is_none_or(|mark| !mark.starts_with(b"SEGGER RTT")) {
+            return;
+        }
+        let pieces = if write >= read { [(read, write), (0, 0)] } else { [(read, size), (0, write)] };
+        for (from, to) in pieces {
+            let bytes = self.core.memory(buffer + from, (to - from) as usize);
+            self.log.extend(bytes.unwrap_or_default());
+        }
+        self.core.set_memory(block + 24 + 16, &write.to_le_bytes());
+    }
+}
+
+/// Instructions within which the pacing timer has to come.
+const LONGEST: u64 = 200_000_000;
+
+/// The floating-point registers that a frame keeps.
+const FLOATING: [RegisterARM; 16] = [
+    RegisterARM::S0,
+    RegisterARM::S1,
+    RegisterARM::S2,
+    RegisterARM::S3,
+    RegisterARM::S4,
+    RegisterARM::S5,
+    RegisterARM::S6,
+    RegisterARM::S7,
+    RegisterARM::S8,
+    RegisterARM::S9,
+    RegisterARM::S10,
+    RegisterARM::S11,
+    RegisterARM::S12,
+    RegisterARM::S13,
+    RegisterARM::S14,
+    RegisterARM::S15,
+];

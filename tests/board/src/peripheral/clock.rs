@@ -1,0 +1,158 @@
+//! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
+//! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
+
+use std::collections::BTreeMap;
+
+use super::{Access, Unmodelled, only};
+
+/// What differs between the families.
+#[derive(Debug)]
+pub struct Layout {
+    /// Registers: place, value out of reset, bits that may be written.
+    pub registers: &'static [(u32, u32, u32)],
+    /// Place of CFGR, which chooses the system's clock.
+    pub choice: u32,
+    /// The control and status register, with the causes of resets.
+    pub causes: u32,
+    /// Its bit that forgets them.
+    pub forget: u32,
+    /// Switches of clock sources: register, the switch's bit, and the bit that says it is ready.
+    pub switches: &'static [(u32, u32, u32)],
+    /// CFGR: where it has the slow peripheral bus's divider.
+    pub slow_bus: u32,
+    /// The system's clock in Hz for a crystal of so many; none where what was chosen does not run.
+    pub system: fn(&dyn Fn(u32) -> u32, crystal: u64) -> Option<u64>,
+}
+
+/// The switch of the crystal's oscillator.
+pub const CRYSTAL: (u32, u32, u32) = (0x00, 1 << 16, 1 << 17);
+/// The switch of the phase-locked loop.
+pub const LOOP: (u32, u32, u32) = (0x00, 1 << 24, 1 << 25);
+
+/// CSR: the causes of resets.
+const CAUSES: u32 = 0xFE00_0000;
+
+/// The causes of a reset that can happen here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Cause {
+    /// Power was switched on.
+    Power = 1 << 27,
+    /// The program asked for it.
+    Software = 1 << 28,
+    /// The independent watchdog.
+    Watchdog = 1 << 29,
+}
+
+/// The unit.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    layout: &'static Layout,
+    values: BTreeMap<u32, u32>,
+    crystal: u64,
+    /// Whether the crystal starts when it is switched on.
+    pub crystal_starts: bool,
+}
+
+impl Clock {
+    /// Out of reset, with a crystal of so many Hz.
+    pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
+        let values = layout.registers.iter().map(|&(offset, value, _)| (offset, value)).collect();
+        let mut clock = Self { layout, values, crystal, crystal_starts: true };
+        clock.add_cause(cause);
+        clock
+    }
+
+    /// Takes down why the chip was reset; the other causes stay until they are forgotten.
+    pub fn add_cause(&mut self, cause: Cause) {
+        *self.values.entry(self.layout.causes).or_default() |= cause as u32;
+    }
+
+    /// The same unit behind a reset.
+    #[must_use]
+    pub fn after_reset(&self, cause: Cause) -> Self {
+        let causes = self.get(self.layout.causes) & CAUSES;
+        let mut clock = Self { crystal_starts: self.crystal_starts, ..Self::new(self.layout, self.crystal, cause) };
+        *clock.values.entry(self.layout.causes).or_default() |= causes;
+        clock
+    }
+
+    /// The core's clock in Hz.
+    pub fn core(&self) -> u64 {
+        let hpre = self.get(self.layout.choice) >> 4 & 0xF;
+        let divider = match hpre {
+            0..8 => 1,
+            8..12 => 1 << (hpre - 7),
+            _ => 1 << (hpre - 6),
+        };
+        let system = (self.layout.system)(&|offset| self.get(offset), self.crystal);
+        system.unwrap_or(0) / divider
+    }
+
+    /// Core clocks for one of the slow peripheral bus.
+    pub fn bus_divider(&self) -> u64 {
+        let ppre1 = self.get(self.layout.choice) >> self.layout.slow_bus & 0b111;
+        if ppre1 < 4 { 1 } else { 1 << (ppre1 - 3) }
+    }
+
+    /// Core clocks for one of that bus's timers, which run twice as fast as a divided bus.
+    pub fn timer_divider(&self) -> u64 {
+        self.bus_divider().div_ceil(2)
+    }
+
+    /// Whether a bit of a register that switches peripherals' clocks is set.
+    pub fn is_set(&self, offset: u32, bit: u32) -> bool {
+        self.get(offset) & (1 << bit) != 0
+    }
+
+    /// Reads.
+    pub fn read(&self, offset: u32) -> Access<u32> {
+        let value = *self.values.get(&offset).ok_or(Unmodelled::Register)?;
+        let value = self.with_ready(offset, value);
+        // What runs is what was chosen.
+        let runs = if offset == self.layout.choice { (value & 0b11) << 2 } else { 0 };
+        Ok(value | runs)
+    }
+
+    /// Writes.
+    pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
+        let (_, reset, modelled) = *self
+            .layout
+            .registers
+            .iter()
+            .find(|(place, ..)| *place == offset)
+            .ok_or(Unmodelled::Register)?;
+        // What the chip itself sets is written back by whoever changes something else.
+        let own = if offset == self.layout.choice { 0b1100 } else { 0 };
+        let own = self.switches(offset).fold(own, |own, (_, ready)| own | ready);
+        let is_causes = offset == self.layout.causes;
+        let own = if is_causes { own | CAUSES } else { own };
+        only((value ^ reset) & !own, modelled)?;
+        let causes = if is_causes && value & self.layout.forget == 0 { self.get(offset) & CAUSES } else { 0 };
+        self.values.insert(offset, value & !own & !self.forgets(offset) | causes);
+        Ok(())
+    }
+
+    /// The bit that forgets the causes of resets, which does not stay.
+    fn forgets(&self, offset: u32) -> u32 {
+        if offset == self.layout.causes { self.layout.forget } else { 0 }
+    }
+
+    fn get(&self, offset: u32) -> u32 {
+        self.values.get(&offset).copied().unwrap_or(0)
+    }
+
+    /// A register's switches and the bits that say they are ready.
+    fn switches(&self, offset: u32) -> impl Iterator<Item = (u32, u32)> {
+        let here = self.layout.switches.iter().filter(move |&&(register, ..)| register == offset);
+        here.map(|&(_, on, ready)| (on, ready))
+    }
+
+    /// A register with its bits that say what is ready.
+    fn with_ready(&self, offset: u32, value: u32) -> u32 {
+        self.switches(offset).fold(value, |value, (on, ready)| {
+            let starts = (offset, on, ready) != CRYSTAL || self.crystal_starts;
+            if value & on != 0 && starts { value | ready } else { value & !ready }
+        })
+    }
+}

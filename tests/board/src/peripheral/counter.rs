@@ -1,0 +1,122 @@
+//! A general-purpose timer (RM0440, 31.5; RM0090, 18.4) in the two ways that the programs use one:
+//! as a clock that counts up, and as the counter of a quadrature encoder.
+
+use super::{Access, Unmodelled, only};
+
+/// CR1: counting.
+const ENABLE: u32 = 1;
+/// SMCR: all four edges of two channels count.
+const BOTH_CHANNELS: u32 = 0b011;
+/// CCMR1: each channel captures from its own input, and a filter of eight equal samples.
+const OWN_INPUTS: u32 = 0x0101;
+const FILTERS: u32 = 0xF0F0;
+/// CCER: both channels enabled, neither inverted.
+const CHANNELS: u32 = 0x0011;
+
+/// The timer.
+#[derive(Clone, Debug)]
+pub struct Counter {
+    /// Its largest value: all bits that it has.
+    mask: u32,
+    control: u32,
+    slave: u32,
+    inputs: u32,
+    channels: u32,
+    prescaler: u32,
+    reload: u32,
+    /// What it holds, at the time when it held it.
+    value: u32,
+    at: u64,
+}
+
+impl Counter {
+    /// A counter of so many bits, out of reset.
+    pub fn new(bits: u32) -> Self {
+        let mask = u32::MAX >> (32 - bits);
+        Self {
+            mask,
+            control: 0,
+            slave: 0,
+            inputs: 0,
+            channels: 0,
+            prescaler: 0,
+            reload: mask,
+            value: 0,
+            at: 0,
+        }
+    }
+
+    /// Whether it counts an encoder, as the program has set it up.
+    pub fn counts_encoder(&self) -> bool {
+        self.control & ENABLE != 0
+            && self.slave == BOTH_CHANNELS
+            && self.inputs & OWN_INPUTS == OWN_INPUTS
+            && self.channels == CHANNELS
+    }
+
+    /// Edges from an encoder: so many counts up.
+    pub fn turn(&mut self, counts: i32) {
+        if self.counts_encoder() {
+            let modulus = i64::from(self.reload) + 1;
+            let sum = i64::from(self.value) + i64::from(counts);
+            self.value = sum.rem_euclid(modulus) as u32;
+        }
+    }
+
+    /// What it holds.
+    pub fn value(&self, now: u64, divider: u64) -> u32 {
+        if self.control & ENABLE == 0 || self.slave == BOTH_CHANNELS {
+            return self.value;
+        }
+        let counts = (now - self.at) / ((u64::from(self.prescaler) + 1) * divider);
+        ((u64::from(self.value) + counts) % (u64::from(self.reload) + 1)) as u32
+    }
+
+    /// Reads.
+    pub fn read(&self, offset: u32, now: u64, divider: u64) -> Access<u32> {
+        match offset {
+            0x00 => Ok(self.control),
+            0x08 => Ok(self.slave),
+            0x18 => Ok(self.inputs),
+            0x20 => Ok(self.channels),
+            0x24 => Ok(self.value(now, divider)),
+            0x28 => Ok(self.prescaler),
+            0x2C => Ok(self.reload),
+            _ => Err(Unmodelled::Register),
+        }
+    }
+
+    /// Writes.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64, divider: u64) -> Access<()> {
+        // What it has counted so far was counted as it was set up so far.
+        (self.value, self.at) = (self.value(now, divider), now);
+        match offset {
+            0x00 => {
+                only(value, ENABLE)?;
+                self.control = value;
+            }
+            0x08 => {
+                only(value, BOTH_CHANNELS)?;
+                self.slave = value;
+            }
+            // An update by the program: from zero, with the prescaler that was written.
+            0x14 => {
+                only(value, 1)?;
+                self.value = 0;
+            }
+            0x18 => {
+                only(value, OWN_INPUTS | FILTERS)?;
+                self.inputs = value;
+            }
+            0x20 => {
+                only(value, CHANNELS)?;
+                self.channels = value;
+            }
+            0x24 => self.value = value & self.mask,
+            0x28 => self.prescaler = value & 0xFFFF,
+            0x2C => self.reload = value & self.mask,
+            _ => return Err(Unmodelled::Register),
+        }
+        Ok(())
+    }
+}

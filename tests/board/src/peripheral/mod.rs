@@ -1,0 +1,35 @@
+//! Peripherals at register level: of each only what the programs use. What is not here is an error
+//! that names the register, never a silent zero.
+
+pub mod clock;
+pub mod clock_g4;
+pub mod clock_f4;
+pub mod converter;
+pub mod counter;
+pub mod flash;
+pub mod pacer;
+pub mod pins;
+pub mod plain;
+pub mod power;
+pub mod serial;
+pub mod watchdog;
+
+/// Why an access is not modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unmodelled {
+    /// The register is not.
+    Register,
+    /// These bits of what was written are not.
+    Bits(u32),
+}
+
+/// What an access gives.
+pub type Access<T> = Result<T, Unmodelled>;
+
+/// Whether a value has no other bits than these.
+pub fn only(value: u32, modelled: u32) -> Access<()> {
+    match value & !modelled {
+        0 => Ok(()),
+        others => Err(Unmodelled::Bits(others)),
+    }
+}

@@ -1,0 +1,248 @@
+//! A serial port: a byte takes as long as on a line, and one that is not read in time is lost.
+//!
+//! Two faces of it: the G4's with a queue of eight bytes each way (RM0440, 37.8), the F405's with
+//! one (RM0090, 30.6).
+
+use std::collections::VecDeque;
+
+use super::{Access, Unmodelled, only};
+
+/// Which registers it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Face {
+    /// The G4's.
+    G4,
+    /// The F405's.
+    F405,
+}
+
+/// Flags, at the same places in both status registers.
+const OVERRUN: u32 = 1 << 3;
+const IDLE: u32 = 1 << 4;
+const RECEIVED: u32 = 1 << 5;
+const SENT: u32 = 1 << 6;
+const ROOM: u32 = 1 << 7;
+/// G4's: transmitter and receiver are enabled.
+const ENABLED: u32 = 0b11 << 21;
+/// CR1: the interrupts of these flags, at the flags' own places.
+const INTERRUPTS: u32 = IDLE | RECEIVED | SENT | ROOM;
+/// CR1: receiver and transmitter.
+const BOTH_WAYS: u32 = 0b11 << 2;
+/// CR1 of the G4: the port is on; its queues are.
+const ON_G4: u32 = 1;
+const QUEUES: u32 = 1 << 29;
+/// CR1 of the F405: the port is on.
+const ON_F405: u32 = 1 << 13;
+/// CR3: errors of the line, of which the overrun is the one that there can be.
+const ERRORS: u32 = 1;
+/// Bits of a byte on the line, with its start and its stop.
+const FRAME: u64 = 10;
+
+/// The port.
+#[derive(Clone, Debug)]
+pub struct Serial {
+    face: Face,
+    control: [u32; 3],
+    rate: u32,
+    prescaler: u32,
+    /// Overrun and idle.
+    latched: u32,
+    /// G4: a transmission has ended since that was last cleared; F405: the same.
+    sent: bool,
+    incoming: VecDeque<u8>,
+    outgoing: VecDeque<u8>,
+    /// When the byte on the line has arrived, and when the one that is being sent has left.
+    arrives: Option<u64>,
+    leaves: Option<u64>,
+    /// The line was busy and has not been idle since.
+    was_busy: bool,
+    /// What is on its way to the program, and what it has sent.
+    line_in: VecDeque<u8>,
+    line_out: Vec<u8>,
+    /// Bytes that were lost because they were not read in time.
+    lost: u64,
+}
+
+impl Serial {
+    /// Out of reset.
+    pub fn new(face: Face) -> Self {
+        Self {
+            face,
+            control: [0; 3],
+            rate: 0,
+            prescaler: 0,
+            latched: 0,
+            sent: true,
+            incoming: VecDeque::new(),
+            outgoing: VecDeque::new(),
+            arrives: None,
+            leaves: None,
+            was_busy: false,
+            line_in: VecDeque::new(),
+            line_out: Vec::new(),
+            lost: 0,
+        }
+    }
+
+    /// Puts bytes on the line to the program.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.line_in.extend(bytes);
+    }
+
+    /// What the program has sent since the last time.
+    pub fn take_sent(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.line_out)
+    }
+
+    /// Bytes that the program lost.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Whether bytes are still on their way to the program.
+    pub fn is_busy(&self) -> bool {
+        !self.line_in.is_empty()
+    }
+
+    /// When something happens on the line next.
+    pub fn due(&self) -> Option<u64> {
+        [self.arrives, self.leaves].into_iter().flatten().min()
+    }
+
+    /// Does what is due, and begins what can begin; `divider` is the core's clock by the port's.
+    pub fn advance(&mut self, now: u64, divider: u64) {
+        let on = self.control[0] & self.on() != 0 && self.rate > 0;
+        if !on {
+            (self.arrives, self.leaves) = (None, None);
+            return;
+        }
+        let byte = FRAME * u64::from(self.rate) * divider;
+        while let Some(at) = self.arrives.filter(|&at| at <= now) {
+            self.arrive();
+            self.arrives = (self.was_busy || !self.line_in.is_empty()).then_some(at + byte);
+        }
+        if self.arrives.is_none() && !self.line_in.is_empty() {
+            self.arrives = Some(now + byte);
+        }
+        while let Some(at) = self.leaves.filter(|&at| at <= now) {
+            self.line_out.extend(self.outgoing.pop_front());
+            self.leaves = (!self.outgoing.is_empty()).then_some(at + byte);
+            self.sent |= self.outgoing.is_empty();
+        }
+        if self.leaves.is_none() && !self.outgoing.is_empty() {
+            self.leaves = Some(now + byte);
+        }
+    }
+
+    /// The line's next byte, or the silence of a byte's length behind the last one.
+    fn arrive(&mut self) {
+        match self.line_in.pop_front() {
+            Some(byte) if self.incoming.len() < self.depth() => {
+                self.incoming.push_back(byte);
+                self.was_busy = true;
+            }
+            Some(_) => {
+                self.latched |= OVERRUN;
+                self.lost += 1;
+                self.was_busy = true;
+            }
+            None => {
+                self.latched |= IDLE;
+                self.was_busy = false;
+            }
+        }
+    }
+
+    /// The level of its interrupt line.
+    pub fn line(&self) -> bool {
+        let status = self.status();
+        let enabled = self.control[0] & INTERRUPTS;
+        // An overrun asks by the interrupt of what was received, and by that of errors.
+        let overrun = self.control[0] & RECEIVED != 0 || self.control[2] & ERRORS != 0;
+        status & enabled != 0 || (status & OVERRUN != 0 && overrun)
+    }
+
+    /// Reads.
+    pub fn read(&mut self, offset: u32) -> Access<u32> {
+        use Face::{F405, G4};
+        Ok(match (self.face, offset) {
+            (G4, 0x00 | 0x04 | 0x08) => self.control[offset as usize / 4],
+            (G4, 0x0C) => self.rate,
+            (G4, 0x1C) => self.status() | ENABLED,
+            (G4, 0x24) => self.receive(),
+            (G4, 0x2C) => self.prescaler,
+            (F405, 0x00) => self.status(),
+            (F405, 0x04) => {
+                // The status was read before, and this clears what it told.
+                self.latched = 0;
+                self.receive()
+            }
+            (F405, 0x08) => self.rate,
+            (F405, 0x0C | 0x10 | 0x14) => self.control[(offset as usize - 0x0C) / 4],
+            _ => return Err(Unmodelled::Register),
+        })
+    }
+
+    /// Writes.
+    pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
+        use Face::{F405, G4};
+        match (self.face, offset) {
+            (G4, 0x00) => {
+                only(value, ON_G4 | BOTH_WAYS | INTERRUPTS | QUEUES)?;
+                self.control[0] = value;
+            }
+            (F405, 0x0C) => {
+                only(value, ON_F405 | BOTH_WAYS | INTERRUPTS)?;
+                self.control[0] = value;
+            }
+            // One stop bit, nothing inverted.
+            (G4, 0x04) | (F405, 0x10) => only(value, 0)?,
+            (G4, 0x08) | (F405, 0x14) => {
+                only(value, ERRORS)?;
+                self.control[2] = value;
+            }
+            (G4, 0x0C) | (F405, 0x08) => {
+                only(value, 0xFFFF)?;
+                self.rate = value;
+            }
+            // Cleared by writing ones.
+            (G4, 0x20) => {
+                self.latched &= !value;
+                self.sent &= value & SENT == 0;
+            }
+            (G4, 0x28) | (F405, 0x04) => {
+                self.sent = false;
+                self.outgoing.push_back(value as u8);
+            }
+            (G4, 0x2C) => only(value, 0)?,
+            // Cleared by writing zeros.
+            (F405, 0x00) => self.sent &= value & SENT != 0,
+            _ => return Err(Unmodelled::Register),
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self) -> u32 {
+        self.incoming.pop_front().unwrap_or(0).into()
+    }
+
+    fn status(&self) -> u32 {
+        let flag = |set: bool, bit| if set { bit } else { 0 };
+        self.latched
+            | flag(!self.incoming.is_empty(), RECEIVED)
+            | flag(self.sent, SENT)
+            | flag(self.outgoing.len() <= self.depth(), ROOM)
+    }
+
+    /// Bytes that each of its queues holds.
+    fn depth(&self) -> usize {
+        if self.control[0] & QUEUES != 0 && self.face == Face::G4 { 8 } else { 1 }
+    }
+
+    fn on(&self) -> u32 {
+        match self.face {
+            Face::G4 => ON_G4,
+            Face::F405 => ON_F405,
+        }
+    }
+}
