@@ -6,6 +6,7 @@ use crate::chip::{Chip, DEBUG, PACER_INTERRUPT, Place, TORQUE, Unit};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::core::system::{SYSTEM, WATCH};
+use crate::device::Still;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::converter::Converter;
 use crate::peripheral::counter::Counter;
@@ -21,16 +22,6 @@ pub trait Device {
     /// A sample ends: what the converter put out during it, and whether the amplifier was on. Gives
     /// the counts that the encoder has turned in it.
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
-}
-
-/// A device that stands still.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Still;
-
-impl Device for Still {
-    fn sample(&mut self, _: Option<u16>, _: bool) -> i32 {
-        0
-    }
 }
 
 /// Something that is not modelled was used.

@@ -102,7 +102,14 @@ pub const PACER_INTERRUPT: u16 = 54;
 /// The pin that the converter drives: PA4 on both.
 pub const TORQUE: (usize, u32) = (0, 4);
 
-const fn place(base: u32, name: &'static str, unit: Unit, enable: u32, reset: u32, bit: u32) -> Place {
+const fn place(
+    base: u32,
+    name: &'static str,
+    unit: Unit,
+    enable: u32,
+    reset: u32,
+    bit: u32,
+) -> Place {
     Place { base, name, unit, clocked: Some((enable, reset, bit)) }
 }
 
@@ -223,7 +230,8 @@ impl Chip {
 
     /// The unit at an address.
     pub fn at(&self, address: u32) -> Option<&'static Place> {
-        let place = |chip: &'static [Place]| chip.iter().find(|place| address & !(SPAN - 1) == place.base);
+        let place =
+            |chip: &'static [Place]| chip.iter().find(|place| address & !(SPAN - 1) == place.base);
         place(self.map)
     }
 }

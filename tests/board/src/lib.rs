@@ -8,6 +8,7 @@
 //! - [`board`]: the units on the bus, and the world that is wired to them.
 //! - [`chip`]: the two chips: where what is, and which pins it uses.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
+//! - [`device`]: what is wired to the board.
 //! - [`processor`]: the instructions, which a library executes.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core; so it is the right
@@ -16,6 +17,7 @@
 pub mod board;
 pub mod chip;
 pub mod core;
+pub mod device;
 pub mod image;
 pub mod machine;
 pub mod peripheral;

@@ -42,7 +42,9 @@ pub enum Trouble {
         address: u32,
     },
     /// The core is locked up: a fault where none can be served.
-    #[error("the core is locked up by a fault within a fault; instruction {now} at {address:#010x}")]
+    #[error(
+        "the core is locked up by a fault within a fault; instruction {now} at {address:#010x}"
+    )]
     LockedUp {
         /// When.
         now: u64,
@@ -117,8 +119,7 @@ impl Machine {
                 return Err(BootError::NoFlash { address: *address, size: bytes.len() });
             }
         }
-        let mut machine =
-            Self { core, image, waiting: false, resets: Vec::new(), log: Vec::new() };
+        let mut machine = Self { core, image, waiting: false, resets: Vec::new(), log: Vec::new() };
         machine.start();
         Ok(machine)
     }
@@ -311,9 +312,7 @@ impl Machine {
         // A stack that has run over keeps nothing; the handler of faults does not count on it.
         core.set_memory(frame, &bytes);
         let nested = core.board().system.exceptions.current().is_some();
-        let word = RETURN
-            | if nested { 0 } else { TO_PROGRAM }
-            | if long { 0 } else { SHORT };
+        let word = RETURN | if nested { 0 } else { TO_PROGRAM } | if long { 0 } else { SHORT };
         core.board_mut().system.exceptions.enter(number);
         core.set_uses_floating_point(false);
         core.set_register(RegisterARM::MSP, frame);
@@ -332,8 +331,10 @@ impl Machine {
         let Some(kept) = kept.filter(|_| is_return && word & OTHER_STACK == 0) else {
             return self.fault(FaultStatus::State, frame);
         };
-        let words: Vec<u32> =
-            kept.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+        let words: Vec<u32> = kept
+            .chunks_exact(4)
+            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+            .collect();
         let core = &mut self.core;
         core.board_mut().system.exceptions.leave();
         for (register, value) in KEPT.into_iter().zip(&words) {
@@ -371,7 +372,8 @@ impl Machine {
         if self.core.memory(block, 16).is_none_or(|mark| !mark.starts_with(b"SEGGER RTT")) {
             return;
         }
-        let pieces = if write >= read { [(read, write), (0, 0)] } else { [(read, size), (0, write)] };
+        let pieces =
+            if write >= read { [(read, write), (0, 0)] } else { [(read, size), (0, write)] };
         for (from, to) in pieces {
             let bytes = self.core.memory(buffer + from, (to - from) as usize);
             self.log.extend(bytes.unwrap_or_default());

@@ -76,14 +76,8 @@ impl Processor {
     /// A core with a chip's memory, which holds noise, and its board.
     pub fn new(board: Board) -> Self {
         let chip = board.chip();
-        let context = Context {
-            board,
-            deadline: 0,
-            attention: false,
-            masked: false,
-            address: 0,
-            halt: None,
-        };
+        let context =
+            Context { board, deadline: 0, attention: false, masked: false, address: 0, halt: None };
         let mode = Mode::THUMB | Mode::MCLASS;
         let mut engine =
             Unicorn::new_with_data(Arch::ARM, mode, context).expect("the engine has this core");
@@ -132,8 +126,7 @@ impl Processor {
                 u64::MAX,
                 |engine, kind, address, _, _| {
                     use unicorn_engine::MemType;
-                    let fetch =
-                        matches!(kind, MemType::FETCH_UNMAPPED | MemType::FETCH_PROT);
+                    let fetch = matches!(kind, MemType::FETCH_UNMAPPED | MemType::FETCH_PROT);
                     let address = address as u32;
                     engine.get_data_mut().halt = Some(Halt::NoMemory { fetch, address });
                     false

@@ -193,11 +193,7 @@ impl Exceptions {
     }
 
     fn rank(&self, number: Number) -> i16 {
-        if number <= HARD_FAULT {
-            number as i16 - 4
-        } else {
-            self.priority(number).into()
-        }
+        if number <= HARD_FAULT { number as i16 - 4 } else { self.priority(number).into() }
     }
 }
 

@@ -72,7 +72,10 @@ impl Clock {
     #[must_use]
     pub fn after_reset(&self, cause: Cause) -> Self {
         let causes = self.get(self.layout.causes) & CAUSES;
-        let mut clock = Self { crystal_starts: self.crystal_starts, ..Self::new(self.layout, self.crystal, cause) };
+        let mut clock = Self {
+            crystal_starts: self.crystal_starts,
+            ..Self::new(self.layout, self.crystal, cause)
+        };
         *clock.values.entry(self.layout.causes).or_default() |= causes;
         clock
     }
@@ -128,7 +131,11 @@ impl Clock {
         let is_causes = offset == self.layout.causes;
         let own = if is_causes { own | CAUSES } else { own };
         only((value ^ reset) & !own, modelled)?;
-        let causes = if is_causes && value & self.layout.forget == 0 { self.get(offset) & CAUSES } else { 0 };
+        let causes = if is_causes && value & self.layout.forget == 0 {
+            self.get(offset) & CAUSES
+        } else {
+            0
+        };
         self.values.insert(offset, value & !own & !self.forgets(offset) | causes);
         Ok(())
     }

@@ -22,22 +22,12 @@ pub struct Layout {
 }
 
 /// The G4's.
-pub const G4: Layout = Layout {
-    triggered: 1 << 1,
-    trigger: 0xF << 2,
-    by_pacer: 7 << 2,
-    ignored: 0,
-    has_mode: true,
-};
+pub const G4: Layout =
+    Layout { triggered: 1 << 1, trigger: 0xF << 2, by_pacer: 7 << 2, ignored: 0, has_mode: true };
 
 /// The F405's.
-pub const F405: Layout = Layout {
-    triggered: 1 << 2,
-    trigger: 0b111 << 3,
-    by_pacer: 0,
-    ignored: 0,
-    has_mode: false,
-};
+pub const F405: Layout =
+    Layout { triggered: 1 << 2, trigger: 0b111 << 3, by_pacer: 0, ignored: 0, has_mode: false };
 
 /// MCR of the G4: the range of bus clocks, which has no effect on codes.
 const CLOCK_RANGE: u32 = 0b11 << 14;

@@ -2,8 +2,8 @@
 //! that names the register, never a silent zero.
 
 pub mod clock;
-pub mod clock_g4;
 pub mod clock_f4;
+pub mod clock_g4;
 pub mod converter;
 pub mod counter;
 pub mod flash;

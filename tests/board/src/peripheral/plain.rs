@@ -31,11 +31,8 @@ impl Plain {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        let (_, reset, modelled) = *self
-            .layout
-            .iter()
-            .find(|(place, ..)| *place == offset)
-            .ok_or(Unmodelled::Register)?;
+        let (_, reset, modelled) =
+            *self.layout.iter().find(|(place, ..)| *place == offset).ok_or(Unmodelled::Register)?;
         // What is not modelled may be left as it was, which is as it came out of reset.
         only(value ^ reset, modelled)?;
         self.values.insert(offset, value);

@@ -4,7 +4,11 @@ use super::plain::Plain;
 
 /// The G4's: CR1 with the voltage range and the access to the backup domain, CR5 with the boost.
 pub fn g4() -> Plain {
-    Plain::new(&[(0x00, 0x0000_0200, 1 << 8), (0x08, 0x0000_8000, 1 << 14), (0x80, 0x0000_0100, 1 << 8)])
+    Plain::new(&[
+        (0x00, 0x0000_0200, 1 << 8),
+        (0x08, 0x0000_8000, 1 << 14),
+        (0x80, 0x0000_0100, 1 << 8),
+    ])
 }
 
 /// The F405's: CR with the voltage scale and the access to the backup domain; CSR says that the
