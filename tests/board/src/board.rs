@@ -6,7 +6,7 @@ use crate::chip::{Chip, DEBUG, PACER_INTERRUPT, Place, TORQUE, Unit};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::core::system::{SYSTEM, WATCH};
-use crate::device::Still;
+use crate::device::{Device, Still};
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::converter::Converter;
 use crate::peripheral::counter::Counter;
@@ -16,13 +16,6 @@ use crate::peripheral::plain::Plain;
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
 use crate::peripheral::{Access, Unmodelled};
-
-/// What a device is, to the board: it turns the encoder, and gets the motor's torque.
-pub trait Device {
-    /// A sample ends: what the converter put out during it, and whether the amplifier was on. Gives
-    /// the counts that the encoder has turned in it.
-    fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
-}
 
 /// Something that is not modelled was used.
 #[derive(Clone, Debug, PartialEq, Eq)]

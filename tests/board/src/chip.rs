@@ -1,7 +1,5 @@
 //! The chips: where each peripheral is, by whom it is clocked, and what is wired to its pins.
 
-use analysis::toolchain::Board as Name;
-
 use crate::peripheral::clock::{self, Layout};
 use crate::peripheral::pins::Pins;
 use crate::peripheral::plain::Plain;
@@ -57,8 +55,8 @@ pub const SPAN: u32 = 0x400;
 /// A chip on its board.
 #[derive(Debug)]
 pub struct Chip {
-    /// The board that it is on.
-    pub board: Name,
+    /// Name of the board that it is on, as `haptic` has it.
+    pub name: &'static str,
     /// Flash in bytes.
     pub flash: u32,
     /// RAM in bytes, from 0x20000000 on.
@@ -125,7 +123,7 @@ static F4: &Layout = &clock_f4::LAYOUT;
 
 /// STM32G474RE on a NUCLEO-G474RE.
 pub static NUCLEO_G474RE: Chip = Chip {
-    board: Name::NucleoG474re,
+    name: "nucleo-g474re",
     flash: 512 << 10,
     ram: 96 << 10,
     coupled: (32 << 10, true),
@@ -174,7 +172,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
 
 /// STM32F405RG on a board of the VESC class.
 pub static STM32F405: Chip = Chip {
-    board: Name::Stm32f405,
+    name: "stm32f405",
     flash: 1 << 20,
     ram: 128 << 10,
     coupled: (64 << 10, false),
@@ -223,9 +221,12 @@ pub static STM32F405: Chip = Chip {
 };
 
 impl Chip {
-    /// The chip of a board, where there is a virtual one.
-    pub fn of(board: Name) -> Option<&'static Self> {
-        [&NUCLEO_G474RE, &STM32F405].into_iter().find(|chip| chip.board == board)
+    /// All of them.
+    pub const ALL: [&'static Self; 2] = [&NUCLEO_G474RE, &STM32F405];
+
+    /// The chip of the board of this name, where there is a virtual one.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        Self::ALL.into_iter().find(|chip| chip.name == name)
     }
 
     /// The unit at an address.

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use analysis::emulator::log::LogDecoder;
 use unicorn_engine::RegisterARM;
 
-use crate::board::{Board, Device, NotModelled};
+use crate::board::{Board, NotModelled};
 use crate::chip::Chip;
 use crate::core::exceptions::Number;
 use crate::core::system::FaultStatus;
+use crate::device::Device;
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
 use crate::processor::{Halt, KEPT, Processor};
@@ -195,10 +195,10 @@ impl Machine {
         Ok(())
     }
 
-    /// What the program has logged so far, as lines.
-    pub fn log(&mut self) -> Vec<String> {
+    /// What the program has logged so far, as defmt has encoded it.
+    pub fn log(&mut self) -> &[u8] {
         self.drain_log();
-        LogDecoder::of_program(&self.image.file).decode(&self.log)
+        &self.log
     }
 
     /// From one event to the next, at most up to a time.

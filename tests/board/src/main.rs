@@ -15,6 +15,6 @@ fn main() {
         m.resets()
     );
     println!("events {:?}", m.board().events.as_ref().unwrap().iter().take(20).collect::<Vec<_>>());
-    println!("log {:?}", m.log());
+    println!("log {:?}", m.log().len());
     println!("{:?}", t.elapsed());
 }

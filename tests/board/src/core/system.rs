@@ -30,7 +30,7 @@ const ALIGNED_FRAMES: u32 = 1 << 9;
 const CPUID: u32 = 0x410F_C241;
 
 /// The registers of the core that are memory to the program.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct System {
     /// Which exceptions are pending and active.
     pub exceptions: Exceptions,
@@ -48,24 +48,6 @@ pub struct System {
     watch: u32,
     /// The cycle counter's zero.
     cycles_from: u64,
-}
-
-impl Default for System {
-    fn default() -> Self {
-        Self {
-            exceptions: Exceptions::default(),
-            systick: SysTick::default(),
-            reset_requested: false,
-            vectors: 0,
-            coprocessors: 0,
-            sleep: 0,
-            faults: (0, 0),
-            fault_address: 0,
-            monitor: 0,
-            watch: 0,
-            cycles_from: 0,
-        }
-    }
 }
 
 /// CFSR's bits that can be met here.

@@ -1,0 +1,3 @@
+//! The programs that are flashed, unmodified, on the virtual board.
+
+mod device;
