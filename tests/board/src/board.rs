@@ -7,6 +7,7 @@ use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::core::system::{SYSTEM, WATCH};
 use crate::device::{Device, Still};
+use crate::meter::Meter;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::converter::Converter;
 use crate::peripheral::counter::Counter;
@@ -90,6 +91,8 @@ pub struct Board {
     pub serial: Serial,
     /// What is wired to the motor and the encoder.
     pub device: Box<dyn Device + Send>,
+    /// Instructions of the servo's interrupt.
+    pub meter: Meter,
     /// Samples so far: updates of the pacing timer.
     pub samples: u64,
     /// What happened, if somebody wants to know.
@@ -121,6 +124,7 @@ impl Board {
             converter: Converter::new(chip.converter),
             serial: Serial::new(chip.face),
             device,
+            meter: Meter::default(),
             samples: 0,
             events: None,
             stopped: None,
@@ -149,6 +153,7 @@ impl Board {
         let fresh = Self::new(self.chip, device);
         *self = Self {
             now: self.now,
+            meter: self.meter,
             samples: self.samples,
             events: self.events.take(),
             clock: self.clock.after_reset(cause),
@@ -319,7 +324,10 @@ impl Board {
             Unit::Pins(port) => self.ports[port].read(offset),
             Unit::Pacer => self.pacer.read(offset),
             Unit::FreeClock => self.free_clock.read(offset, now, divider),
-            Unit::Encoder => self.encoder.read(offset, now, divider),
+            Unit::Encoder => {
+                self.meter.read(now);
+                self.encoder.read(offset, now, divider)
+            }
             Unit::Converter => self.converter.read(offset),
             Unit::Serial => self.serial.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
@@ -342,7 +350,10 @@ impl Board {
             Unit::Pacer => self.pacer.write(offset, value, now, divider),
             Unit::FreeClock => self.free_clock.write(offset, value, now, divider),
             Unit::Encoder => self.encoder.write(offset, value, now, divider),
-            Unit::Converter => self.converter.write(offset, value),
+            Unit::Converter => {
+                self.meter.write(now);
+                self.converter.write(offset, value)
+            }
             Unit::Serial => self.serial.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
         }

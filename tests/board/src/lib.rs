@@ -9,6 +9,7 @@
 //! - [`chip`]: the two chips: where what is, and which pins it uses.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
+//! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core; so it is the right
@@ -20,5 +21,6 @@ pub mod core;
 pub mod device;
 pub mod image;
 pub mod machine;
+pub mod meter;
 pub mod peripheral;
 pub mod processor;

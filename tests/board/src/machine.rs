@@ -5,8 +5,8 @@ use std::path::Path;
 use unicorn_engine::RegisterARM;
 
 use crate::board::{Board, NotModelled};
-use crate::chip::Chip;
-use crate::core::exceptions::Number;
+use crate::chip::{Chip, PACER_INTERRUPT};
+use crate::core::exceptions::{FIRST_INTERRUPT, Number};
 use crate::core::system::FaultStatus;
 use crate::device::Device;
 use crate::image::Image;
@@ -313,7 +313,11 @@ impl Machine {
         core.set_memory(frame, &bytes);
         let nested = core.board().system.exceptions.current().is_some();
         let word = RETURN | if nested { 0 } else { TO_PROGRAM } | if long { 0 } else { SHORT };
-        core.board_mut().system.exceptions.enter(number);
+        let board = core.board_mut();
+        board.system.exceptions.enter(number);
+        if number == SERVO {
+            board.meter.begin(board.now);
+        }
         core.set_uses_floating_point(false);
         core.set_register(RegisterARM::MSP, frame);
         core.set_register(RegisterARM::LR, word);
@@ -336,7 +340,11 @@ impl Machine {
             .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
             .collect();
         let core = &mut self.core;
-        core.board_mut().system.exceptions.leave();
+        let board = core.board_mut();
+        if board.system.exceptions.current() == Some(SERVO) {
+            board.meter.end(board.now);
+        }
+        board.system.exceptions.leave();
         for (register, value) in KEPT.into_iter().zip(&words) {
             core.set_register(register, *value);
         }
@@ -381,6 +389,9 @@ impl Machine {
         self.core.set_memory(block + 24 + 16, &write.to_le_bytes());
     }
 }
+
+/// The servo's interrupt.
+const SERVO: Number = FIRST_INTERRUPT + PACER_INTERRUPT;
 
 /// Instructions within which the pacing timer has to come.
 const LONGEST: u64 = 200_000_000;
