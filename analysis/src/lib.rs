@@ -9,6 +9,7 @@ pub mod file;
 
 pub mod batch;
 pub mod verdict;
+pub mod virtual_board;
 
 // The device: a chain of masses, its passivity as the certificate and as the paper see it, and
 // the identification of a real one.

@@ -16,7 +16,7 @@ use std::io;
 
 use firmware::boot;
 use firmware::cycle::Options;
-use firmware::environment::Renderable;
+use firmware::environment::{Environment, Renderable};
 use firmware::number::Number;
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Simultaneous, Transducers};
@@ -43,6 +43,7 @@ pub struct Program {
     /// What its servo keeps from tick to tick, in a format.
     pub state: fn(NumberFormat) -> State,
     build: Build,
+    build_late: Build,
     listen: Listen,
 }
 
@@ -81,6 +82,18 @@ impl Program {
         (self.build)(format, transducers)
     }
 
+    /// The same as a board with a latched converter renders it: a sample late at the least.
+    ///
+    /// # Errors
+    /// As of [`Self::controller`].
+    pub fn late_controller(
+        &self,
+        format: NumberFormat,
+        transducers: &Transducers,
+    ) -> Result<Box<dyn Controller>, BuildError> {
+        (self.build_late)(format, transducers)
+    }
+
     /// Its device at rest, in the hand that shows it.
     pub fn device(&self) -> SimulatedDevice {
         SimulatedDevice::new(
@@ -111,6 +124,17 @@ impl Program {
     }
 }
 
+/// A scene as late as the board's converter: the canceller of the host's is not late at all.
+const fn late(scene: Scene) -> Scene {
+    let environment = match scene.environment {
+        Environment::FreeMode { residual, delay: 0 } => {
+            Environment::FreeMode { residual, delay: 1 }
+        }
+        other => other,
+    };
+    Scene { environment, ..scene }
+}
+
 macro_rules! programs {
     ($($module:ident, $script:path, $mode:ty;)*) => {
         /// Names of all programs, in the order in which they are shown.
@@ -130,6 +154,13 @@ macro_rules! programs {
                 NumberFormat::F32 => controller::<_, f32>(&$module::CERTIFIED, transducers),
                 NumberFormat::Fixed => {
                     controller::<_, $module::Fixed>(&$module::CERTIFIED, transducers)
+                }
+            },
+            build_late: |format, transducers| {
+                let scene = const { late($module::SCENE.as_data()).certified() };
+                match format {
+                    NumberFormat::F32 => controller::<_, f32>(&scene, transducers),
+                    NumberFormat::Fixed => controller::<_, $module::Fixed>(&scene, transducers),
                 }
             },
             listen: |plant, address, clock| {

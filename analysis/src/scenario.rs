@@ -1,4 +1,4 @@
-//! A scene run over counts: on the host, and on the emulated board beside it.
+//! A scene run over counts: on the host, and on an emulated or a virtual board beside it.
 
 use std::path::Path;
 
@@ -7,10 +7,12 @@ use thiserror::Error;
 use crate::chart::trace::{Clock, Trace};
 use crate::controller::Controller;
 use crate::device::Energy;
-use crate::emulator::{Emulator, EmulatorError, Report};
+use crate::emulator::{Emulator, EmulatorError, Report, Stats};
 use crate::hand::Script;
 use crate::rig::{Alone, Plant, Recording, Run, SimulatedDevice, Twin, run};
 use crate::simulation::served::Served;
+use crate::toolchain;
+use crate::virtual_board::{self, VirtualBoard, VirtualBoardError};
 
 /// What comes into a servo.
 pub enum Input<'a> {
@@ -20,7 +22,52 @@ pub enum Input<'a> {
     Recording(&'a [i32]),
 }
 
-/// What a run gave, with what the emulated board measured if it took part.
+/// Where a scene's program runs beside the host.
+#[derive(Clone, Copy, Debug)]
+pub enum Beside<'a> {
+    /// On the emulated board, which has a program of its own.
+    Emulator(&'a Path),
+    /// On a virtual board, which has what is flashed.
+    VirtualBoard {
+        /// The program that is a virtual board.
+        program: &'a Path,
+        /// Which board it is.
+        board: toolchain::Board,
+        /// What is in its flash.
+        elf: &'a Path,
+        /// The period of its servo in s.
+        period: f64,
+    },
+}
+
+/// What a board measured.
+#[derive(Clone, Debug)]
+pub enum Measured {
+    /// The emulated one.
+    Emulated(Box<Report>),
+    /// A virtual one.
+    Virtual(virtual_board::Report),
+}
+
+impl Measured {
+    /// Instructions from count to code.
+    pub fn compute(&self) -> &Stats {
+        match self {
+            Self::Emulated(report) => &report.compute_instructions,
+            Self::Virtual(report) => &report.compute,
+        }
+    }
+
+    /// Instructions of the servo's whole interrupt.
+    pub fn interrupt(&self) -> &Stats {
+        match self {
+            Self::Emulated(report) => &report.interrupt_instructions,
+            Self::Virtual(report) => &report.interrupt,
+        }
+    }
+}
+
+/// What a run gave, with what the board measured if one took part.
 #[derive(Debug)]
 pub struct Outcome {
     /// The ticks.
@@ -30,7 +77,17 @@ pub struct Outcome {
     /// Speed of the device at the end, in rad/s; none where the counts were recorded.
     pub final_speed: Option<f64>,
     /// What the board measured.
-    pub board: Option<Report>,
+    pub board: Option<Measured>,
+}
+
+impl Outcome {
+    /// What the emulated board measured, if that took part.
+    pub fn emulated(self) -> Option<Report> {
+        match self.board {
+            Some(Measured::Emulated(report)) => Some(*report),
+            Some(Measured::Virtual(_)) | None => None,
+        }
+    }
 }
 
 /// Why a run ended before its time.
@@ -47,29 +104,32 @@ pub enum ScenarioError {
     /// The emulated board could not be started or did not end.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
+    /// The virtual board failed.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
 }
 
-/// Runs a servo, for so many ticks at most, and the program `elf` on the emulated board beside it,
-/// if there is one. `progress` is told of each tick.
+/// Runs a servo, for so many ticks at most, and its program on a board beside it, if there is one.
+/// `progress` is told of each tick.
 ///
 /// # Errors
-/// Where the emulated board cannot be started, fails, or does not end.
+/// Where the board cannot be started, fails, or does not end.
 pub fn play(
     input: Input<'_>,
     controller: &mut dyn Controller,
-    elf: Option<&Path>,
+    board: Option<Beside<'_>>,
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<Outcome, ScenarioError> {
     match input {
         Input::Hand(mut device) => {
-            let mut outcome = beside(device.as_mut(), controller, elf, ticks, progress)?;
+            let mut outcome = beside(device.as_mut(), controller, board, ticks, progress)?;
             outcome.energy = Some(device.energy());
             outcome.final_speed = Some(device.motion().velocity.abs());
             Ok(outcome)
         }
         Input::Recording(counts) => {
-            beside(&mut Recording::new(counts), controller, elf, ticks, progress)
+            beside(&mut Recording::new(counts), controller, board, ticks, progress)
         }
     }
 }
@@ -77,19 +137,30 @@ pub fn play(
 fn beside(
     plant: &mut dyn Plant,
     controller: &mut dyn Controller,
-    elf: Option<&Path>,
+    board: Option<Beside<'_>>,
     ticks: usize,
     progress: impl FnMut(),
 ) -> Result<Outcome, ScenarioError> {
-    let Some(elf) = elf else {
-        let Ok(run) = run::<Alone>(plant, controller, None, ticks, progress);
-        return Ok(Outcome { run, energy: None, final_speed: None, board: None });
+    let (run, board) = match board {
+        None => {
+            let Ok(run) = run::<Alone>(plant, controller, None, ticks, progress);
+            (run, None)
+        }
+        // On either board the hand waits until the servo runs.
+        Some(Beside::Emulator(elf)) => {
+            let mut board = Board::boot(elf)?;
+            board.emulator.engage()?;
+            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            (run, Some(Measured::Emulated(Box::new(board.emulator.finish()?))))
+        }
+        Some(Beside::VirtualBoard { program, board, elf, period }) => {
+            let mut board = VirtualBoard::boot(program, board, elf)?;
+            board.engage(period)?;
+            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            (run, Some(Measured::Virtual(board.finish()?)))
+        }
     };
-    let mut board = Board::boot(elf)?;
-    // The hand waits until the servo runs.
-    board.emulator.engage()?;
-    let run = run(plant, controller, Some(&mut board), ticks, progress)?;
-    Ok(Outcome { run, energy: None, final_speed: None, board: Some(board.emulator.finish()?) })
+    Ok(Outcome { run, energy: None, final_speed: None, board })
 }
 
 /// The emulated board, which knows the tick that it is in.

@@ -20,7 +20,7 @@ use crate::emulator::Report;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Input, play};
+use crate::scenario::{Beside, Input, play};
 use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.
@@ -198,12 +198,12 @@ fn on_target(
         let outcome = play(
             Input::Hand(Box::new(program.device())),
             controller.as_mut(),
-            Some(elf),
+            Some(Beside::Emulator(elf)),
             TICKS,
             || {},
         )?;
         spinner.finish_and_clear();
-        let Some(board) = outcome.board else { continue };
+        let Some(board) = outcome.emulated() else { continue };
         let is_measured_in_c = name == "damper_wall" && format == NumberFormat::F32;
         let groups = [
             ("contact", board.contact_instructions, C_CONTACT),

@@ -20,7 +20,7 @@ use crate::device::Motion;
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{self, Input, Outcome, play};
+use crate::scenario::{self, Beside, Input, Outcome, play};
 use crate::simulation::{Experiment, Stride, simulate};
 use crate::toolchain::{self, Tools};
 use crate::verdict::{self, Report, Verdict};
@@ -127,7 +127,7 @@ fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outco
     let outcome = play(
         Input::Hand(Box::new(program.device())),
         controller.as_mut(),
-        Some(elf),
+        Some(Beside::Emulator(elf)),
         ticks,
         stepper,
     )?;

@@ -1,7 +1,9 @@
-//! `haptic run`: a scene, tick by tick, on the host or on the emulated board.
+//! `haptic run`: a scene, tick by tick, on the host, on the emulated board or on a virtual one.
 
+use std::fmt;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use firmware::encoder::CounterWidth;
@@ -19,17 +21,58 @@ use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
-use crate::scenario::{Input, Outcome, play};
-use crate::toolchain::{self, NumberFormat, Tools};
+use crate::scenario::{Beside, Input, Outcome, play};
+use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
 use crate::{replay, rig};
 
 /// Where a scene runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// On this machine.
     Host,
     /// On the emulated board, and on this machine beside it: every code is compared.
     Qemu,
+    /// What is flashed to a board, on a virtual one, and on this machine beside it.
+    Board(Board),
+}
+
+/// How a virtual board is named: this and the board's name.
+const BOARD: &str = "board:";
+
+/// There is no such target.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoTarget {
+    /// Neither of the words.
+    #[error("there is no target {0}; there are host, qemu and board:NAME, as board:nucleo-g474re")]
+    Word(String),
+    /// No such board.
+    #[error(transparent)]
+    Board(#[from] NoBoard),
+}
+
+impl FromStr for Target {
+    type Err = NoTarget;
+
+    fn from_str(text: &str) -> Result<Self, NoTarget> {
+        match text {
+            "host" => Ok(Self::Host),
+            "qemu" => Ok(Self::Qemu),
+            _ => match text.strip_prefix(BOARD) {
+                Some(name) => Ok(Self::Board(Board::find(name)?)),
+                None => Err(NoTarget::Word(text.into())),
+            },
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Host => f.write_str("host"),
+            Self::Qemu => f.write_str("qemu"),
+            Self::Board(board) => write!(f, "{BOARD}{board}"),
+        }
+    }
 }
 
 /// Number format of the servo, as the command line names it.
@@ -56,8 +99,9 @@ pub struct Arguments {
     /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file
     #[arg(value_name = "SCENE")]
     pub scene: String,
-    /// Where it runs
-    #[arg(long, value_enum, default_value_t = Target::Host)]
+    /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to
+    /// that board (nucleo-g474re, stm32f405) on a virtual one
+    #[arg(long, default_value_t = Target::Host)]
     pub target: Target,
     /// Recorded counts (column `count`), one a tick, in place of the simulated device
     #[arg(long, value_name = "FILE.csv")]
@@ -108,7 +152,7 @@ struct Question {
 #[derive(Serialize)]
 struct Summary<'a> {
     scene: &'a str,
-    target: &'a str,
+    target: String,
     format: &'a str,
     ticks: usize,
     peak_torque: f64,
@@ -118,7 +162,7 @@ struct Summary<'a> {
     instructions: Option<Instructions>,
 }
 
-/// Instructions a tick on the emulated board.
+/// Instructions a tick on the board.
 #[derive(Serialize)]
 struct Instructions {
     compute_mean: f64,
@@ -127,15 +171,12 @@ struct Instructions {
     interrupt_max: u64,
 }
 
-/// Runs a scene and prints what came of it. The answer is no where a code of the emulated board
-/// differs from the host's.
+/// Runs a scene and prints what came of it. The answer is no where a code of the board differs from
+/// the host's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let counts = arguments.replay.as_deref().map(replay::load).transpose()?;
     let mut question = question(arguments)?;
-    let elf = match arguments.target {
-        Target::Host => None,
-        Target::Qemu => Some(build(&question, arguments)?),
-    };
+    let built = build(&question, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
         None => arguments.ticks.unwrap_or(TICKS),
@@ -151,7 +192,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     };
     let bar = progress::bar(ticks as u64, &question.name);
     let stepper = progress::stepper(&bar);
-    let outcome = play(input, question.controller.as_mut(), elf.as_deref(), ticks, stepper)?;
+    let outcome = play(
+        input,
+        question.controller.as_mut(),
+        built.beside(question.scene.timing.period),
+        ticks,
+        stepper,
+    )?;
     bar.finish_and_clear();
     print(arguments, &question.name, &outcome)?;
     Ok(if outcome.run.difference.is_none() { Answer::Yes } else { Answer::No })
@@ -171,19 +218,23 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
         full_scale_torque: arguments.full_scale.unwrap_or(built_for.full_scale_torque),
         ..built_for
     };
-    if arguments.target == Target::Qemu && transducers != built_for {
+    if arguments.target != Target::Host && transducers != built_for {
         return Err(CommandError::OtherTransducers {
             program: program.name,
             counts_per_turn: built_for.counts_per_turn,
             full_scale: built_for.full_scale_torque,
         });
     }
+    let format = arguments.format.into();
     Ok(Question {
         name: program.name.to_owned(),
         scene: program.scene,
         transducers,
         script: (program.script)(),
-        controller: program.controller(arguments.format.into(), &transducers)?,
+        controller: match arguments.target {
+            Target::Host | Target::Qemu => program.controller(format, &transducers)?,
+            Target::Board(_) => program.late_controller(format, &transducers)?,
+        },
         program: Some(program),
     })
 }
@@ -234,16 +285,49 @@ fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
     Ok(Question { name, scene, transducers, script, controller, program: None })
 }
 
-fn build(question: &Question, arguments: &Arguments) -> Result<PathBuf, CommandError> {
+/// What was built for a run.
+enum Built {
+    Nothing,
+    Emulated(PathBuf),
+    Virtual { program: PathBuf, board: Board, elf: PathBuf },
+}
+
+impl Built {
+    fn beside(&self, period: f64) -> Option<Beside<'_>> {
+        match self {
+            Self::Nothing => None,
+            Self::Emulated(elf) => Some(Beside::Emulator(elf)),
+            Self::Virtual { program, board, elf } => {
+                Some(Beside::VirtualBoard { program, board: *board, elf, period })
+            }
+        }
+    }
+}
+
+fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandError> {
+    let tools = match arguments.target {
+        Target::Host => return Ok(Built::Nothing),
+        Target::Qemu => Tools::CompilerAndEmulator,
+        Target::Board(_) => Tools::CompilerAndVirtualBoard,
+    };
     let Some(program) = question.program else {
         return Err(CommandError::FileOnBoard { scene: question.name.clone() });
     };
-    let toolchain =
-        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner(&format!("building {}", program.name));
-    let elf = toolchain.build_scene(program.name, arguments.format.into())?;
+    let format = arguments.format.into();
+    let built = match arguments.target {
+        Target::Board(board) => Built::Virtual {
+            elf: toolchain.build_for(board, &[program.name], format)?.swap_remove(0).path,
+            program: toolchain.build_virtual_board()?,
+            board,
+        },
+        Target::Host | Target::Qemu => {
+            Built::Emulated(toolchain.build_scene(program.name, format)?)
+        }
+    };
     spinner.finish_and_clear();
-    Ok(elf)
+    Ok(built)
 }
 
 fn print(arguments: &Arguments, name: &str, outcome: &Outcome) -> Result<(), CommandError> {
@@ -268,7 +352,7 @@ fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summa
     let on_board = outcome.board.is_some();
     Summary {
         scene: name,
-        target: if on_board { "qemu" } else { "host" },
+        target: arguments.target.to_string(),
         format: NumberFormat::from(arguments.format).name(),
         ticks: outcome.run.ticks.len(),
         peak_torque: outcome.run.peak_torque(),
@@ -276,10 +360,10 @@ fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summa
         codes_equal: on_board.then_some(outcome.run.equal),
         difference: outcome.run.difference,
         instructions: outcome.board.as_ref().map(|board| Instructions {
-            compute_mean: board.compute_instructions.mean,
-            compute_max: board.compute_instructions.max,
-            interrupt_mean: board.interrupt_instructions.mean,
-            interrupt_max: board.interrupt_instructions.max,
+            compute_mean: board.compute().mean,
+            compute_max: board.compute().max,
+            interrupt_mean: board.interrupt().mean,
+            interrupt_max: board.interrupt().max,
         }),
     }
 }
@@ -322,7 +406,7 @@ pub fn text(outcome: &Outcome) -> String {
     }
     if let Some(board) = &outcome.board {
         rows.push(("codes equal", format!("{} of {}", run.equal, run.ticks.len())));
-        let (compute, whole) = (&board.compute_instructions, &board.interrupt_instructions);
+        let (compute, whole) = (board.compute(), board.interrupt());
         rows.push((
             "instructions per tick",
             format!(

@@ -68,7 +68,7 @@ pub enum BuildError {
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
     /// The program does not compile.
-    #[error("{program} does not compile for the board:\n{output}")]
+    #[error("{program} does not compile:\n{output}")]
     Compile {
         /// The program.
         program: String,
@@ -121,6 +121,8 @@ pub struct Program {
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     root: PathBuf,
+    /// Cargo's folder for this machine's programs, and the one for the boards' in it.
+    target: PathBuf,
     output: PathBuf,
 }
 
@@ -271,6 +273,22 @@ impl Toolchain {
         self.measuring("trial")
     }
 
+    /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_virtual_board(&self) -> Result<PathBuf, BuildError> {
+        const NAME: &str = "virtual-board";
+        let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.current_dir(&self.workspace.root).args(["build", "--package", NAME]);
+        for name in INHERITED {
+            cargo.env_remove(name);
+        }
+        let target = &self.workspace.target;
+        ran(NAME, cargo.env("CARGO_TARGET_DIR", target))?;
+        Ok(target.join("debug").join(NAME))
+    }
+
     /// Builds a program without a scene for the emulated board.
     fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
         let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };
@@ -309,12 +327,7 @@ impl Toolchain {
     }
 
     fn compile(&self, program: &str, arguments: &[&str]) -> Result<(), BuildError> {
-        let output = self.cargo().args(arguments).output().map_err(BuildError::NoCargo)?;
-        if output.status.success() {
-            return Ok(());
-        }
-        let output = last_lines(&String::from_utf8_lossy(&output.stderr), 60);
-        Err(BuildError::Compile { program: program.into(), output })
+        ran(program, self.cargo().args(arguments))
     }
 
     /// Each compiler has a folder of its own: in a common one each would rebuild what the other
@@ -347,6 +360,16 @@ impl Toolchain {
         }
         command
     }
+}
+
+/// Has cargo build a program.
+fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {
+    let output = cargo.output().map_err(BuildError::NoCargo)?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let output = last_lines(&String::from_utf8_lossy(&output.stderr), 60);
+    Err(BuildError::Compile { program: program.into(), output })
 }
 
 /// Variables that would change the build, or that belong to a build that started this program.
@@ -392,8 +415,8 @@ impl Workspace {
         let target = variable("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
         // Relative to the workspace for cargo's own default, and to where cargo was started
         // otherwise; an absolute path replaces either.
-        let output = root.join(target).join("thumb");
-        Ok(Self { root, output })
+        let target = root.join(target);
+        Ok(Self { output: target.join("thumb"), target, root })
     }
 
     /// Waits for, and takes, a lock that other programs respect; it ends with the file.

@@ -1,10 +1,11 @@
 //! What there is on this machine.
 
 use std::ffi::OsStr;
+use std::fs::DirEntry;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::plan::{Debian, Facts, Package, PackageState, Rust};
+use super::plan::{Debian, Facts, Native, Package, PackageState, Rust};
 use super::{TARGET, Version};
 use crate::emulator::QEMU;
 
@@ -15,6 +16,7 @@ pub fn observe(lists_are_fresh: bool) -> Facts {
         rustup: says("rustup", &["--version"]).is_some(),
         fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
         qemu: says(QEMU, &["--version"]).as_deref().and_then(Version::find),
+        native: Native { cmake: says("cmake", &["--version"]).is_some(), libclang: has_libclang() },
         debian: debian(lists_are_fresh),
         root: nix::unistd::geteuid().is_root(),
     }
@@ -26,6 +28,23 @@ fn rust() -> Option<Rust> {
     let folder = says(&rustc, &["--print", "target-libdir", "--target", TARGET]);
     let has_target = folder.is_some_and(|folder| has_core(Path::new(folder.trim())));
     Some(Rust { version, has_target })
+}
+
+/// Whether the library is where the build of bindings looks for it: where it was told to, among the
+/// system's libraries, or in an LLVM's folder.
+fn has_libclang() -> bool {
+    std::env::var_os("LIBCLANG_PATH").is_some()
+        || says("ldconfig", &["-p"]).is_some_and(|libraries| libraries.contains("libclang"))
+        || llvm_has_libclang()
+}
+
+/// Debian keeps each version of LLVM in a folder of its own.
+fn llvm_has_libclang() -> bool {
+    let named = |entry: &DirEntry, start| entry.file_name().to_string_lossy().starts_with(start);
+    let entries = |folder: &Path| folder.read_dir().into_iter().flatten().flatten();
+    entries(Path::new("/usr/lib"))
+        .filter(|entry| named(entry, "llvm-"))
+        .any(|llvm| entries(&llvm.path().join("lib")).any(|library| named(&library, "libclang")))
 }
 
 /// Whether a folder of libraries holds a compiled `core`.

@@ -18,6 +18,8 @@ pub enum Tools {
     Compiler,
     /// To build them and to run them on the emulated board.
     CompilerAndEmulator,
+    /// To build them and to run them on a virtual board, which is built here, too.
+    CompilerAndVirtualBoard,
 }
 
 /// What was seen on the machine.
@@ -31,6 +33,8 @@ pub struct Facts {
     pub fetching_forbidden: bool,
     /// Version of the emulator.
     pub qemu: Option<Version>,
+    /// Whether there is what the virtual board's processor is built with.
+    pub native: Native,
     /// The packages, on a system that has Debian's.
     pub debian: Option<Debian>,
     /// Whether packages may be installed.
@@ -44,6 +48,15 @@ pub struct Rust {
     pub version: Version,
     /// Whether it has `core` for the target.
     pub has_target: bool,
+}
+
+/// What builds a library in C, and reads its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Native {
+    /// Whether there is cmake.
+    pub cmake: bool,
+    /// Whether there is libclang.
+    pub libclang: bool,
 }
 
 /// Debian's packages.
@@ -80,11 +93,23 @@ pub enum Package {
     Lld,
     /// The emulator.
     Qemu,
+    /// Builds the virtual board's processor.
+    Cmake,
+    /// Reads its header.
+    Libclang,
 }
 
 impl Package {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Rustc, Self::Cargo, Self::RustSource, Self::Lld, Self::Qemu];
+    pub const ALL: [Self; 7] = [
+        Self::Rustc,
+        Self::Cargo,
+        Self::RustSource,
+        Self::Lld,
+        Self::Qemu,
+        Self::Cmake,
+        Self::Libclang,
+    ];
     /// Those that make a compiler for the target.
     const COMPILER: [Self; 4] = [Self::Rustc, Self::Cargo, Self::RustSource, Self::Lld];
 
@@ -96,6 +121,8 @@ impl Package {
             Self::RustSource => "rust-web-src",
             Self::Lld => "lld",
             Self::Qemu => "qemu-system-arm",
+            Self::Cmake => "cmake",
+            Self::Libclang => "libclang-dev",
         }
     }
 
@@ -104,7 +131,7 @@ impl Package {
         match self {
             Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),
             Self::Qemu => Some(Version::QEMU),
-            Self::Lld => None,
+            Self::Lld | Self::Cmake | Self::Libclang => None,
         }
     }
 
@@ -161,6 +188,8 @@ pub enum Request {
         /// The one that is there and too old.
         found: Option<Version>,
     },
+    /// Get what builds the virtual board's processor.
+    Native(Native),
 }
 
 /// How one of the two tools is to be had.
@@ -175,10 +204,14 @@ enum Need {
 pub fn plan(facts: &Facts, tools: Tools) -> Plan {
     let (compiler, compiler_need) = compiler(facts);
     let emulator = match tools {
-        Tools::Compiler => Need::Nothing,
+        Tools::Compiler | Tools::CompilerAndVirtualBoard => Need::Nothing,
         Tools::CompilerAndEmulator => emulator(facts),
     };
-    let needs = [compiler_need, emulator];
+    let native = match tools {
+        Tools::Compiler | Tools::CompilerAndEmulator => Need::Nothing,
+        Tools::CompilerAndVirtualBoard => native(facts),
+    };
+    let needs = [compiler_need, emulator, native];
     let requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
     let packages: Vec<_> = needs.iter().flat_map(Need::packages).copied().collect();
     let lists_may_help =
@@ -217,6 +250,17 @@ fn emulator(facts: &Facts) -> Need {
     match facts.qemu {
         Some(version) if version >= Version::QEMU => Need::Nothing,
         found => facts.packages(&[Package::Qemu], Request::Emulator { found }),
+    }
+}
+
+fn native(facts: &Facts) -> Need {
+    let Native { cmake, libclang } = facts.native;
+    let missing = [(cmake, Package::Cmake), (libclang, Package::Libclang)];
+    let packages: Vec<_> =
+        missing.into_iter().filter(|(there, _)| !there).map(|(_, package)| package).collect();
+    match packages.is_empty() {
+        true => Need::Nothing,
+        false => facts.packages(&packages, Request::Native(facts.native)),
     }
 }
 
@@ -307,6 +351,18 @@ impl fmt::Display for Request {
                     "apt install qemu-system-arm (Debian, Ubuntu), dnf install \
                      qemu-system-arm-core (Fedora), pacman -S qemu-system-arm (Arch), brew install \
                      qemu (macOS)",
+                )
+            }
+            Self::Native(native) => {
+                let tools = [(native.cmake, "cmake"), (native.libclang, "libclang")];
+                let missing: Vec<_> =
+                    tools.iter().filter(|(there, _)| !there).map(|(_, name)| *name).collect();
+                write!(
+                    f,
+                    "install {}, with which the virtual board's processor is built: apt install \
+                     cmake libclang-dev (Debian, Ubuntu), dnf install cmake clang-devel (Fedora), \
+                     pacman -S cmake clang (Arch), brew install cmake llvm (macOS)",
+                    missing.join(" and ")
                 )
             }
         }

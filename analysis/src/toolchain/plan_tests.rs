@@ -6,6 +6,13 @@ const OLD: Version = Version { major: 1, minor: 85 };
 const NEW: Version = Version { major: 1, minor: 96 };
 const QEMU_7: Version = Version { major: 7, minor: 2 };
 const QEMU_5: Version = Version { major: 5, minor: 2 };
+const CMAKE: Version = Version { major: 3, minor: 25 };
+const CLANG: Version = Version { major: 14, minor: 0 };
+/// The packages' versions.
+const VERSIONS: [Version; Package::ALL.len()] = [NEW, NEW, NEW, QEMU_7, QEMU_7, CMAKE, CLANG];
+/// What the emulated board needs.
+const FOR_EMULATOR: [Package; 5] =
+    [Package::Rustc, Package::Cargo, Package::RustSource, Package::Lld, Package::Qemu];
 
 fn rust(version: Version, has_target: bool) -> Option<Rust> {
     Some(Rust { version, has_target })
@@ -18,6 +25,7 @@ fn complete() -> Facts {
         rustup: true,
         fetching_forbidden: false,
         qemu: Some(QEMU_7),
+        native: Native { cmake: true, libclang: true },
         debian: None,
         root: false,
     }
@@ -26,12 +34,11 @@ fn complete() -> Facts {
 /// A Debian whose packages are all to be had and not installed.
 fn debian() -> Debian {
     let available = PackageState::Available;
-    Debian { lists_are_fresh: false, packages: [NEW, NEW, NEW, QEMU_7, QEMU_7].map(available) }
+    Debian { lists_are_fresh: false, packages: VERSIONS.map(available) }
 }
 
 fn installed() -> Debian {
-    let states = [NEW, NEW, NEW, QEMU_7, QEMU_7].map(PackageState::Installed);
-    Debian { lists_are_fresh: false, packages: states }
+    Debian { lists_are_fresh: false, packages: VERSIONS.map(PackageState::Installed) }
 }
 
 /// A Debian container without rustup's target and without the emulator, as root.
@@ -76,7 +83,7 @@ fn rustup_fetches_nothing_where_it_is_forbidden() {
 
 #[test]
 fn root_on_debian_installs_all_that_is_missing_at_once() {
-    check(&bare_container(), Plan::Do(Step::Install(Package::ALL.to_vec())));
+    check(&bare_container(), Plan::Do(Step::Install(FOR_EMULATOR.to_vec())));
     let mut debian = debian();
     debian.packages[0] = PackageState::Installed(NEW);
     let rest = Package::ALL[1..].to_vec();
@@ -163,7 +170,7 @@ fn requests_are_commands() {
 /// Whatever the machine, following the plan ends: each step changes the facts that asked for it.
 #[test]
 fn following_the_plan_ends() {
-    for bits in 0..256_u32 {
+    for bits in 0..1024_u32 {
         let bit = |n: u32| bits >> n & 1 == 1;
         let mut facts = Facts {
             rust: bit(0).then_some(Rust { version: NEW, has_target: bit(1) }),
@@ -172,17 +179,21 @@ fn following_the_plan_ends() {
             qemu: bit(4).then_some(QEMU_7),
             debian: bit(5).then(debian),
             root: bit(6),
+            native: Native { cmake: bit(8), libclang: bit(9) },
         };
         if bit(7) {
             facts.debian =
-                facts.debian.map(|d| Debian { packages: [PackageState::Unknown; 5], ..d });
+                facts.debian.map(|d| Debian { packages: [PackageState::Unknown; Package::ALL.len()], ..d });
         }
-        let mut steps = 0;
-        while let Plan::Do(step) = plan(&facts, Tools::CompilerAndEmulator) {
-            assert!(step != Step::AddTarget || !facts.fetching_forbidden);
-            take(&mut facts, step);
-            steps += 1;
-            assert!(steps <= 3, "{facts:?}");
+        for tools in [Tools::CompilerAndEmulator, Tools::CompilerAndVirtualBoard] {
+            let mut facts = facts.clone();
+            let mut steps = 0;
+            while let Plan::Do(step) = plan(&facts, tools) {
+                assert!(step != Step::AddTarget || !facts.fetching_forbidden);
+                take(&mut facts, step);
+                steps += 1;
+                assert!(steps <= 3, "{facts:?}");
+            }
         }
     }
 }
@@ -210,4 +221,21 @@ fn whoever_only_flashes_needs_no_emulator() {
     let facts = Facts { qemu: None, ..complete() };
     assert_eq!(plan(&facts, Tools::Compiler), Plan::Ready(Compiler::Own));
     assert!(matches!(plan(&facts, Tools::CompilerAndEmulator), Plan::Ask(_)));
+}
+
+#[test]
+fn a_virtual_board_is_built_with_cmake_and_libclang_and_needs_no_emulator() {
+    let tools = Tools::CompilerAndVirtualBoard;
+    let none = Native { cmake: false, libclang: false };
+    let facts =
+        Facts { native: none, qemu: None, debian: Some(debian()), root: true, ..complete() };
+    let both = vec![Package::Cmake, Package::Libclang];
+    assert_eq!(plan(&facts, tools), Plan::Do(Step::Install(both)));
+    let half = Facts { native: Native { cmake: true, ..none }, ..facts.clone() };
+    assert_eq!(plan(&half, tools), Plan::Do(Step::Install(vec![Package::Libclang])));
+    let person = Facts { debian: None, root: false, ..facts };
+    assert_eq!(plan(&person, tools), Plan::Ask(vec![Request::Native(none)]));
+    assert_eq!(plan(&person, Tools::Compiler), Plan::Ready(Compiler::Own));
+    let sentence = Request::Native(Native { cmake: false, libclang: true }).to_string();
+    assert!(sentence.starts_with("install cmake, with which"), "{sentence}");
 }

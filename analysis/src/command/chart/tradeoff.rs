@@ -10,7 +10,7 @@ use crate::command::{Answer, CommandError};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Input, play};
+use crate::scenario::{Beside, Input, play};
 use crate::simulation::wall;
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
@@ -128,7 +128,8 @@ fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
     let mean = |(program, file): (&'static Program, PathBuf)| {
         let mut controller = program.controller(NumberFormat::F32, &program.transducers)?;
         let hand = Input::Hand(Box::new(program.device()));
-        let board = play(hand, controller.as_mut(), Some(&file), TICKS, || {})?.board;
+        let beside = Some(Beside::Emulator(&file));
+        let board = play(hand, controller.as_mut(), beside, TICKS, || {})?.emulated();
         Ok((program, board.map_or(f64::NAN, |board| board.interrupt_instructions.mean)))
     };
     let means = walls.into_iter().zip(files).map(mean).collect();
