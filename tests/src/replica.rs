@@ -7,7 +7,7 @@ use firmware::cycle::{
 };
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
-use firmware::servo::{Rendering, Renders, Simultaneous};
+use firmware::servo::{OutputMode, Rendering, Renders};
 use firmware::tuning::{self, Tunable};
 
 /// Timer counts in a period.
@@ -31,17 +31,17 @@ impl Lines for Board {
     }
 }
 
-/// A cycle in f32 on a board that is in time.
-pub struct Replica<E: Tunable<f32>> {
+/// A cycle in f32 on a board that is in time, in the mode `M`.
+pub struct Replica<E: Tunable<f32>, M: 'static> {
     board: InTime<Board>,
-    cycle: Cycle<E, f32, Simultaneous>,
-    requests: Requests<'static, Rendering<E, f32, Simultaneous>>,
-    inbox: Inbox<'static, Rendering<E, f32, Simultaneous>>,
+    cycle: Cycle<E, f32, M>,
+    requests: Requests<'static, Rendering<E, f32, M>>,
+    inbox: Inbox<'static, Rendering<E, f32, M>>,
     frames: Frames<'static, FRAMES>,
     program: Program<E>,
 }
 
-impl<E: Tunable<f32> + Renders<Simultaneous>> Replica<E> {
+impl<E: Tunable<f32> + Renders<M>, M: OutputMode> Replica<E, M> {
     /// Boots a program, whose scene is certified.
     pub fn boot(program: Program<E>) -> Self {
         let lines = Board { count: 0, code: DacCode::MID_SCALE };

@@ -16,7 +16,7 @@ use firmware::boot::Program;
 use firmware::certificate::Parameter;
 use firmware::cycle::{Options, State};
 use firmware::fault::Fault;
-use firmware::servo::RenderingOptions;
+use firmware::servo::{RenderingOptions, Simultaneous};
 use firmware::wire::message::Outcome;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -120,7 +120,7 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
         rendering: RenderingOptions::DEFAULT,
         options: Options::DEFAULT,
     };
-    let mut replica = Replica::boot(program);
+    let mut replica = Replica::<_, Simultaneous>::boot(program);
     let before = std::iter::from_fn(|| Some(emulator.tick(Moved { count: 0, missed: 0 }).unwrap()));
     for shown in before.take_while(|shown| shown.state != State::Running) {
         assert_eq!(replica.tick(0), (shown.code, shown.state));

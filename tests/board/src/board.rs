@@ -100,7 +100,8 @@ pub struct Board {
     pub(crate) stopped: Option<NotModelled>,
     chip: &'static Chip,
     free_clock: Counter,
-    watchdog: Watchdog,
+    /// The watchdog.
+    pub watchdog: Watchdog,
     power: Plain,
     flash: Plain,
     configuration: Plain,
@@ -271,7 +272,8 @@ impl Board {
         }
         let place = self.place(address)?;
         let offset = address - place.base;
-        if size == 1 {
+        // The serial port's data register may be accessed by bytes.
+        if size == 1 && place.unit != Unit::Serial {
             return Err((Some(place.name), Why::Width));
         }
         self.read_unit(place, offset).map_err(of(place.name))
@@ -293,7 +295,6 @@ impl Board {
         }
         let place = self.place(address)?;
         let offset = address - place.base;
-        // The serial port's data register may be written by bytes.
         if size == 1 && place.unit != Unit::Serial {
             return Err((Some(place.name), Why::Width));
         }

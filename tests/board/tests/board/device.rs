@@ -1,46 +1,71 @@
-//! A simulated device in a hand, wired to the virtual board.
+//! What is wired to the virtual board.
 
+use std::collections::VecDeque;
+
+use analysis::program::Program;
 use analysis::rig::{Plant, SimulatedDevice};
-use firmware::dac::DacCode;
 use virtual_board::device::Device;
 
-/// A simulated device in a hand that follows its script once it is told to.
+use crate::bench::MID_SCALE;
+
+/// What one sample was at the pins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// What the converter put out during it.
+    pub code: Option<u16>,
+    /// Whether the amplifier was on at its end.
+    pub amplifier: bool,
+    /// The encoder's position at its end, in counts.
+    pub count: i32,
+}
+
+/// What is at the pins: a device, and a test that looks on and may turn the encoder itself.
+pub struct Pins {
+    device: Box<dyn Device + Send>,
+    /// Turns of the encoder that are still to come, one a sample, in place of the device's.
+    pub turns: VecDeque<i32>,
+    /// All samples so far.
+    pub samples: Vec<Sample>,
+    /// The encoder's position in counts.
+    pub count: i32,
+}
+
+impl Pins {
+    /// A device at rest at zero.
+    pub fn of(device: impl Device + Send + 'static) -> Self {
+        Self { device: Box::new(device), turns: VecDeque::new(), samples: Vec::new(), count: 0 }
+    }
+}
+
+impl Device for Pins {
+    fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
+        let turned = self.device.sample(code, amplifier);
+        let turned = self.turns.pop_front().unwrap_or(turned);
+        self.count += turned;
+        self.samples.push(Sample { code, amplifier, count: self.count });
+        turned
+    }
+}
+
+/// A simulated device in a hand that follows its script.
 pub struct InHand {
     device: SimulatedDevice,
     /// The encoder's position in counts.
     count: i32,
-    /// Whether the hand moves, and with it the device.
-    pub moving: bool,
 }
 
 impl InHand {
-    /// The device at rest at zero; the hand waits.
-    pub fn new(device: SimulatedDevice) -> Self {
-        Self { device, count: 0, moving: false }
-    }
-
-    /// The simulated device.
-    pub fn device(&self) -> &SimulatedDevice {
-        &self.device
-    }
-
-    /// The encoder's position in counts.
-    pub fn count(&self) -> i32 {
-        self.count
+    /// A program's device, in the hand that shows it, at rest at zero.
+    pub fn of(program: &Program) -> Self {
+        Self { device: program.device(), count: 0 }
     }
 }
 
 impl Device for InHand {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
-        if !self.moving {
-            return 0;
-        }
         // Without an amplifier, or without a level at its input, no torque.
-        let code = code.filter(|_| amplifier).unwrap_or(DacCode::MID_SCALE.get());
-        self.device.hold(code);
+        self.device.hold(code.filter(|_| amplifier).unwrap_or(MID_SCALE));
         let count = self.device.count().unwrap_or(self.count);
-        let turned = count.wrapping_sub(self.count);
-        self.count = count;
-        turned
+        count - std::mem::replace(&mut self.count, count)
     }
 }

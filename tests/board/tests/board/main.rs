@@ -1,3 +1,8 @@
-//! The programs that are flashed, unmodified, on the virtual board.
+//! What is flashed, on both virtual boards: that it starts as it should, renders what the host
+//! renders, and stops when it must.
 
+mod bench;
 mod device;
+mod scenes;
+mod start;
+mod timing;

@@ -1,0 +1,150 @@
+//! A virtual board with everything around it that a test looks at.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::thread;
+
+use analysis::link::Message;
+use analysis::program::NAMES;
+use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
+use firmware::dac::DacCode;
+use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, ToBoard};
+use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
+use virtual_board::board::Event;
+use virtual_board::chip::Chip;
+use virtual_board::device::{Device, Still};
+use virtual_board::machine::Machine;
+
+use crate::device::Pins;
+
+/// The code that gives no torque.
+pub const MID_SCALE: u16 = DacCode::MID_SCALE.get();
+
+/// Does a test on both chips at the same time.
+pub fn on_both(test: impl Fn(&'static Chip) + Sync) {
+    thread::scope(|scope| {
+        for chip in Chip::ALL {
+            let run = || test(chip);
+            thread::Builder::new().name(chip.name.into()).spawn_scoped(scope, run).unwrap();
+        }
+    });
+}
+
+/// The file of a program for a chip. All of them are built when the first is asked for.
+pub fn program(chip: &'static Chip, name: &'static str) -> &'static PathBuf {
+    static FILES: OnceLock<HashMap<(&str, &str), PathBuf>> = OnceLock::new();
+    let files = FILES.get_or_init(|| {
+        let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+        let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
+        let build = |chip: &'static Chip| {
+            let board = Board::find(chip.name).unwrap();
+            let built = toolchain.build_for(board, NAMES, NumberFormat::F32);
+            let built = built.unwrap_or_else(|error| panic!("{error}"));
+            NAMES.iter().zip(built).map(move |(name, built)| ((chip.name, *name), built.path))
+        };
+        Chip::ALL.into_iter().flat_map(build).collect()
+    });
+    &files[&(chip.name, name)]
+}
+
+/// A board with its power on, what is at its pins, and a host at its serial port.
+pub struct Bench {
+    /// The board.
+    pub machine: Machine,
+    pins: Arc<Mutex<Pins>>,
+    decoder: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
+}
+
+impl Bench {
+    /// Switches a board on that has a program in its flash.
+    pub fn boot(
+        chip: &'static Chip,
+        name: &'static str,
+        device: impl Device + Send + 'static,
+    ) -> Self {
+        let pins = Arc::new(Mutex::new(Pins::of(device)));
+        let mut machine = Machine::boot(program(chip, name), chip, Box::new(pins.clone())).unwrap();
+        machine.board_mut().events = Some(Vec::new());
+        Self { machine, pins, decoder: Decoder::new() }
+    }
+
+    /// The same with a device that stands still, run until the scene is felt: the clamp is open.
+    pub fn running(chip: &'static Chip, name: &'static str) -> Self {
+        /// More than the tenth of a second in which it opens.
+        const OPEN: u64 = 110;
+        let mut bench = Self::boot(chip, name, Still);
+        bench.run(OPEN);
+        bench
+    }
+
+    /// What is at the pins.
+    pub fn pins(&self) -> MutexGuard<'_, Pins> {
+        self.pins.lock().unwrap()
+    }
+
+    /// Instructions in a period of the servo: a thousandth of a second in all programs, as nearly as
+    /// the timer can pace it.
+    pub fn period(&self) -> u64 {
+        let board = self.machine.board();
+        board.pacer.period(board.clock.timer_divider())
+    }
+
+    /// Runs so many samples.
+    pub fn run(&mut self, samples: u64) {
+        self.machine.run_samples(samples).unwrap_or_else(|trouble| panic!("{trouble}"));
+    }
+
+    /// Runs so many instructions.
+    pub fn run_for(&mut self, instructions: u64) {
+        self.machine.run_for(instructions).unwrap_or_else(|trouble| panic!("{trouble}"));
+    }
+
+    /// Runs to the next update of the pacing timer, which comes before the next instruction.
+    pub fn run_to_update(&mut self) {
+        let board = self.machine.board();
+        let due = board.pacer.due().unwrap();
+        self.run_for(due - board.now);
+    }
+
+    /// What happened at the pins so far, with the time.
+    pub fn events(&self) -> &[(u64, Event)] {
+        self.machine.board().events.as_deref().unwrap()
+    }
+
+    /// Says something to the board.
+    pub fn say(&mut self, message: &ToBoard) {
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        let frame = encode(message, &mut buffer).unwrap();
+        self.machine.board_mut().send(frame);
+    }
+
+    /// What the board has said since the last time.
+    pub fn hear(&mut self) -> Vec<Message> {
+        let bytes = self.machine.board_mut().serial.take_sent();
+        bytes.into_iter().filter_map(|byte| self.decoder.push(byte)).collect()
+    }
+
+    /// Asks, and runs until the board gives an answer that is wanted.
+    pub fn ask<T>(&mut self, question: &ToBoard, wanted: impl Fn(Message) -> Option<T>) -> T {
+        /// Samples: a second.
+        const PATIENCE: u32 = 1000;
+        self.hear();
+        self.say(question);
+        for _ in 0..PATIENCE {
+            self.run(1);
+            if let Some(answer) = self.hear().into_iter().find_map(&wanted) {
+                return answer;
+            }
+        }
+        panic!("the board does not answer {question:?}")
+    }
+
+    /// How the board says that it is.
+    pub fn status(&mut self) -> firmware::wire::message::Status {
+        self.ask(&ToBoard::Status, |message| match message {
+            Message::Status(status) => Some(status),
+            _ => None,
+        })
+    }
+}

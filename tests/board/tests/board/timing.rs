@@ -1,0 +1,90 @@
+//! From count to torque: one whole sample, to the instruction.
+
+use virtual_board::board::Event;
+
+use crate::bench::{Bench, on_both};
+
+/// Counts into the wall, and further steps that each change the code by some.
+const INTO: i32 = 300;
+const STEP: i32 = 40;
+/// The code that far into the wall and two steps further.
+const DEEP: u16 = 1500;
+/// Samples after a step until the code stands still: the wall's damping and the coupling let an
+/// alternation decay by a factor of 0.96 a sample.
+const SETTLING: u64 = 300;
+
+#[test]
+fn a_count_reaches_the_converter_within_its_sample_and_the_motor_exactly_at_the_next() {
+    on_both(|chip| {
+        let mut bench = Bench::running(chip, "damper_wall");
+        bench.pins().turns.push_back(INTO);
+        bench.run(SETTLING);
+        let codes = |bench: &Bench| {
+            let converter = &bench.machine.board().converter;
+            (converter.held(), converter.output().unwrap())
+        };
+        let (held, output) = codes(&bench);
+        assert_eq!(held, output, "{}: at rest", chip.name);
+        bench.pins().turns.push_back(STEP);
+        bench.run_to_update();
+        let update = bench.machine.board().now + bench.period();
+        // Instruction by instruction, as long as the servo's interrupt takes and some more.
+        let mut written = None;
+        for _ in 0..1000 {
+            bench.run_for(1);
+            let (now_held, now_output) = codes(&bench);
+            assert_eq!(now_output, output, "{}: put out early", chip.name);
+            if now_held != held {
+                written.get_or_insert(bench.machine.board().now);
+            }
+        }
+        let computed = bench.machine.board().meter.interrupt().most;
+        let written = written.expect("a code is written") - (update - bench.period());
+        assert!(written <= computed, "{}: {written} of {computed}", chip.name);
+        // To the last instruction before the update, and then one more.
+        bench.run_to_update();
+        assert_eq!(bench.machine.board().now, update);
+        assert_eq!(codes(&bench).1, output, "{}: put out early", chip.name);
+        bench.run_for(1);
+        let (held, new) = codes(&bench);
+        assert!(new != output && new == held, "{}", chip.name);
+        assert_eq!(bench.events().last(), Some(&(update, Event::Torque(Some(new)))));
+    });
+}
+
+#[test]
+fn a_count_that_comes_after_it_was_read_waits_for_the_next_sample() {
+    on_both(|chip| {
+        let mut bench = Bench::running(chip, "damper_wall");
+        bench.pins().turns.push_back(INTO);
+        bench.run(SETTLING);
+        // The instruction after an update up to which a step still counts in that tick.
+        let (mut early, mut late) = (0, bench.machine.board().meter.interrupt().most);
+        assert!(counts_in_this_tick(&mut bench, early), "{}", chip.name);
+        assert!(!counts_in_this_tick(&mut bench, late), "{}", chip.name);
+        while late - early > 1 {
+            let middle = (early + late) / 2;
+            if counts_in_this_tick(&mut bench, middle) { early = middle } else { late = middle }
+        }
+        // One instruction earlier and later say the same as far from it.
+        for after in 0..early + 20 {
+            assert_eq!(counts_in_this_tick(&mut bench, after), after <= early, "{}", chip.name);
+        }
+    });
+}
+
+/// Whether a step that comes so many instructions after an update is in the code of that tick.
+fn counts_in_this_tick(bench: &mut Bench, after: u64) -> bool {
+    let held = |bench: &Bench| bench.machine.board().converter.held();
+    bench.run(SETTLING);
+    bench.run_to_update();
+    let before = held(bench);
+    bench.run_for(after);
+    let into = if before < DEEP { -STEP } else { STEP };
+    bench.machine.board_mut().turn(into);
+    bench.run_for(1000);
+    let counted = held(bench) != before;
+    bench.run(1);
+    assert_ne!(held(bench), before, "it counts in the next one");
+    counted
+}
