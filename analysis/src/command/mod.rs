@@ -38,7 +38,9 @@ use crate::recorded::RecordedError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
 use crate::table::TableError;
-use crate::toolchain::{BuildError, SetupError};
+use crate::toolchain::{Board, BuildError, NoBoard, SetupError};
+use crate::twin::TwinError;
+use crate::virtual_board::VirtualBoardError;
 
 /// Certifies haptic scenes, runs them, and shows what they do.
 #[derive(Debug, Parser)]
@@ -64,7 +66,7 @@ pub enum Command {
     Identify(identify::Arguments),
     /// Build a scene's program for a board and flash it.
     Flash(flash::Arguments),
-    /// Run a scene tick by tick, on this machine or on the emulated board.
+    /// Run a scene tick by tick: on this machine, on the emulated board, or as flashed on a virtual one.
     Run(run::Arguments),
     /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
     Demo(demo::Arguments),
@@ -78,7 +80,7 @@ pub enum Command {
     Tune(tune::Arguments),
     /// Watch a running board, or record it.
     Scope(scope::Arguments),
-    /// Be a board: run a program in a simulated hand, for tune and scope to be tried on.
+    /// Be a board without hardware, in a simulated hand, for tune and scope to be tried on.
     Twin(twin::Arguments),
     /// What would a scene do, certified or not?
     Simulate(simulate::Arguments),
@@ -270,9 +272,12 @@ pub enum CommandError {
         /// Why.
         source: io::Error,
     },
-    /// A certified scene that this machine cannot render.
+    /// A board without hardware has ended by itself.
     #[error(transparent)]
-    Render(Box<firmware::servo::RenderError>),
+    Twin(#[from] TwinError),
+    /// A virtual board that did not start.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
@@ -324,6 +329,11 @@ pub fn execute(arguments: Arguments) -> ExitCode {
             if error.is_a_no() { ExitCode::FAILURE } else { ExitCode::from(2) }
         }
     }
+}
+
+/// A board of which there is a virtual one, on the command line.
+fn virtual_board(name: &str) -> Result<Board, NoBoard> {
+    Board::find_virtual(name)
 }
 
 /// A time on the command line.

@@ -23,6 +23,7 @@ use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
 use crate::scenario::{Beside, Input, Outcome, play};
 use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
+use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 use crate::{replay, rig};
 
 /// Where a scene runs.
@@ -58,7 +59,7 @@ impl FromStr for Target {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
             _ => match text.strip_prefix(BOARD) {
-                Some(name) => Ok(Self::Board(Board::find(name)?)),
+                Some(name) => Ok(Self::Board(Board::find_virtual(name)?)),
                 None => Err(NoTarget::Word(text.into())),
             },
         }
@@ -289,7 +290,36 @@ fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
 enum Built {
     Nothing,
     Emulated(PathBuf),
-    Virtual { program: PathBuf, board: Board, elf: PathBuf },
+    Virtual(Flashed),
+}
+
+/// A virtual board, and what goes to its flash.
+pub(super) struct Flashed {
+    program: PathBuf,
+    board: Board,
+    elf: PathBuf,
+}
+
+impl Flashed {
+    /// Builds both, after setting up what is missing for that.
+    pub(super) fn build(
+        board: Board,
+        name: &str,
+        format: NumberFormat,
+    ) -> Result<Self, CommandError> {
+        let tools = Tools::CompilerAndVirtualBoard;
+        let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
+        let spinner = progress::spinner(&format!("building {name} and the virtual board"));
+        let elf = toolchain.build_for(board, &[name], format)?.swap_remove(0).path;
+        let program = toolchain.build_virtual_board()?;
+        spinner.finish_and_clear();
+        Ok(Self { program, board, elf })
+    }
+
+    /// Switches it on.
+    pub(super) fn boot(&self) -> Result<VirtualBoard, VirtualBoardError> {
+        VirtualBoard::boot(&self.program, self.board, &self.elf)
+    }
 }
 
 impl Built {
@@ -297,7 +327,7 @@ impl Built {
         match self {
             Self::Nothing => None,
             Self::Emulated(elf) => Some(Beside::Emulator(elf)),
-            Self::Virtual { program, board, elf } => {
+            Self::Virtual(Flashed { program, board, elf }) => {
                 Some(Beside::VirtualBoard { program, board: *board, elf, period })
             }
         }
@@ -305,29 +335,22 @@ impl Built {
 }
 
 fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandError> {
-    let tools = match arguments.target {
-        Target::Host => return Ok(Built::Nothing),
-        Target::Qemu => Tools::CompilerAndEmulator,
-        Target::Board(_) => Tools::CompilerAndVirtualBoard,
-    };
+    if arguments.target == Target::Host {
+        return Ok(Built::Nothing);
+    }
     let Some(program) = question.program else {
         return Err(CommandError::FileOnBoard { scene: question.name.clone() });
     };
-    let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
-    let spinner = progress::spinner(&format!("building {}", program.name));
     let format = arguments.format.into();
-    let built = match arguments.target {
-        Target::Board(board) => Built::Virtual {
-            elf: toolchain.build_for(board, &[program.name], format)?.swap_remove(0).path,
-            program: toolchain.build_virtual_board()?,
-            board,
-        },
-        Target::Host | Target::Qemu => {
-            Built::Emulated(toolchain.build_scene(program.name, format)?)
-        }
-    };
+    if let Target::Board(board) = arguments.target {
+        return Ok(Built::Virtual(Flashed::build(board, program.name, format)?));
+    }
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let spinner = progress::spinner(&format!("building {}", program.name));
+    let elf = toolchain.build_scene(program.name, format)?;
     spinner.finish_and_clear();
-    Ok(built)
+    Ok(Built::Emulated(elf))
 }
 
 fn print(arguments: &Arguments, name: &str, outcome: &Outcome) -> Result<(), CommandError> {

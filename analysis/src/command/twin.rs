@@ -1,16 +1,18 @@
-//! `haptic twin`: a board that is a thread of this program, to try `tune` and `scope` on.
+//! `haptic twin`: a board without hardware, to try `tune` and `scope` on.
 
 use std::io::{self, Write};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::{Answer, CommandError, seconds};
+use super::run::Flashed;
+use super::{Answer, CommandError, seconds, virtual_board as board};
 use crate::link::Address;
 use crate::program::{self, Program};
 use crate::rig::SimulatedDevice;
-use crate::twin::Clock;
+use crate::toolchain::{Board, NumberFormat};
+use crate::twin::{Clock, Twin};
 
 /// Arguments of `haptic twin`.
 #[derive(Debug, Args)]
@@ -21,6 +23,10 @@ pub struct Arguments {
     /// Where it listens: tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
+    /// A virtual board with what would be flashed to this one (nucleo-g474re, stm32f405), instead of a
+    /// thread with the same servo
+    #[arg(long, value_name = "BOARD", value_parser = board)]
+    pub board: Option<Board>,
     /// End after so many seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
           allow_negative_numbers = true)]
@@ -29,6 +35,9 @@ pub struct Arguments {
 
 /// What a hand does goes on for so many seconds: an hour.
 const SCRIPT: f64 = 3600.0;
+
+/// Longest time between two looks at what has ended.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Runs a program in a simulated hand until the time is up or Ctrl-C.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
@@ -46,17 +55,23 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let script = (program.script)().over_and_over(SCRIPT);
     let (device, period) = (program.scene.device, program.scene.timing.period);
     let device = SimulatedDevice::new(device, script, period, &program.transducers)?;
-    let twin = program
-        .listen(Box::new(device), &arguments.port, Clock::Real)
-        .map_err(|source| CommandError::Listen { address: arguments.port.clone(), source })?;
+    let (device, address) = (Box::new(device), &arguments.port);
+    let twin = match arguments.board {
+        None => program.listen(device, address, Clock::Real),
+        Some(board) => {
+            let built = Flashed::build(board, program.name, NumberFormat::F32)?;
+            Twin::of_board(built.boot()?, device, address, Clock::Real, period)
+        }
+    };
+    let twin = twin.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
     writeln!(io::stdout(), "{name} listens on {}", twin.address())?;
-    match arguments.duration {
-        Some(duration) => match wait.recv_timeout(duration) {
-            Ok(()) | Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {}
-        },
-        // An error would be that nobody can say that it is enough.
-        None => drop(wait.recv()),
+    let end = arguments.duration.map(|duration| Instant::now() + duration);
+    while !twin.has_ended() && end.is_none_or(|end| Instant::now() < end) {
+        // A disconnection would be that nobody can say that it is enough.
+        if wait.recv_timeout(LOOK) != Err(RecvTimeoutError::Timeout) {
+            break;
+        }
     }
-    twin.end().map_err(CommandError::Render)?;
+    twin.end()?;
     Ok(Answer::Yes)
 }

@@ -182,8 +182,9 @@ fn following_the_plan_ends() {
             native: Native { cmake: bit(8), libclang: bit(9) },
         };
         if bit(7) {
-            facts.debian =
-                facts.debian.map(|d| Debian { packages: [PackageState::Unknown; Package::ALL.len()], ..d });
+            facts.debian = facts
+                .debian
+                .map(|d| Debian { packages: [PackageState::Unknown; Package::ALL.len()], ..d });
         }
         for tools in [Tools::CompilerAndEmulator, Tools::CompilerAndVirtualBoard] {
             let mut facts = facts.clone();
@@ -207,8 +208,11 @@ fn take(facts: &mut Facts, step: Step) {
             for package in packages {
                 let index = Package::ALL.iter().position(|p| *p == package).unwrap();
                 debian.packages[index] = PackageState::Installed(NEW);
-                if package == Package::Qemu {
-                    facts.qemu = Some(QEMU_7);
+                match package {
+                    Package::Qemu => facts.qemu = Some(QEMU_7),
+                    Package::Cmake => facts.native.cmake = true,
+                    Package::Libclang => facts.native.libclang = true,
+                    _ => {}
                 }
             }
         }

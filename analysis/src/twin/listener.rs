@@ -1,4 +1,4 @@
-//! The socket of a board that is a thread.
+//! The socket of a board without hardware.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -83,6 +83,35 @@ impl Listener {
             }
         }
     }
+
+    /// Sends what the stream takes of these bytes, and gives what has come in.
+    pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
+        let Some(client) = &mut self.client else {
+            // Nobody listens: as on a serial line, what is sent is gone.
+            outgoing.clear();
+            self.client = self.socket.accept();
+            return Vec::new();
+        };
+        let mut bytes = [0; BYTES];
+        let carried = received(client.as_mut(), &mut bytes).map(<[u8]>::to_vec).and_then(|bytes| {
+            outgoing.drain(..send(client.as_mut(), outgoing)?);
+            Ok(bytes)
+        });
+        carried.unwrap_or_else(|_| {
+            self.client = None;
+            Vec::new()
+        })
+    }
+}
+
+/// What has come in; [`ErrorKind::UnexpectedEof`] once the other end is closed.
+fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a [u8]> {
+    match client.read(bytes) {
+        Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+        Ok(read) => Ok(&bytes[..read]),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(&[]),
+        Err(error) => Err(error),
+    }
 }
 
 fn carry<E, N, M, const LENGTH: usize>(
@@ -95,14 +124,9 @@ where
     M: OutputMode,
 {
     let mut bytes = [0; BYTES];
-    let read = match client.read(&mut bytes) {
-        Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
-        Ok(read) => read,
-        Err(error) if error.kind() == ErrorKind::WouldBlock => 0,
-        Err(error) => return Err(error),
-    };
-    session.receive(&bytes[..read]);
-    let mut all = 0;
+    let bytes = received(client, &mut bytes)?;
+    session.receive(bytes);
+    let (read, mut all) = (bytes.len(), 0);
     for _ in 0..FRAMES {
         session.poll();
         let written = send(client, session.outgoing())?;

@@ -1,10 +1,11 @@
-//! A board that is a thread: the same cycle and the same wire as on a real one, around a simulated
-//! device, behind a socket.
+//! A board without hardware, around a simulated device and behind a socket: a thread with the same
+//! cycle and the same wire as a real one, or a virtual board with what is flashed.
 //!
 //! Its time is that of its ticks, of which it does as many as a real board would, or all that it
 //! can. A tick is never late here; what may make a real one late is another matter.
 
 mod board;
+mod flashed;
 mod listener;
 
 use std::io;
@@ -24,6 +25,7 @@ use self::board::Board;
 use self::listener::Listener;
 use crate::link::Address;
 use crate::rig::Plant;
+use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// Timer counts in a period: a 170 MHz timer at 1 kHz.
 const TIMER_COUNTS: u32 = 170_000;
@@ -46,7 +48,18 @@ pub enum Clock {
 pub struct Twin {
     address: Address,
     ended: Arc<AtomicBool>,
-    thread: Option<JoinHandle<Result<(), Box<RenderError>>>>,
+    thread: Option<JoinHandle<Result<(), TwinError>>>,
+}
+
+/// Why a twin has ended before it was asked to.
+#[derive(Debug, thiserror::Error)]
+pub enum TwinError {
+    /// Its program could not start.
+    #[error(transparent)]
+    Render(Box<RenderError>),
+    /// The virtual board that it is has stopped.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
 }
 
 impl Twin {
@@ -76,19 +89,44 @@ impl Twin {
         Ok(Self { address, ended, thread: Some(thread) })
     }
 
+    /// Listens there for a virtual board that has been switched on, whose servo has this period in s.
+    ///
+    /// # Errors
+    /// Where the address cannot be listened at.
+    pub fn of_board(
+        board: VirtualBoard,
+        plant: Box<dyn Plant + Send>,
+        address: &Address,
+        clock: Clock,
+        period: f64,
+    ) -> io::Result<Self> {
+        let (listener, address) = Listener::bind(address)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        let over = ended.clone();
+        let period = (clock == Clock::Real).then(|| Duration::from_secs_f64(period));
+        let thread =
+            thread::spawn(move || Ok(flashed::serve(board, plant, listener, period, &over)?));
+        Ok(Self { address, ended, thread: Some(thread) })
+    }
+
     /// Where it listens.
     pub fn address(&self) -> &Address {
         &self.address
     }
 
+    /// Whether it has ended by itself: [`Self::end`] says why.
+    pub fn has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
     /// Ends it.
     ///
     /// # Errors
-    /// Where its program could not start.
+    /// Where its program could not start, or its board has stopped.
     ///
     /// # Panics
     /// If its thread has.
-    pub fn end(mut self) -> Result<(), Box<RenderError>> {
+    pub fn end(mut self) -> Result<(), TwinError> {
         self.ended.store(true, Ordering::Relaxed);
         self.thread.take().map_or(Ok(()), |thread| thread.join().expect("the board panicked"))
     }
@@ -112,7 +150,7 @@ fn serve<E, N, M>(
     mut listener: Listener,
     clock: Clock,
     over: &AtomicBool,
-) -> Result<(), Box<RenderError>>
+) -> Result<(), TwinError>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,
@@ -121,7 +159,8 @@ where
     let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::<FRAMES>::new());
     let (requests, mut inbox) = mailbox.split();
     let (mut frames, ticks) = queue.split();
-    let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)?;
+    let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
+        .map_err(|error| TwinError::Render(Box::new(error)))?;
     let (mut cycle, margin) = (booted.cycle, booted.margin);
     let facts = Facts { name, timer_counts: TIMER_COUNTS, left: None, stack_left: || None };
     let mut session = Session::new(program, margin, facts, requests, ticks);
