@@ -9,6 +9,7 @@ pub mod log;
 mod pipes;
 mod player;
 mod report;
+mod transport;
 mod trials;
 pub mod world;
 
@@ -25,6 +26,7 @@ use tempfile::TempDir;
 pub use judge::Judge;
 pub use player::Player;
 pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+pub use transport::Transport;
 pub use trials::Trials;
 
 use log::{LogDecoder, LogReader};
@@ -107,6 +109,9 @@ pub enum EmulatorError {
     /// The board gave an answer that is none.
     #[error("the emulated board's reply is not understood: its program is of another version")]
     NoReply,
+    /// A board that is not QEMU's gave no answer.
+    #[error("the board gives no answer: {0}")]
+    Transport(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The board cannot compute what it was asked to.
     #[error(
         "the emulated board has no program to measure this scene: it has one for a spring and a \

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use firmware::board::play::{Curtain, Play};
 
-use super::{EmulatorError, Guest};
+use super::{EmulatorError, Guest, Transport};
 use crate::rig::Twin;
 
 /// An emulated board that plays one scene after the other.
 pub struct Player {
-    guest: Guest,
+    guest: Box<dyn Transport>,
     /// Ticks of the play that have not been played.
     left: u32,
 }
@@ -21,7 +21,12 @@ impl Player {
     /// # Errors
     /// Where the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self { guest: Guest::boot(elf, &[])?, left: 0 })
+        Ok(Self::over(Guest::boot(elf, &[])?))
+    }
+
+    /// The same program, started by somebody else.
+    pub fn over(guest: impl Transport + 'static) -> Self {
+        Self { guest: Box::new(guest), left: 0 }
     }
 
     /// Has the board judge a scene and, where it is certified, be its servo from rest. What is left
@@ -51,7 +56,7 @@ impl Player {
         while self.left > 0 {
             self.exchange(0)?;
         }
-        self.guest.finish().map(drop)
+        self.guest.finish()
     }
 }
 

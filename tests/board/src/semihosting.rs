@@ -1,0 +1,215 @@
+//! A debugger that answers a program's calls: "Semihosting for AArch32 and AArch64", ARM, 2025Q1.
+//!
+//! A program that was written for an emulator has pipes to its host as files, and ends by a call.
+//! Here the pipes are memory: the program reads what it was asked and stops where there is nothing
+//! to read.
+
+use std::collections::VecDeque;
+use std::path::Path;
+
+use unicorn_engine::RegisterARM;
+
+use crate::chip::Chip;
+use crate::device::Still;
+use crate::machine::{BootError, Machine, Trouble};
+
+/// The instruction of a call, `BKPT 0xAB` (section 4.1).
+const CALL: u16 = 0xBEAB;
+/// The operations (section 6) that the programs use.
+const OPEN: u32 = 0x01;
+const CLOSE: u32 = 0x02;
+const WRITE: u32 = 0x05;
+const READ: u32 = 0x06;
+const EXIT_EXTENDED: u32 = 0x20;
+/// What an operation returns that has failed.
+const FAILED: u32 = u32::MAX;
+/// The reason of an exit that the program itself has chosen; its status stands beside it.
+const APPLICATION_EXIT: u32 = 0x20026;
+/// The name of the console.
+const CONSOLE: &[u8] = b":tt";
+/// Instructions within which a program has to come to its next call.
+const LONGEST: u64 = 100_000_000;
+
+/// The files that a program may open; a handle is the place in this list, from 1 on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Handle {
+    Console = 1,
+    Questions,
+    Answers,
+}
+
+/// Why a program gave no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CallError {
+    /// The board cannot go on.
+    #[error(transparent)]
+    Trouble(#[from] Trouble),
+    /// The call is none that is answered here.
+    #[error("the program calls operation {operation:#x} at {address:#010x}, which is not modelled")]
+    NoOperation {
+        /// Which.
+        operation: u32,
+        /// Where.
+        address: u32,
+    },
+    /// What a call refers to is not in memory, or is no open file.
+    #[error("the program's call {operation:#x} is not understood: {block:x?}")]
+    Malformed {
+        /// Which.
+        operation: u32,
+        /// What stands in memory for it.
+        block: [u32; 3],
+    },
+    /// It has ended.
+    #[error("the program has ended with status {0}")]
+    Ended(u32),
+    /// It waits for another question instead.
+    #[error("the program waits for more than it was asked")]
+    Waiting,
+}
+
+/// A program with its debugger.
+pub struct Guest {
+    machine: Machine,
+    /// Names of the file that it reads and of the one that it writes.
+    names: [&'static str; 2],
+    questions: VecDeque<u8>,
+    /// Whether there will be no more of them.
+    closed: bool,
+    answers: VecDeque<u8>,
+    console: Vec<u8>,
+}
+
+impl Guest {
+    /// Switches a board on with a program that reads its questions from the first file and writes
+    /// its answers to the second.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is no program for the chip.
+    pub fn boot(
+        elf: &Path,
+        chip: &'static Chip,
+        names: [&'static str; 2],
+    ) -> Result<Self, BootError> {
+        let mut machine = Machine::boot(elf, chip, Box::new(Still))?;
+        machine.debugged = true;
+        let (questions, answers) = (VecDeque::new(), VecDeque::new());
+        Ok(Self { machine, names, questions, closed: false, answers, console: Vec::new() })
+    }
+
+    /// The board.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Asks, and waits until the program has filled `answer`.
+    ///
+    /// # Errors
+    /// Where it does not.
+    pub fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
+        self.questions.extend(question);
+        while self.answers.len() < answer.len() {
+            self.run()?;
+        }
+        let answered: Vec<_> = self.answers.drain(..answer.len()).collect();
+        answer.copy_from_slice(&answered);
+        Ok(())
+    }
+
+    /// Tells the program that there is no more, and gives the bytes of its console once it has
+    /// ended.
+    ///
+    /// # Errors
+    /// Where it does not end, or not with status 0.
+    pub fn finish(mut self) -> Result<Vec<u8>, CallError> {
+        self.closed = true;
+        loop {
+            match self.run() {
+                Ok(()) => {}
+                Err(CallError::Ended(0)) => return Ok(self.console),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Up to the next call, and the answer to it.
+    fn run(&mut self) -> Result<(), CallError> {
+        let Err(trouble) = self.machine.run_for(LONGEST) else {
+            return Err(Trouble::Late { what: "a call", instructions: LONGEST }.into());
+        };
+        let Trouble::Breakpoint { address, .. } = trouble else { return Err(trouble.into()) };
+        let core = self.machine.core_mut();
+        if core.memory(address, 2).as_deref() != Some(&CALL.to_le_bytes()) {
+            return Err(trouble.into());
+        }
+        let operation = core.register(RegisterARM::R0);
+        let block = core.register(RegisterARM::R1);
+        let block = [0, 4, 8].map(|offset| core.word(block + offset).unwrap_or(0));
+        let result = self.answer(operation, block, address)?;
+        let core = self.machine.core_mut();
+        core.set_register(RegisterARM::R0, result);
+        core.set_register(RegisterARM::PC, (address + 2) | 1);
+        Ok(())
+    }
+
+    /// What an operation returns; `block` is what the program has in memory for it.
+    fn answer(
+        &mut self,
+        operation: u32,
+        block: [u32; 3],
+        address: u32,
+    ) -> Result<u32, CallError> {
+        let malformed = CallError::Malformed { operation, block };
+        let [first, second, third] = block;
+        let result = match operation {
+            OPEN => {
+                let name = self.machine.core_mut().memory(first, third as usize);
+                Some(self.open(&name.ok_or(malformed.clone())?))
+            }
+            CLOSE => handle(first).map(|_| 0),
+            WRITE => self.write(handle(first), second, third),
+            READ if handle(first) == Some(Handle::Questions) => self.read(second, third)?,
+            EXIT_EXTENDED if first == APPLICATION_EXIT => return Err(CallError::Ended(second)),
+            _ => return Err(CallError::NoOperation { operation, address }),
+        };
+        result.ok_or(malformed)
+    }
+
+    fn open(&self, name: &[u8]) -> u32 {
+        let [questions, answers] = self.names.map(str::as_bytes);
+        let handles = [
+            (CONSOLE, Handle::Console),
+            (questions, Handle::Questions),
+            (answers, Handle::Answers),
+        ];
+        let found = handles.into_iter().find(|(known, _)| *known == name);
+        found.map_or(FAILED, |(_, handle)| handle as u32)
+    }
+
+    /// Bytes that were not written: none.
+    fn write(&mut self, handle: Option<Handle>, from: u32, size: u32) -> Option<u32> {
+        let bytes = self.machine.core_mut().memory(from, size as usize)?;
+        match handle? {
+            Handle::Console => self.console.extend(bytes),
+            Handle::Answers => self.answers.extend(bytes),
+            Handle::Questions => return None,
+        }
+        Some(0)
+    }
+
+    /// Bytes that were not read: all of them at the end.
+    fn read(&mut self, to: u32, size: u32) -> Result<Option<u32>, CallError> {
+        if self.questions.is_empty() && !self.closed {
+            return Err(CallError::Waiting);
+        }
+        let count = self.questions.len().min(size as usize);
+        let bytes: Vec<_> = self.questions.drain(..count).collect();
+        let is_there = self.machine.core_mut().set_memory(to, &bytes);
+        Ok(is_there.then_some(size - count as u32))
+    }
+}
+
+fn handle(number: u32) -> Option<Handle> {
+    let handles = [Handle::Console, Handle::Questions, Handle::Answers];
+    handles.into_iter().find(|handle| *handle as u32 == number)
+}
