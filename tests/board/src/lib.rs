@@ -11,12 +11,14 @@
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes.
+//! - [`semihosting`]: a debugger that answers a program's calls.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core; so it is the right
 //! order of everything that is shown here, and nothing is said of its duration on a chip.
 
 pub mod board;
 pub mod chip;
+mod conditional;
 pub mod core;
 pub mod device;
 pub mod image;
@@ -24,3 +26,4 @@ pub mod machine;
 pub mod meter;
 pub mod peripheral;
 pub mod processor;
+pub mod semihosting;

@@ -51,6 +51,14 @@ pub enum Trouble {
         /// Where.
         address: u32,
     },
+    /// The program wants its debugger.
+    #[error("the core is stopped by a breakpoint; instruction {now} at {address:#010x}")]
+    Breakpoint {
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
     /// What was waited for did not come.
     #[error("{what} has not happened within {instructions} instructions")]
     Late {
@@ -97,6 +105,8 @@ pub struct Machine {
     waiting: bool,
     resets: Vec<(u64, Cause)>,
     log: Vec<u8>,
+    /// Whether a debugger is connected, which gets the program's breakpoints.
+    pub(crate) debugged: bool,
 }
 
 impl Machine {
@@ -119,7 +129,14 @@ impl Machine {
                 return Err(BootError::NoFlash { address: *address, size: bytes.len() });
             }
         }
-        let mut machine = Self { core, image, waiting: false, resets: Vec::new(), log: Vec::new() };
+        let mut machine = Self {
+            core,
+            image,
+            waiting: false,
+            resets: Vec::new(),
+            log: Vec::new(),
+            debugged: false,
+        };
         machine.start();
         Ok(machine)
     }
@@ -242,8 +259,12 @@ impl Machine {
                 let status = if fetch { FaultStatus::Fetch } else { FaultStatus::Data };
                 self.fault(status, address)?;
             }
+            Halt::Breakpoint if self.debugged => {
+                let (now, address) = (self.board().now, self.core.last_address());
+                return Err(Trouble::Breakpoint { now, address });
+            }
             Halt::Undefined => self.fault(FaultStatus::Undefined, 0)?,
-            Halt::Invalid => self.fault(FaultStatus::State, 0)?,
+            Halt::Breakpoint | Halt::Invalid => self.fault(FaultStatus::State, 0)?,
         }
         Ok(())
     }

@@ -8,6 +8,7 @@
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
 use crate::board::Board;
+use crate::conditional::Trail;
 use crate::core::exceptions::Masks;
 
 /// Why the core has stopped.
@@ -28,7 +29,9 @@ pub enum Halt {
     },
     /// No such instruction.
     Undefined,
-    /// Not in a state to execute: not Thumb, or a breakpoint without a debugger.
+    /// A breakpoint in the program.
+    Breakpoint,
+    /// Not in a state to execute: not Thumb.
     Invalid,
 }
 
@@ -43,6 +46,8 @@ struct Context {
     masked: bool,
     /// Where the last instruction was.
     address: u32,
+    /// Where those before it were.
+    trail: Trail,
     halt: Option<Halt>,
 }
 
@@ -60,6 +65,7 @@ const IN_USE: u64 = 1 << 2;
 /// A wait for an event, as an instruction: the engine takes it for an unknown one.
 const WAIT_FOR_EVENT: u16 = 0xBF20;
 /// The engine's numbers of what interrupts it.
+const BREAKPOINT: u32 = 7;
 const RETURN_FROM_EXCEPTION: u32 = 8;
 
 /// Registers that an exception keeps by itself, in the order of its frame.
@@ -76,8 +82,15 @@ impl Processor {
     /// A core with a chip's memory, which holds noise, and its board.
     pub fn new(board: Board) -> Self {
         let chip = board.chip();
-        let context =
-            Context { board, deadline: 0, attention: false, masked: false, address: 0, halt: None };
+        let context = Context {
+            board,
+            deadline: 0,
+            attention: false,
+            masked: false,
+            address: 0,
+            trail: Trail::default(),
+            halt: None,
+        };
         let mode = Mode::THUMB | Mode::MCLASS;
         let mut engine =
             Unicorn::new_with_data(Arch::ARM, mode, context).expect("the engine has this core");
@@ -115,9 +128,7 @@ impl Processor {
             };
             engine.mmio_map(base, size, Some(read), Some(write)).expect("nothing else is there");
         }
-        engine
-            .add_code_hook(0, u64::MAX, |engine, address, _| before_instruction(engine, address))
-            .expect("the engine has such hooks");
+        engine.add_code_hook(0, u64::MAX, before_instruction).expect("the engine has such hooks");
         engine.add_intr_hook(interrupted).expect("the engine has such hooks");
         engine
             .add_mem_hook(
@@ -169,10 +180,7 @@ impl Processor {
 
     /// Whether the last instruction was a wait for an event.
     fn has_waited(&self) -> bool {
-        let mut instruction = [0; 2];
-        let at = self.engine.get_data().address.into();
-        self.engine.mem_read(at, &mut instruction).is_ok()
-            && u16::from_le_bytes(instruction) == WAIT_FOR_EVENT
+        half_word(&self.engine, self.engine.get_data().address) == WAIT_FOR_EVENT
     }
 
     /// Where the last instruction was.
@@ -246,8 +254,8 @@ impl Context {
     }
 }
 
-/// Counts an instruction, or stops before it.
-fn before_instruction(engine: &mut Unicorn<'_, Context>, address: u64) {
+/// Counts an instruction and those that were skipped before it, or stops before it.
+fn before_instruction(engine: &mut Unicorn<'_, Context>, address: u64, size: u32) {
     let unmasked = engine.get_data().masked && {
         let masks = masks(engine);
         engine.get_data().board.system.exceptions.next(masks).is_some()
@@ -259,17 +267,38 @@ fn before_instruction(engine: &mut Unicorn<'_, Context>, address: u64) {
         let _ = engine.emu_stop();
         return;
     }
+    let address = address as u32;
+    if !context.trail.is_next(address) {
+        let mut trail = context.trail;
+        let skipped = trail.skip(address, |at| half_word(engine, at));
+        let context = engine.get_data_mut();
+        context.trail = trail;
+        context.board.now += skipped;
+    }
+    let context = engine.get_data_mut();
+    context.trail.push(address, size);
     context.board.now += 1;
-    context.address = address as u32;
+    context.address = address;
+}
+
+/// Half a word of the program; 0 where there is none.
+fn half_word(engine: &Unicorn<'_, Context>, address: u32) -> u16 {
+    let mut bytes = [0; 2];
+    match engine.mem_read(address.into(), &mut bytes) {
+        Ok(()) => u16::from_le_bytes(bytes),
+        Err(_) => 0,
+    }
 }
 
 /// What the engine calls an interrupt: the core wants something that is done outside.
 fn interrupted(engine: &mut Unicorn<'_, Context>, number: u32) {
-    let halt = if number == RETURN_FROM_EXCEPTION {
-        let word = engine.reg_read(RegisterARM::PC).unwrap_or(0);
-        Halt::Returning(word as u32)
-    } else {
-        Halt::Invalid
+    let halt = match number {
+        BREAKPOINT => Halt::Breakpoint,
+        RETURN_FROM_EXCEPTION => {
+            let word = engine.reg_read(RegisterARM::PC).unwrap_or(0);
+            Halt::Returning(word as u32)
+        }
+        _ => Halt::Invalid,
     };
     engine.get_data_mut().halt = Some(halt);
     // Fails only where the engine does not run.

@@ -153,12 +153,7 @@ impl Guest {
     }
 
     /// What an operation returns; `block` is what the program has in memory for it.
-    fn answer(
-        &mut self,
-        operation: u32,
-        block: [u32; 3],
-        address: u32,
-    ) -> Result<u32, CallError> {
+    fn answer(&mut self, operation: u32, block: [u32; 3], address: u32) -> Result<u32, CallError> {
         let malformed = CallError::Malformed { operation, block };
         let [first, second, third] = block;
         let result = match operation {
