@@ -222,8 +222,11 @@ pub static STM32F405: Chip = Chip {
 
 /// What QEMU calls `netduinoplus2`: the same chip on a board that nothing is wired to, of which only
 /// TIM2 is modelled. As there, it counts without being clocked.
-pub static NETDUINO_PLUS_2: Chip =
-    Chip { map: &[always(0x4000_0000, "TIM2", Unit::FreeClock)], ..STM32F405 };
+pub static NETDUINO_PLUS_2: Chip = Chip {
+    name: "netduinoplus2",
+    map: &[always(0x4000_0000, "TIM2", Unit::FreeClock)],
+    ..STM32F405
+};
 
 impl Chip {
     /// All of them.

@@ -2,6 +2,7 @@
 //! renders, and stops when it must.
 
 mod bench;
+mod corpus;
 mod device;
 mod scenes;
 mod start;
