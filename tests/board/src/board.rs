@@ -95,6 +95,8 @@ pub struct Board {
     pub meter: Meter,
     /// Samples so far: updates of the pacing timer.
     pub samples: u64,
+    /// A register on which the bus gives an error, as of a broken peripheral.
+    pub broken: Option<u32>,
     /// What happened, if somebody wants to know.
     pub events: Option<Vec<(u64, Event)>>,
     pub(crate) stopped: Option<NotModelled>,
@@ -107,8 +109,6 @@ pub struct Board {
     configuration: Plain,
     debug: Plain,
     ports: Vec<Pins>,
-    /// Addresses on which the bus gives an error, as from a broken peripheral.
-    pub(crate) broken: Option<u32>,
     pub(crate) bus_error: Option<u32>,
     seen: (Option<u16>, Level),
 }
@@ -127,6 +127,7 @@ impl Board {
             device,
             meter: Meter::default(),
             samples: 0,
+            broken: None,
             events: None,
             stopped: None,
             chip,
@@ -137,7 +138,6 @@ impl Board {
             configuration: (chip.configuration)(),
             debug: Plain::new(DEBUG),
             ports: (0..9).map(chip.ports).collect(),
-            broken: None,
             bus_error: None,
             seen: (None, Level::Floating),
         }
@@ -156,6 +156,7 @@ impl Board {
             now: self.now,
             meter: self.meter,
             samples: self.samples,
+            broken: self.broken,
             events: self.events.take(),
             clock: self.clock.after_reset(cause),
             seen: self.seen,

@@ -38,4 +38,14 @@ impl Image {
         let symbol = file.symbols().find(|symbol| symbol.name() == Ok(name))?;
         u32::try_from(symbol.address()).ok()
     }
+
+    /// Address and size of the one symbol whose mangled name ends so.
+    pub fn symbol_ending(&self, end: &str) -> Option<(u32, u32)> {
+        let file = object::File::parse(self.file.as_slice()).ok()?;
+        let ends =
+            |symbol: &object::Symbol<'_, '_>| symbol.name().is_ok_and(|name| name.ends_with(end));
+        let mut symbols = file.symbols().filter(ends);
+        let symbol = symbols.next().filter(|_| symbols.next().is_none())?;
+        Some((u32::try_from(symbol.address()).ok()?, u32::try_from(symbol.size()).ok()?))
+    }
 }

@@ -41,9 +41,10 @@ pub enum Trouble {
         /// Where.
         address: u32,
     },
-    /// The core is locked up: a fault where none can be served.
+    /// The core is locked up: a fault where none can be served, and no watchdog to reset it.
     #[error(
-        "the core is locked up by a fault within a fault; instruction {now} at {address:#010x}"
+        "the core is locked up by a fault within a fault, and there is no watchdog; \
+         instruction {now} at {address:#010x}"
     )]
     LockedUp {
         /// When.
@@ -58,6 +59,12 @@ pub enum Trouble {
         now: u64,
         /// Where.
         address: u32,
+    },
+    /// The clock stands still, and there is no watchdog.
+    #[error("the core's clock has stopped, and there is no watchdog; instruction {now}")]
+    NoClock {
+        /// When.
+        now: u64,
     },
     /// What was waited for did not come.
     #[error("{what} has not happened within {instructions} instructions")]
@@ -103,6 +110,10 @@ pub struct Machine {
     core: Processor,
     image: Image,
     waiting: bool,
+    /// A fault where none can be served: nothing is executed until a reset.
+    locked_up: bool,
+    /// An exception that is served from elsewhere than where the vector table says.
+    diverted: Option<(Number, u32)>,
     resets: Vec<(u64, Cause)>,
     log: Vec<u8>,
     /// Whether a debugger is connected, which gets the program's breakpoints.
@@ -123,6 +134,18 @@ impl Machine {
         let file = std::fs::read(elf).map_err(|source| BootError::File { path: path(), source })?;
         let image =
             Image::of_elf(file).map_err(|source| BootError::Image { path: path(), source })?;
+        Self::power_on(image, chip, device)
+    }
+
+    /// The same with a program that is at hand.
+    ///
+    /// # Errors
+    /// Where it is not for the chip.
+    pub fn power_on(
+        image: Image,
+        chip: &'static Chip,
+        device: Box<dyn Device + Send>,
+    ) -> Result<Self, BootError> {
         let mut core = Processor::new(Board::new(chip, device));
         for (address, bytes) in &image.pieces {
             if !core.set_memory(*address, bytes) {
@@ -133,6 +156,8 @@ impl Machine {
             core,
             image,
             waiting: false,
+            locked_up: false,
+            diverted: None,
             resets: Vec::new(),
             log: Vec::new(),
             debugged: false,
@@ -164,6 +189,13 @@ impl Machine {
     /// Resets so far, with their times.
     pub fn resets(&self) -> &[(u64, Cause)] {
         &self.resets
+    }
+
+    /// Has an exception served at another address from now on, or again where the vector table
+    /// says; gives what the table says.
+    pub fn divert(&mut self, number: Number, to: Option<u32>) -> u32 {
+        self.diverted = to.map(|address| (number, address));
+        self.vector(number.into())
     }
 
     /// Runs for so many instructions.
@@ -220,6 +252,9 @@ impl Machine {
 
     /// From one event to the next, at most up to a time.
     fn step(&mut self, end: u64) -> Result<(), Trouble> {
+        if self.core.board().clock.has_stopped() {
+            return self.stand_still();
+        }
         if self.core.board_mut().advance() {
             self.reset(Cause::Watchdog);
         }
@@ -236,6 +271,9 @@ impl Machine {
             self.core.set_register(RegisterARM::PC, at | 1);
             self.fault(FaultStatus::Data, address)?;
         }
+        if self.locked_up {
+            return self.wait(end);
+        }
         let masks = self.core.masks();
         let exceptions = &self.core.board().system.exceptions;
         if let Some(number) = exceptions.next(masks) {
@@ -244,12 +282,10 @@ impl Machine {
         } else if self.waiting && exceptions.wakes(masks) {
             self.waiting = false;
         }
-        let until = end.min(self.core.board().due());
         if self.waiting {
-            let board = self.core.board_mut();
-            board.now = board.now.max(until);
-            return Ok(());
+            return self.wait(end);
         }
+        let until = end.min(self.core.board().due());
         let masked = self.core.board().system.exceptions.any_pending();
         match self.core.run(until, masked) {
             Halt::Attention => {}
@@ -269,11 +305,34 @@ impl Machine {
         Ok(())
     }
 
+    /// Time passes up to the next event, and no instruction is executed.
+    fn wait(&mut self, end: u64) -> Result<(), Trouble> {
+        let board = self.core.board_mut();
+        board.now = board.now.max(end.min(board.due()));
+        Ok(())
+    }
+
+    /// The clock of the core and of all that it paces stands still. The watchdog has its own.
+    fn stand_still(&mut self) -> Result<(), Trouble> {
+        let board = self.core.board_mut();
+        let Some(due) = board.watchdog.due() else {
+            return Err(Trouble::NoClock { now: board.now });
+        };
+        board.now = due;
+        self.reset(Cause::Watchdog);
+        Ok(())
+    }
+
     /// A fault at the instruction where the core stands.
     fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), Trouble> {
         let masks = self.core.masks();
         let board = self.core.board_mut();
         if !board.system.exceptions.can_fault(masks) {
+            // The one way out that there is.
+            if board.watchdog.due().is_some() {
+                self.locked_up = true;
+                return Ok(());
+            }
             return Err(Trouble::LockedUp { now: board.now, address: self.core.last_address() });
         }
         board.system.fault(status, address);
@@ -291,7 +350,7 @@ impl Machine {
         self.core.set_register(RegisterARM::MSP, stack);
         self.core.set_register(RegisterARM::LR, u32::MAX);
         self.core.set_register(RegisterARM::PC, entry);
-        self.waiting = false;
+        (self.waiting, self.locked_up) = (false, false);
     }
 
     fn reset(&mut self, cause: Cause) {
@@ -343,7 +402,10 @@ impl Machine {
         core.set_register(RegisterARM::MSP, frame);
         core.set_register(RegisterARM::LR, word);
         core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
-        let vector = self.vector(number.into());
+        let vector = match self.diverted {
+            Some((diverted, address)) if diverted == number => address | 1,
+            _ => self.vector(number.into()),
+        };
         self.core.set_register(RegisterARM::PC, vector);
     }
 

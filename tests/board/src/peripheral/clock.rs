@@ -50,15 +50,15 @@ pub struct Clock {
     layout: &'static Layout,
     values: BTreeMap<u32, u32>,
     crystal: u64,
-    /// Whether the crystal starts when it is switched on.
-    pub crystal_starts: bool,
+    /// Whether the crystal runs when it is switched on.
+    pub crystal_runs: bool,
 }
 
 impl Clock {
     /// Out of reset, with a crystal of so many Hz.
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
         let values = layout.registers.iter().map(|&(offset, value, _)| (offset, value)).collect();
-        let mut clock = Self { layout, values, crystal, crystal_starts: true };
+        let mut clock = Self { layout, values, crystal, crystal_runs: true };
         clock.add_cause(cause);
         clock
     }
@@ -72,15 +72,13 @@ impl Clock {
     #[must_use]
     pub fn after_reset(&self, cause: Cause) -> Self {
         let causes = self.get(self.layout.causes) & CAUSES;
-        let mut clock = Self {
-            crystal_starts: self.crystal_starts,
-            ..Self::new(self.layout, self.crystal, cause)
-        };
+        let mut clock =
+            Self { crystal_runs: self.crystal_runs, ..Self::new(self.layout, self.crystal, cause) };
         *clock.values.entry(self.layout.causes).or_default() |= causes;
         clock
     }
 
-    /// The core's clock in Hz.
+    /// The core's clock in Hz; 0 where its source does not run.
     pub fn core(&self) -> u64 {
         let hpre = self.get(self.layout.choice) >> 4 & 0xF;
         let divider = match hpre {
@@ -88,8 +86,14 @@ impl Clock {
             8..12 => 1 << (hpre - 7),
             _ => 1 << (hpre - 6),
         };
-        let system = (self.layout.system)(&|offset| self.get(offset), self.crystal);
+        let crystal = if self.crystal_runs { self.crystal } else { 0 };
+        let system = (self.layout.system)(&|offset| self.get(offset), crystal);
         system.unwrap_or(0) / divider
+    }
+
+    /// Whether what the core's clock comes from does not run any longer.
+    pub fn has_stopped(&self) -> bool {
+        !self.crystal_runs && self.core() == 0
     }
 
     /// Core clocks for one of the slow peripheral bus.
@@ -158,7 +162,7 @@ impl Clock {
     /// A register with its bits that say what is ready.
     fn with_ready(&self, offset: u32, value: u32) -> u32 {
         self.switches(offset).fold(value, |value, (on, ready)| {
-            let starts = (offset, on, ready) != CRYSTAL || self.crystal_starts;
+            let starts = (offset, on, ready) != CRYSTAL || self.crystal_runs;
             if value & on != 0 && starts { value | ready } else { value & !ready }
         })
     }

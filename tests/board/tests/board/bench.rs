@@ -5,16 +5,20 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::thread;
 
+use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
 use analysis::program::NAMES;
 use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
 use firmware::dac::DacCode;
-use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, ToBoard};
+use firmware::wire::message::{
+    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Remembered, Status, ToBoard,
+};
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, Still};
 use virtual_board::machine::Machine;
+use virtual_board::peripheral::pins::Level;
 
 use crate::device::Pins;
 
@@ -112,6 +116,39 @@ impl Bench {
         self.machine.board().events.as_deref().unwrap()
     }
 
+    /// When the amplifier's line was first not high from a time on; none where it still is.
+    pub fn amplifier_off(&self, from: u64) -> Option<u64> {
+        let off = |(at, event): &(u64, Event)| match event {
+            Event::Amplifier(level) if *level != Level::High && *at >= from => Some(*at),
+            _ => None,
+        };
+        self.events().iter().find_map(off)
+    }
+
+    /// When the amplifier's line was first high, if it ever was.
+    pub fn amplifier_on(&self) -> Option<u64> {
+        let on =
+            |(at, event): &(u64, Event)| (*event == Event::Amplifier(Level::High)).then_some(*at);
+        self.events().iter().find_map(on)
+    }
+
+    /// Address and size of what a program has under a name, of which this is the end.
+    pub fn symbol(&self, end: &str) -> (u32, u32) {
+        self.machine.image().symbol_ending(end).unwrap_or_else(|| panic!("there is no {end}"))
+    }
+
+    /// Address of the words that keep a fault's record.
+    pub fn record(&self) -> u32 {
+        self.symbol("8retained6MEMORY").0
+    }
+
+    /// Flips bits of a word in memory.
+    pub fn flip(&mut self, address: u32, bits: u32) {
+        let core = self.machine.core_mut();
+        let word = core.word(address).unwrap() ^ bits;
+        assert!(core.set_memory(address, &word.to_le_bytes()));
+    }
+
     /// Says something to the board.
     pub fn say(&mut self, message: &ToBoard) {
         let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
@@ -141,10 +178,43 @@ impl Bench {
     }
 
     /// How the board says that it is.
-    pub fn status(&mut self) -> firmware::wire::message::Status {
+    pub fn status(&mut self) -> Status {
         self.ask(&ToBoard::Status, |message| match message {
             Message::Status(status) => Some(status),
             _ => None,
         })
+    }
+
+    /// Asks for the amplifier to be switched on.
+    pub fn arm(&mut self) -> Outcome<String> {
+        const ID: u16 = 7;
+        self.ask(&ToBoard::Arm { id: ID }, |message| match message {
+            Message::Answer { id: ID, outcome } => Some(outcome),
+            _ => None,
+        })
+    }
+
+    /// What the board says that stopped it before it was last started.
+    pub fn remembered(&mut self) -> Option<Remembered> {
+        // What comes behind it tells that there is none.
+        let mut remembered = None;
+        self.say(&ToBoard::Hello);
+        for _ in 0..20 {
+            self.run(1);
+            for message in self.hear() {
+                match message {
+                    Message::Remembered(record) => remembered = Some(record),
+                    Message::Board(_) => return remembered,
+                    _ => {}
+                }
+            }
+        }
+        panic!("the board does not greet")
+    }
+
+    /// The log so far, as lines.
+    pub fn log(&mut self) -> Vec<String> {
+        let decoder = LogDecoder::of_program(&self.machine.image().file);
+        decoder.decode(self.machine.log())
     }
 }

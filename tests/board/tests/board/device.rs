@@ -28,12 +28,20 @@ pub struct Pins {
     pub samples: Vec<Sample>,
     /// The encoder's position in counts.
     pub count: i32,
+    /// Whether the encoder is plugged in.
+    pub plugged: bool,
 }
 
 impl Pins {
     /// A device at rest at zero.
     pub fn of(device: impl Device + Send + 'static) -> Self {
-        Self { device: Box::new(device), turns: VecDeque::new(), samples: Vec::new(), count: 0 }
+        Self {
+            device: Box::new(device),
+            turns: VecDeque::new(),
+            samples: Vec::new(),
+            count: 0,
+            plugged: true,
+        }
     }
 }
 
@@ -41,6 +49,7 @@ impl Device for Pins {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         let turned = self.device.sample(code, amplifier);
         let turned = self.turns.pop_front().unwrap_or(turned);
+        let turned = if self.plugged { turned } else { 0 };
         self.count += turned;
         self.samples.push(Sample { code, amplifier, count: self.count });
         turned

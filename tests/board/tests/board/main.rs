@@ -4,6 +4,9 @@
 mod bench;
 mod corpus;
 mod device;
+mod faults;
+mod harmless;
 mod scenes;
 mod start;
+mod stub;
 mod timing;

@@ -1,0 +1,304 @@
+//! Every fault, provoked from outside, and how soon the motor is without torque.
+
+use std::sync::Mutex;
+
+use firmware::cycle::State;
+use firmware::fault::Fault;
+use firmware::wire::message::{FaultCode, Outcome};
+use unicorn_engine::RegisterARM;
+use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
+use virtual_board::core::exceptions::FIRST_INTERRUPT;
+
+use crate::bench::{Bench, MID_SCALE, on_both};
+use crate::stub::{Masks, hold_up};
+
+/// Counts into the damper wall, so that there is a torque that has to go.
+const INTO: i32 = 300;
+/// The most counts that the device moves in a tick: 100 rad/s for a thousandth of a second at 61,440
+/// counts a turn, and an edge.
+const LARGEST_STEP: u32 = 978;
+/// Periods after which the watchdog resets the board: eight, and two counts of its clock of 8 kHz.
+const PATIENCE: f64 = 8.25;
+/// Periods for which interrupts are masked.
+const MASKED: u64 = 3;
+
+/// A way to provoke a fault.
+struct Case {
+    fault: &'static str,
+    cause: &'static str,
+    program: &'static str,
+    /// Periods from the cause within which the amplifier is off.
+    bound: f64,
+    /// Provokes it, and says when.
+    provoke: fn(&mut Bench) -> u64,
+    /// Whether the watchdog has to reset the board, which then says what it was.
+    resets: bool,
+    /// The fault, where its numbers are known.
+    expected: fn(&Bench) -> Option<Fault>,
+}
+
+const CASES: &[Case] = &[
+    Case {
+        fault: "encoder-jump",
+        cause: "the encoder jumps by more than the device's largest speed",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| {
+            bench.pins().turns.push_back(LARGEST_STEP as i32 + 1);
+            bench.run_to_update();
+            bench.machine.board().now
+        },
+        resets: false,
+        expected: |_| Some(Fault::EncoderJump { counts: LARGEST_STEP + 1, largest: LARGEST_STEP }),
+    },
+    Case {
+        fault: "missed-tick",
+        cause: "all interrupts are masked for three periods",
+        program: "damper_wall",
+        bound: MASKED as f64 + 1.0,
+        provoke: |bench| {
+            let instructions = MASKED * bench.period();
+            hold_up(bench, instructions, Masks::All)
+        },
+        resets: false,
+        expected: |_| Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
+    },
+    Case {
+        fault: "not-a-number",
+        cause: "a coefficient in memory is no number",
+        // A wall with a face takes what is no number for a place outside of it, where there is no
+        // torque: see `harmless`.
+        program: "delayed_spring",
+        bound: 1.0,
+        provoke: |bench| {
+            let coefficient = coefficient(bench);
+            assert!(bench.machine.core_mut().set_memory(coefficient, &f32::NAN.to_le_bytes()));
+            bench.machine.board().now
+        },
+        resets: false,
+        expected: |_| Some(Fault::NotANumber),
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the servo's interrupt is disabled",
+        program: "damper_wall",
+        bound: PATIENCE,
+        provoke: |bench| {
+            let board = bench.machine.board_mut();
+            board.system.exceptions.enable(FIRST_INTERRUPT + PACER_INTERRUPT, false);
+            board.now
+        },
+        resets: true,
+        expected: |_| Some(Fault::Watchdog),
+    },
+    Case {
+        fault: "watchdog",
+        cause: "all interrupts are masked for ever",
+        program: "damper_wall",
+        bound: PATIENCE,
+        provoke: |bench| {
+            let instructions = 100 * bench.period();
+            hold_up(bench, instructions, Masks::All)
+        },
+        resets: true,
+        expected: |_| Some(Fault::Watchdog),
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the crystal stops, and with it core and timers",
+        program: "damper_wall",
+        bound: PATIENCE,
+        provoke: |bench| {
+            let board = bench.machine.board_mut();
+            board.clock.crystal_runs = false;
+            board.now
+        },
+        resets: true,
+        expected: |_| Some(Fault::Watchdog),
+    },
+    Case {
+        fault: "hard-fault",
+        cause: "the bus has an error at the encoder's counter",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| breaks_in_a_tick(bench, Register::Encoder),
+        resets: true,
+        expected: |_| None,
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the bus has an error at the converter's register, also for the fault's handler",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| breaks_in_a_tick(bench, Register::Converter),
+        resets: true,
+        expected: |_| Some(Fault::Watchdog),
+    },
+    Case {
+        fault: "panic",
+        cause: "the core is sent into a panic of line 12, column 34",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| {
+            // The place in the source that a panic is told, as the compiler lays it out: a file's
+            // name, line and column.
+            let place = 0x2000_0000 + bench.machine.board().chip().ram - 16;
+            let (panic, _) = bench.symbol("9panicking18panic_bounds_check");
+            let core = bench.machine.core_mut();
+            let words = [0_u32, 0, 12, 34].map(u32::to_le_bytes).concat();
+            assert!(core.set_memory(place, &words));
+            for register in [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2] {
+                core.set_register(register, place);
+            }
+            core.set_register(RegisterARM::PC, panic | 1);
+            bench.machine.board().now
+        },
+        resets: true,
+        expected: |_| Some(Fault::Panic { line: 12, column: 34 }),
+    },
+];
+
+/// A register that a tick uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Register {
+    /// The encoder's counter.
+    Encoder,
+    /// The converter's, where codes are written.
+    Converter,
+}
+
+impl Register {
+    /// Its address on a chip.
+    pub fn address(self, chip: &Chip) -> u32 {
+        let (unit, offset) = match self {
+            Self::Encoder => (Unit::Encoder, 0x24),
+            Self::Converter => (Unit::Converter, 0x08),
+        };
+        chip.map.iter().find(|place| place.unit == unit).unwrap().base + offset
+    }
+}
+
+/// A register that answers with an error from the next update on. Gives when that is.
+fn breaks_in_a_tick(bench: &mut Bench, register: Register) -> u64 {
+    bench.run_to_update();
+    let board = bench.machine.board_mut();
+    board.broken = Some(register.address(board.chip()));
+    board.now
+}
+
+/// Where the servo has the angle of a count, as a number in single precision.
+pub fn coefficient(bench: &mut Bench) -> u32 {
+    let (place, size) = bench.symbol("5PLACE");
+    let angle = std::f32::consts::TAU / 61_440.0;
+    let core = bench.machine.core_mut();
+    let is_it = |address: &u32| {
+        let value = f32::from_bits(core.word(*address).unwrap());
+        (value / angle - 1.0).abs() < 1e-6
+    };
+    let found: Vec<_> = (place..place + size).step_by(4).filter(is_it).collect();
+    assert_eq!(found.len(), 1, "the coefficient is found once");
+    found[0]
+}
+
+impl Case {
+    /// Provokes it on a running servo; gives the periods until the amplifier was off.
+    fn run(&self, chip: &'static Chip) -> f64 {
+        let Self { fault, cause, bound, .. } = *self;
+        let what = format!("{}, {fault}: {cause}", chip.name);
+        let mut bench = Bench::running(chip, self.program);
+        bench.pins().turns.push_back(INTO);
+        bench.run(20);
+        assert_ne!(bench.pins().samples.last().unwrap().code, Some(MID_SCALE), "{what}");
+        let period = bench.period();
+        let began = (self.provoke)(&mut bench);
+        while bench.machine.board().now < began + (PATIENCE.ceil() as u64 + 2) * period {
+            bench.run_for(1000);
+            if !bench.machine.resets().is_empty() {
+                // What was broken is repaired before it is used again.
+                let board = bench.machine.board_mut();
+                (board.broken, board.clock.crystal_runs) = (None, true);
+            }
+        }
+        let off = bench.amplifier_off(began).unwrap_or_else(|| panic!("{what}: it stays on"));
+        let periods = (off - began) as f64 / period as f64;
+        assert!(periods <= bound, "{what}: {periods} periods");
+        let told = self.check_told(&mut bench, &what);
+        check_torque(&bench, off, &what);
+        // Somebody arms again, where what was wrong has gone.
+        let persists = told == Fault::NotANumber;
+        match bench.arm() {
+            Outcome::Done => assert!(!persists, "{what}"),
+            Outcome::Refused(sentence) => {
+                assert!(persists && sentence.contains(&told.to_string()), "{what}: {sentence}");
+            }
+        }
+        periods
+    }
+
+    /// What the board says of it.
+    fn check_told(&self, bench: &mut Bench, what: &str) -> Fault {
+        assert_eq!(!bench.machine.resets().is_empty(), self.resets, "{what}");
+        bench.run(50);
+        let status = bench.status();
+        let told = status.fault.and_then(FaultCode::fault).unwrap_or_else(|| panic!("{what}"));
+        assert_eq!(told.as_str(), self.fault, "{what}");
+        if let Some(expected) = (self.expected)(bench) {
+            assert_eq!(told, expected, "{what}");
+        }
+        let state = if self.resets { State::Disarmed } else { State::Faulted };
+        assert_eq!(status.state, state, "{what}");
+        let remembered = bench.remembered().and_then(|record| record.fault.fault());
+        assert_eq!(remembered, self.resets.then_some(told), "{what}");
+        let log = bench.log();
+        let says = |line: &String| line.contains("not armed") && line.contains(&told.to_string());
+        assert_eq!(log.iter().any(says), self.resets, "{what}: {log:?}");
+        told
+    }
+}
+
+/// From the update behind the one in which the amplifier went off, there is no torque.
+fn check_torque(bench: &Bench, off: u64, what: &str) {
+    use virtual_board::board::Event;
+    let later = |&&(at, _): &&(u64, Event)| at > off + bench.period();
+    for (at, event) in bench.events().iter().filter(later) {
+        let harmless = match event {
+            // As the driver switches it on, with the amplifier off.
+            Event::Torque(code) => matches!(code, None | Some(MID_SCALE | 0)),
+            Event::Amplifier(level) => *level != virtual_board::peripheral::pins::Level::High,
+        };
+        assert!(harmless, "{what}: {event:?} at {at}");
+    }
+    assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{what}");
+}
+
+/// The table of what was measured, in periods, rounded up to hundredths: instructions of a tick, of
+/// which a period has 170,000, vary with the compiler.
+fn table(measured: &[[f64; 2]]) -> String {
+    let mut table = format!(
+        "| fault | provoked by | promised | {} | {} |\n|---|---|---|---|---|\n",
+        Chip::ALL[0].name,
+        Chip::ALL[1].name
+    );
+    for (case, periods) in CASES.iter().zip(measured) {
+        let [g4, f405] = periods.map(|periods| (periods * 100.0).ceil() / 100.0);
+        let Case { fault, cause, bound, .. } = case;
+        table += &format!("| {fault} | {cause} | {bound} | {g4:.2} | {f405:.2} |\n");
+    }
+    table
+}
+
+#[test]
+fn every_fault_takes_the_torque_away_in_time_and_is_told() {
+    let measured = Chip::ALL.map(|_| Mutex::new(Vec::new()));
+    on_both(|chip| {
+        let mine = Chip::ALL.iter().position(|other| other.name == chip.name).unwrap();
+        for case in CASES {
+            let periods = case.run(chip);
+            measured[mine].lock().unwrap().push(periods);
+        }
+    });
+    let [g4, f405] = measured.map(|periods| periods.into_inner().unwrap());
+    let both: Vec<_> = g4.into_iter().zip(f405).map(|(a, b)| [a, b]).collect();
+    let (table, kept) = (table(&both), include_str!("../../faults.md"));
+    assert!(kept.ends_with(&table), "faults.md has another table than\n{table}");
+}

@@ -1,0 +1,192 @@
+//! What is no fault, or cannot be known to be one: nothing unsafe comes of it.
+
+use analysis::program::Program;
+use firmware::cycle::State;
+use firmware::fault::{Fault, Retained};
+use firmware::wire::message::FaultCode;
+use unicorn_engine::RegisterARM;
+use virtual_board::chip::Chip;
+use virtual_board::device::Still;
+use virtual_board::machine::Trouble;
+use virtual_board::peripheral::pins::Level;
+
+use crate::bench::{Bench, MID_SCALE, on_both};
+use crate::device::InHand;
+use crate::faults::{Register, coefficient};
+use crate::stub::{Masks, hold_up};
+
+/// Counts into the damper wall, and the codes of its torque limit of 1 N m.
+const INTO: i32 = 300;
+const LIMIT: u16 = 1024;
+
+/// A servo that pushes, and goes on to do so.
+fn pushing(chip: &'static Chip) -> Bench {
+    let mut bench = Bench::running(chip, "damper_wall");
+    bench.pins().turns.push_back(INTO);
+    bench.run(20);
+    bench
+}
+
+/// Nothing was missed, and nothing has stopped the servo.
+fn assert_running(bench: &mut Bench, what: &str) {
+    let status = bench.status();
+    assert_eq!((status.state, status.fault), (State::Running, None), "{what}");
+    assert_eq!(status.missed, 0, "{what}");
+}
+
+#[test]
+fn a_slow_interrupt_below_the_servo_s_makes_no_tick_late() {
+    on_both(|chip| {
+        let mut bench = pushing(chip);
+        let slack = bench.status().worst_slack;
+        let period = bench.period();
+        let (began, before) = (bench.machine.board().now, bench.machine.board().samples);
+        hold_up(&mut bench, 5 * period, Masks::None);
+        bench.run_for(5 * period);
+        let ticks = bench.machine.board().meter.interrupt().count;
+        assert_eq!(ticks, bench.machine.board().samples, "{}", chip.name);
+        assert!(
+            bench.machine.board().samples - before >= (bench.machine.board().now - began) / period
+        );
+        assert_running(&mut bench, chip.name);
+        // Each began with the first instruction of its period, as before.
+        let slower = slack - bench.status().worst_slack;
+        assert!(slower < 100, "{}: {slower} counts less of a period are left", chip.name);
+    });
+}
+
+#[test]
+fn what_masks_all_but_the_servo_makes_no_tick_late() {
+    on_both(|chip| {
+        let mut bench = pushing(chip);
+        bench.machine.core_mut().set_register(RegisterARM::BASEPRI, 0x10);
+        bench.run(5);
+        bench.machine.core_mut().set_register(RegisterARM::BASEPRI, 0);
+        assert_running(&mut bench, chip.name);
+    });
+}
+
+#[test]
+fn a_tick_that_is_held_up_and_still_in_time_is_no_fault() {
+    on_both(|chip| {
+        let mut bench = pushing(chip);
+        let (period, slack) = (bench.period(), bench.status().worst_slack);
+        bench.run_to_update();
+        bench.run_for(period / 2);
+        // Through the next update, and up to nine tenths of the period behind it.
+        hold_up(&mut bench, period * 14 / 10, Masks::All);
+        bench.run(5);
+        assert_running(&mut bench, chip.name);
+        let less = bench.status().worst_slack as f64 / f64::from(slack);
+        assert!((0.05..0.15).contains(&less), "{}: {less} of the slack is left", chip.name);
+    });
+}
+
+/// A count that stands still is a device that stands still: nobody can tell.
+#[test]
+fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
+    on_both(|chip| {
+        let mut bench =
+            Bench::boot(chip, "damper_wall", InHand::of(Program::find("damper_wall").unwrap()));
+        // In the wall, where the hand rests.
+        bench.run(1700);
+        bench.pins().plugged = false;
+        // Time for the wall to settle, and for the hand to leave it, come again and let go.
+        bench.run(3000);
+        let samples = bench.pins().samples.clone();
+        let last = samples.last().unwrap().code.unwrap();
+        let is_constant = samples[2200..].iter().all(|sample| sample.code == Some(last));
+        assert!(is_constant && last.abs_diff(MID_SCALE) <= LIMIT, "{}: {last}", chip.name);
+        assert_ne!(last, MID_SCALE, "{}: it was in the wall", chip.name);
+        assert_running(&mut bench, chip.name);
+    });
+}
+
+#[test]
+fn a_crystal_that_does_not_start_leaves_every_pin_alone() {
+    on_both(|chip| {
+        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        bench.machine.board_mut().clock.crystal_runs = false;
+        // Ten times what it takes to be ready otherwise.
+        bench.run_for(3_000_000);
+        assert!(bench.events().is_empty(), "{}: {:?}", chip.name, bench.events());
+        assert!(!bench.machine.board().pacer.runs(), "{}", chip.name);
+    });
+}
+
+#[test]
+fn a_peripheral_that_is_broken_at_power_on_leaves_the_amplifier_off() {
+    on_both(|chip| {
+        for register in [Register::Encoder, Register::Converter] {
+            let mut bench = Bench::boot(chip, "damper_wall", Still);
+            bench.machine.board_mut().broken = Some(register.address(chip));
+            let end = bench.machine.run_for(3_000_000);
+            let what = format!("{}, {register:?}: {end:?}", chip.name);
+            // The handler of faults wants the converter, too.
+            let locked_up = matches!(end, Err(Trouble::LockedUp { .. }));
+            assert_eq!(locked_up, register == Register::Converter, "{what}");
+            assert_eq!(bench.machine.board().amplifier(), Level::Low, "{what}");
+            assert_eq!(bench.amplifier_on(), None, "{what}");
+        }
+    });
+}
+
+#[test]
+fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
+    on_both(|chip| {
+        for word in 0..=Retained::WORDS {
+            let mut bench = Bench::running(chip, "damper_wall");
+            bench.pins().turns.push_back(10_000);
+            bench.run(2);
+            let record = bench.record();
+            let is_flipped = word < Retained::WORDS;
+            if is_flipped {
+                bench.flip(record + 4 * word as u32, 1 << (4 * word));
+            }
+            bench.machine.board_mut().system.reset_requested = true;
+            bench.run(150);
+            let told = bench.remembered().and_then(|record| record.fault.fault());
+            let was_jump = matches!(told, Some(Fault::EncoderJump { counts: 10_000, .. }));
+            let state = bench.status().state;
+            let expected =
+                if is_flipped { (false, State::Running) } else { (true, State::Disarmed) };
+            assert_eq!((was_jump, state), expected, "{}, word {word}: {told:?}", chip.name);
+            assert_eq!(told.is_some(), was_jump, "{}", chip.name);
+        }
+    });
+}
+
+/// Memory that is another number than it was cannot be told from a number that somebody wanted; but
+/// whatever it is, the limit holds.
+#[test]
+fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
+    on_both(|chip| {
+        for bit in 0..32 {
+            let mut bench = pushing(chip);
+            let coefficient = coefficient(&mut bench);
+            bench.flip(coefficient, 1 << bit);
+            let from = bench.pins().samples.len();
+            bench.run(100);
+            let what = format!("{}, bit {bit}", chip.name);
+            for sample in &bench.pins().samples[from..] {
+                assert!(sample.code.unwrap().abs_diff(MID_SCALE) <= LIMIT, "{what}: {sample:?}");
+            }
+            let status = bench.status();
+            let fault = status.fault.and_then(FaultCode::fault);
+            assert!(matches!(fault, None | Some(Fault::NotANumber)), "{what}: {fault:?}");
+        }
+    });
+}
+
+/// A wall with a face has no torque where it is not known to be entered.
+#[test]
+fn a_position_that_is_no_number_is_outside_of_a_wall() {
+    on_both(|chip| {
+        let mut bench = pushing(chip);
+        let coefficient = coefficient(&mut bench);
+        assert!(bench.machine.core_mut().set_memory(coefficient, &f32::NAN.to_le_bytes()));
+        bench.run(3);
+        assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{}", chip.name);
+        assert_running(&mut bench, chip.name);
+    });
+}
