@@ -15,5 +15,6 @@ mod report;
 mod scene_files;
 mod simulate_program;
 mod simulation_reference;
+mod virtual_board;
 mod wire;
 mod wire_target;

@@ -57,3 +57,14 @@ fn the_scene_of_the_readme_is_the_program_and_its_refusal_the_compilers() {
     std::fs::write(file.path(), block(&readme, "file")).unwrap();
     assert!(judge(file.path()).contains("certified"));
 }
+
+#[test]
+fn what_is_flashed_does_on_a_virtual_board_what_the_readme_shows() {
+    let shown = block(&read(root().join("README.md")), "board");
+    let (command, shown) = shown.split_once('\n').expect("a command");
+    let arguments = command.strip_prefix("$ cargo haptic ").expect("a command of the program");
+    let run = haptic(&arguments.split(' ').collect::<Vec<_>>());
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let printed = String::from_utf8(run.stdout).unwrap();
+    assert_eq!(without_instructions(&printed), without_instructions(shown));
+}

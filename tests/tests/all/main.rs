@@ -18,3 +18,4 @@ mod reference;
 mod remedies;
 mod soundness;
 mod vectors;
+mod virtual_board;
