@@ -2,7 +2,7 @@
 //!
 //! They are drawn with nothing but exact sums, products and halvings, so that every machine draws
 //! the same; their indices are kept beside this file, found in rational arithmetic by the package
-//! `tests`, which checks them (`tests/tests/reference.rs`). The damping that a device has to spare
+//! `tests`, which checks them (`tests/tests/all/reference.rs`). The damping that a device has to spare
 //! is then set beside the index, so that the right verdict is known.
 
 use std::ops::Range;

@@ -1,8 +1,6 @@
 //! The program as the client of the emulated board, over its serial port, while the board's servo
 //! runs in lockstep with a device that is held still.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::io::{BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -12,11 +10,11 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use crate::common::{answer, haptic};
 use analysis::emulator::{Emulator, Report};
 use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use common::{answer, haptic};
 use firmware::board::shown::Moved;
 use firmware::cycle::State;
 use firmware::environment::{DamperWall, OneSided};

@@ -1,8 +1,6 @@
 //! The program as the client of a board that is a thread: `tune`, `scope`, and everything that a
 //! wire may do to them.
 
-mod common;
-
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -10,11 +8,11 @@ use std::process::{Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use crate::common::{answer, haptic, program};
 use analysis::link::{Address, Link};
 use analysis::program::{Program, damper_wall};
 use analysis::rig::Plant;
 use analysis::twin::{Clock, Twin};
-use common::{answer, haptic, program};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;

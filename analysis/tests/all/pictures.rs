@@ -1,11 +1,9 @@
 //! The pictures of the README are what its commands draw. With `PICTURES=overwrite` they become it.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use common::{program, read, root};
+use crate::common::{program, read, root};
 
 /// The commands of the README that draw, each as its arguments.
 fn commands(readme: &str) -> Vec<Vec<String>> {

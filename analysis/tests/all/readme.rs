@@ -1,10 +1,8 @@
 //! What the README shows is what the program prints, and what the repository holds.
 
-mod common;
-
 use std::path::Path;
 
-use common::{answer, haptic, program, read, root};
+use crate::common::{answer, haptic, program, read, root};
 
 /// The fenced block behind `<!-- name -->` in the README.
 fn block(readme: &str, name: &str) -> String {

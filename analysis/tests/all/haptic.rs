@@ -1,11 +1,9 @@
 //! The program as somebody runs it: exit status, standard output, standard error.
 
-mod common;
-
 use std::io::{Read, Write};
 use std::process::{Output, Stdio};
 
-use common::{complaint, haptic_reading as haptic, program};
+use crate::common::{complaint, haptic_reading as haptic, program};
 use serde_json::Value;
 
 const WALL: &str = r#"{"name": "wall", "device": {"inertia": 2.2e-5, "damping": 0.022}, "servo": {"period": 0.001}, "coupling": {"stiffness": 44}, "environment": {"type": "damper-wall", "stiffness": 22, "damping": 0.01, "delay": 1}}"#;
@@ -39,7 +37,7 @@ fn coefficients_are_judged_as_a_format_rounds_them() {
         (answer["verdict"].clone(), answer["message"].as_str().unwrap().to_owned())
     };
     // A coupling that is rounded to be softer leaves less than K T / 2 of a spring needs.
-    let spring = common::WALL
+    let spring = crate::common::WALL
         .replace("damper-wall", "delayed-spring")
         .replace("damping = 0.01\n", "")
         .replace("stiffness = 22.0", "stiffness = 43.99999978");
@@ -63,8 +61,8 @@ fn coefficients_are_judged_as_a_format_rounds_them() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     };
-    refused(common::WALL, "i16f17", &["i16f17", "i8f24"]);
-    let strong = format!("{}[limits]\ntorque = 1.5\n", common::WALL);
+    refused(crate::common::WALL, "i16f17", &["i16f17", "i8f24"]);
+    let strong = format!("{}[limits]\ntorque = 1.5\n", crate::common::WALL);
     refused(&strong, "i1f31", &["limits.torque", "1.5", "Q1.31"]);
 }
 
@@ -72,7 +70,7 @@ fn coefficients_are_judged_as_a_format_rounds_them() {
 #[test]
 fn steps_are_held_against_friction() {
     let judge = |friction: &str, limits: &str| {
-        let scene = common::WALL.replace("[servo]", &format!("{friction}\n[servo]"));
+        let scene = crate::common::WALL.replace("[servo]", &format!("{friction}\n[servo]"));
         let scene = format!("{scene}[limits]\n{limits}\n");
         let output = haptic(&["certify", "--json", "-"], scene.as_bytes());
         let [answer] = &lines(&output)[..] else { panic!("one object") };
@@ -216,7 +214,7 @@ fn a_recording_runs_on_the_host_tick_by_tick() {
     assert_eq!(rows.len(), 200);
     assert_eq!((&rows[199][0], &rows[199][1]), ("199", "995"));
     // Deeper into the wall the motor pushes harder back.
-    assert!(rows[199][4].parse::<u16>().unwrap() < rows[100][4].parse().unwrap());
+    assert!(rows[199][4].parse::<u16>().unwrap() < rows[100][4].parse::<u16>().unwrap());
     std::fs::write(&recording, "time,count\n0,1\n1,many\n").unwrap();
     let said = complaint(haptic(&["run", "damper_wall", "--replay", path], b""));
     assert!(said.contains(":3: column 2, `count`: `many`"), "{said}");

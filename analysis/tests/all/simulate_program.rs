@@ -1,10 +1,8 @@
 //! The commands that say what a scene would do, as programs call them.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{WALL, answer, complaint, haptic, haptic_reading};
+use crate::common::{WALL, answer, complaint, haptic, haptic_reading};
 use serde_json::Value;
 use tempfile::TempDir;
 

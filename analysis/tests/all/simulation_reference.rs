@@ -4,8 +4,7 @@
 //! equations as theory.md has them, in fixed point of 240 places; it shares no code with what it
 //! checks, and its inputs are the exact values of the floats that the simulation is given.
 
-mod reference;
-
+use crate::reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};
 use analysis::chain::{Link, Mass};
 use analysis::device::{Hand, Motion};
 use analysis::simulation::drive::Drive;
@@ -14,7 +13,6 @@ use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};
 
 const SAMPLES: usize = 1000;
 const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };

@@ -1,11 +1,9 @@
 //! A simulated device, measured end to end: the program `identify` on the emulated board, and the
 //! same sweep on this machine.
 
-mod common;
-
 use std::path::Path;
 
-use common::haptic;
+use crate::common::haptic;
 use serde_json::Value;
 
 /// What the scenes' programs are certified for.
@@ -16,7 +14,7 @@ const TICKS: u64 = 52_500;
 fn answer(arguments: &[&str]) -> Value {
     let output = haptic(&[arguments, &["--json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    common::answer(&output)
+    crate::common::answer(&output)
 }
 
 fn number(found: &Value, path: &str) -> f64 {

@@ -1,8 +1,5 @@
 //! What the tests of the program share: a scene, and the program as somebody runs it.
 
-// Each test is a program of its own and has a part of this in use.
-#![allow(dead_code)]
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -2,12 +2,11 @@
 
 #[path = "page/chromium.rs"]
 mod chromium;
-mod common;
 
 use std::path::Path;
 
+use crate::common::{WALL, complaint, haptic};
 use base64::Engine;
-use common::{WALL, complaint, haptic};
 use serde_json::Value;
 
 const MEASURE: &str = include_str!("page/measure.js");

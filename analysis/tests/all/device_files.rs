@@ -1,11 +1,9 @@
 //! Devices in files: what is read, what is refused, and what the program says of them.
 
-mod common;
-
 use std::process::Output;
 
+use crate::common::{answer, complaint, haptic_reading};
 use analysis::file::{self, Format, Purpose};
-use common::{answer, complaint, haptic_reading};
 use serde_json::Value;
 
 const CHAIN: &str = r#"[device]

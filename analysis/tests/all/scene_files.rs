@@ -1,9 +1,7 @@
 //! Scene files: what is read, what is refused and with which words, and that nothing panics.
 
-mod common;
-
+use crate::common::WALL;
 use analysis::file::{self, FileError, Format, SceneFile};
-use common::WALL;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Coupling;
 use proptest::prelude::*;

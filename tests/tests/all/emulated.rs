@@ -29,11 +29,11 @@ use rand_chacha::ChaCha8Rng;
 use tests::vectors;
 
 // The programs' own files: their scenes have no second copy.
-#[path = "../../firmware/src/bin/damper_wall.rs"]
+#[path = "../../../firmware/src/bin/damper_wall.rs"]
 mod damper_wall;
-#[path = "../../firmware/src/bin/delayed_spring.rs"]
+#[path = "../../../firmware/src/bin/delayed_spring.rs"]
 mod delayed_spring;
-#[path = "../../firmware/src/bin/free_mode.rs"]
+#[path = "../../../firmware/src/bin/free_mode.rs"]
 mod free_mode;
 
 /// Ticks of each run.

@@ -1,11 +1,9 @@
 //! `haptic chart` as somebody runs it.
 
-mod common;
-
 use std::path::Path;
 use std::process::Output;
 
-use common::{WALL, program};
+use crate::common::{WALL, program};
 
 fn chart(folder: &Path, arguments: &[&str]) -> Output {
     program(&["chart"]).args(arguments).current_dir(folder).output().unwrap()

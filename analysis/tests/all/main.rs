@@ -1,0 +1,19 @@
+//! The tests of the program `haptic` and of what it is made of, in one program: it links once, and while
+//! some of them wait for a compiler or an emulator others compute. `cargo test -p analysis --test all NAME::`
+//! runs those of one file.
+
+mod charts;
+mod closed_loop;
+mod common;
+mod device_files;
+mod haptic;
+mod identify_target;
+mod pictures;
+mod readme;
+mod reference;
+mod report;
+mod scene_files;
+mod simulate_program;
+mod simulation_reference;
+mod wire;
+mod wire_target;

@@ -1,0 +1,20 @@
+//! The tests of the whole, in one program: it links once, and while some of them wait for a compiler or
+//! an emulator others compute. `cargo test -p tests --test all NAME::` runs those of one file.
+
+mod bits;
+mod boards;
+mod closed_forms;
+mod contact;
+mod continuous;
+mod decision;
+mod emulated;
+mod every_float;
+mod failures;
+mod foreign;
+mod interval;
+mod live;
+mod random;
+mod reference;
+mod remedies;
+mod soundness;
+mod vectors;
