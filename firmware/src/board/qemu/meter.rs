@@ -26,7 +26,8 @@ impl Scale {
     /// Measures a loop of known length, and nothing at all.
     pub fn calibrate() -> Self {
         let (short, long) = (loop_time(LOOP), loop_time(2 * LOOP));
-        let per_instruction = (long.wrapping_sub(short) / (2 * LOOP)).max(1);
+        // To the nearest: around one of the loops there may be an instruction more.
+        let per_instruction = ((long.wrapping_sub(short) + LOOP) / (2 * LOOP)).max(1);
         let empty = measure(0, |nothing| (nothing, nothing));
         let around = return_time() / per_instruction - 1;
         Self { per_instruction, overhead: empty / per_instruction, around }
