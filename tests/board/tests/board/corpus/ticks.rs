@@ -35,6 +35,7 @@ fn compare(boards: &mut [Trials; 2], motion: &Motion, arithmetic: Arithmetic) ->
     let trial = Trial::Servo { scene, transducers, arithmetic };
     let inputs: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
     let there = boards.each_mut().map(|board| board.compute(&trial, &inputs).unwrap());
+    assert!(there[0] == there[1], "the boards' instructions differ: {trial:?}");
     for (outputs, board) in there.iter().zip(["the virtual board", "QEMU"]) {
         for (tick, (output, (torque, code))) in outputs.iter().zip(&here).enumerate() {
             let value = output.value * unit;
