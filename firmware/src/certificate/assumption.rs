@@ -4,7 +4,7 @@
 use core::f64::consts::PI;
 use core::fmt;
 
-use super::model::{Loop, Numbers, nonlinear_bound};
+use super::model::{Loop, Numbers, nonlinear_bound, transfer};
 use super::rest::{Rest, Steps};
 use super::rules::{Answer, Assessment, compare, is_nonlinear, paper_limit, wall_of};
 use crate::environment::Environment;
@@ -305,7 +305,9 @@ fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<A
         return None;
     }
     let numbers = Numbers::of(scene, assessment.format);
-    let bound = nonlinear_bound(&scene.environment, &numbers).filter(|bound| {
+    let contact = transfer(&scene.environment, &numbers).ok();
+    let bound = contact.and_then(|contact| nonlinear_bound(&scene.environment, &contact, &numbers));
+    let bound = bound.filter(|bound| {
         let limit = paper_limit(&numbers);
         assessment.alpha.is_some()
             && limit.is_some_and(|limit| compare(*bound, limit) == Answer::Pass)

@@ -28,6 +28,7 @@
 //! ```
 
 mod assumption;
+mod digits;
 mod model;
 mod parameter;
 mod posed;
@@ -36,6 +37,7 @@ mod remedy;
 mod rest;
 mod rules;
 mod timed;
+mod varied;
 
 pub use assumption::{Assumption, Assumptions, Standing};
 pub use model::Loop;
@@ -51,6 +53,7 @@ use crate::environment::*;
 use crate::number::Format;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, Renders};
+use rules::{Extent, assessed};
 
 /// A scene that was proved passive.
 ///
@@ -81,8 +84,11 @@ pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
 }
 
 /// The same of the coefficients that a servo in this number format multiplies by.
+// In a frame of its own it would hold the assessment twice while the scene is judged, which is when
+// a small board's stack is at its fullest.
+#[inline(always)]
 pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
-    let assessment = assess_in(scene, format);
+    let assessment = assessed(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
         Err(rejection) => Err(remedy::with_remedies(rejection, scene, format)),

@@ -273,26 +273,23 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 ///
 /// Where the loop is solved in the tick, out of contact by one rounded gain and in contact by
 /// another, the larger of what they make of the torque multiplies all of it.
-pub(super) const fn nonlinear_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
-    let bound = exactly_solved_bound(environment, n);
-    match (bound, n.format) {
-        (Some(bound), format) if !matches!(format, Format::F64) => {
-            Some(bound.mul(largest_solved(environment, n)))
-        }
-        _ => bound,
+///
+/// `contact` is the environment's own [`transfer`].
+pub(super) const fn nonlinear_bound(
+    environment: &Environment,
+    contact: &Transfer,
+    n: &Numbers,
+) -> Option<Interval> {
+    let Some(bound) = exactly_solved_bound(environment, n) else { return None };
+    if matches!(n.format, Format::F64) {
+        return Some(bound);
     }
-}
-
-/// The larger of [`Numbers::solved`] out of contact and in contact.
-const fn largest_solved(environment: &Environment, n: &Numbers) -> Interval {
     let free = match environment {
         Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()),
         _ => Interval::ONE,
     };
-    match transfer(environment, n) {
-        Ok(contact) => free.max(contact.scale),
-        Err(_) => Interval::ENTIRE,
-    }
+    // Of [`Numbers::solved`] out of contact and in contact.
+    Some(bound.mul(free.max(contact.scale)))
 }
 
 const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {

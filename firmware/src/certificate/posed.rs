@@ -6,11 +6,16 @@ use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
 use crate::number::Format;
-use crate::passivity::discrete::{RealPart, index_near};
+use crate::passivity::bernstein::Closeness;
+use crate::passivity::discrete::{RealPart, index_looked_at};
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle, cancelled};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
+
+/// Width of an index, relative to its magnitude, that a search follows: it shifts the place of its
+/// zero by a tenth of the last of three digits.
+const ROUGHLY: f64 = 1e-4;
 
 /// A scene whose numbers are valid, whose device is passive, and whose coupling and environment
 /// have one solution every tick.
@@ -85,7 +90,7 @@ impl Posed {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = nonlinear_bound(&scene.environment, &numbers);
+            let bound = nonlinear_bound(&scene.environment, &environment, &numbers);
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
             (Rule::Exact, None, !loop_gain.contains(0.0))
@@ -109,10 +114,10 @@ impl Posed {
     pub const fn passes_paper(&self) -> bool {
         let Some(limit) = paper_limit(&self.numbers) else { return false };
         let index = match (self.rule, self.bound) {
-            (Rule::Exact, _) => self.alone(limit),
+            (Rule::Exact, _) => self.alone(&near(limit)),
             // The bound decides; the index only has to exist, however large.
             (Rule::Nonlinear, Some(bound)) if matches!(compare(bound, limit), Answer::Pass) => {
-                self.alone(Interval::exact(f64::MAX))
+                self.alone(&near(Interval::exact(f64::MAX)))
             }
             (Rule::Nonlinear, _) => return false,
         };
@@ -122,8 +127,8 @@ impl Posed {
     /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
     /// left out.
     pub const fn passes_exact(&self) -> bool {
-        let limit = exact_limit(&self.numbers);
-        let index = if self.is_standard() { self.alone(limit) } else { self.behind(limit) };
+        let near = near(exact_limit(&self.numbers));
+        let index = if self.is_standard() { self.alone(&near) } else { self.behind(&near) };
         matches!(self.exact(&index), Answer::Pass)
     }
 
@@ -148,6 +153,43 @@ impl Posed {
         }
     }
 
+    /// About how much more damping the rule asks for than the device has, as a part of `delta`:
+    /// negative where [`Posed::is_certified`], except that it does not tell closely next to zero.
+    /// `None` where there is no index. For searches, which follow it to where it is zero.
+    pub(super) const fn shortage(&self) -> Option<f64> {
+        let shortage = match self.rule {
+            Rule::Exact => self.exact_shortage(),
+            Rule::Nonlinear => self.nonlinear_shortage(),
+        };
+        match shortage {
+            Some(shortage) => Some(shortage.midpoint() / self.numbers.delta.midpoint()),
+            None => None,
+        }
+    }
+
+    const fn exact_shortage(&self) -> Option<Interval> {
+        let roughly = Closeness::within(ROUGHLY);
+        let index = if self.is_standard() { self.alone(&roughly) } else { self.behind(&roughly) };
+        match index {
+            Ok(found) => Some(found.minimum.sub(exact_limit(&self.numbers))),
+            Err(_) => None,
+        }
+    }
+
+    const fn nonlinear_shortage(&self) -> Option<Interval> {
+        let (Some(bound), Some(coupling)) = (self.bound, self.numbers.coupling_damping()) else {
+            return None;
+        };
+        let delta = self.numbers.delta;
+        let over_the_limit = bound.sub(delta.min(coupling));
+        // A coupling that is stiffer than the standard one lacks what it stands for over `delta`.
+        Some(if delta.is_below(coupling) {
+            over_the_limit.max(coupling.sub(delta))
+        } else {
+            over_the_limit
+        })
+    }
+
     /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
     /// the environment itself. Where the compliance was rounded, the coupling is a little softer,
     /// and [`exact_limit`] is what the paper's rule asks for then (theory, section 6).
@@ -155,18 +197,23 @@ impl Posed {
         self.numbers.is_standard
     }
 
-    /// Index of the environment alone, looked at closely only near `limit`.
-    pub(super) const fn alone(&self, limit: Interval) -> Result<RealPart, Obstacle> {
-        index_near(self.environment, self.numbers.period, true, limit)
+    /// Index of the environment alone.
+    pub(super) const fn alone(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+        index_looked_at(self.environment, self.numbers.period, true, closeness)
     }
 
-    /// Index of `E'`, looked at closely only near `limit`.
-    pub(super) const fn behind(&self, limit: Interval) -> Result<RealPart, Obstacle> {
+    /// Index of `E'`.
+    pub(super) const fn behind(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match cancelled(self.environment).behind(self.numbers.excess_compliance()) {
-            Ok(equivalent) => index_near(equivalent, self.numbers.period, false, limit),
+            Ok(equivalent) => index_looked_at(equivalent, self.numbers.period, false, closeness),
             Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
         }
     }
+}
+
+/// What it takes to tell on which side of `limit` an index is.
+const fn near(limit: Interval) -> Closeness {
+    Closeness::around(limit.neg())
 }
 
 const fn unbuildable(error: Unbuildable) -> Rejection {

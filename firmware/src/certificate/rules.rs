@@ -7,6 +7,7 @@ use super::rejection::Rejection;
 use super::remedy::Remedies;
 use crate::environment::{Environment, Wall};
 use crate::number::Format;
+use crate::passivity::bernstein::Closeness;
 use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle};
@@ -96,8 +97,21 @@ pub const fn assess(scene: &Scene) -> Assessment {
 
 /// Judges the coefficients that a servo in this number format multiplies by, without looking for
 /// remedies.
-#[inline(never)]
 pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
+    assessed(scene, format, Extent::BothRules)
+}
+
+/// How much is found out about a scene.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// The answers of both rules.
+    BothRules,
+    /// Of a scene that is refused, only what its own rule says.
+    OwnRule,
+}
+
+#[inline(never)]
+pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> Assessment {
     let rule = if is_nonlinear(scene) { Rule::Nonlinear } else { Rule::Exact };
     let mut out = Assessment {
         alpha: None,
@@ -118,7 +132,7 @@ pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
     let numbers = Numbers::of(scene, format);
     out.delta = numbers.delta;
     out.outcome = match Posed::with(scene, numbers) {
-        Ok(posed) => judge(&posed, &mut out),
+        Ok(posed) => judge(&posed, extent, &mut out),
         Err(rejection) => Err(rejection),
     };
     out
@@ -170,16 +184,20 @@ pub(super) const fn exact_limit(n: &Numbers) -> Interval {
     }
 }
 
-const fn judge(posed: &Posed, out: &mut Assessment) -> Result<(), Rejection> {
+const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<(), Rejection> {
     let n = &posed.numbers;
-    let alone = posed.alone(Interval::ENTIRE);
+    let alone = posed.alone(&Closeness::TIGHT);
     if let Ok(found) = alone {
         out.alpha = Some(found.minimum);
         out.cos_theta = Some(found.cos_theta);
     }
     out.bound = posed.bound;
     out.paper = posed.paper(&alone);
-    let coupled = if posed.is_standard() { alone } else { posed.behind(Interval::ENTIRE) };
+    let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, Answer::Pass);
+    if is_refused && matches!(extent, Extent::OwnRule) {
+        return nonlinear_outcome(n, &alone, out);
+    }
+    let coupled = if posed.is_standard() { alone } else { posed.behind(&Closeness::TIGHT) };
     if let Ok(found) = coupled {
         out.alpha_coupled = Some(found.minimum);
         if matches!(out.rule, Rule::Exact) {

@@ -77,7 +77,8 @@ pub const fn index_within(
     index_looked_at(environment, period, widen, &Closeness::within(tolerance))
 }
 
-const fn index_looked_at(
+/// [`index`], looked at so closely. The border is one of the real part: the negative of a limit.
+pub const fn index_looked_at(
     environment: Transfer,
     period: Interval,
     widen: bool,

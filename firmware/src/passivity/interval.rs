@@ -2,7 +2,7 @@
 //!
 //! Every operation returns an interval that contains the exact result of every choice of numbers
 //! from its operands. An operation whose result is exact in `f64` keeps it exact: sums by their
-//! rounding error (Knuth's two-sum), products and quotients by counting significant bits. That is
+//! rounding error (Dekker's two-sum), products and quotients by counting significant bits. That is
 //! what lets a pole at exactly `z = 1` be told from one near it. Only IEEE additions,
 //! multiplications and divisions are used, so the end points are the same bits in the compiler, on
 //! the host and on the target.
@@ -73,7 +73,7 @@ impl Interval {
 
     /// Whether the interval is the number 0 and nothing else.
     pub const fn is_zero(self) -> bool {
-        self.lo == 0.0 && self.hi == 0.0
+        magnitude_bits(self.lo) == 0 && magnitude_bits(self.hi) == 0
     }
 
     /// Whether `value` is inside.
@@ -88,12 +88,12 @@ impl Interval {
 
     /// Whether every number of the interval is above 0.
     pub const fn is_positive(self) -> bool {
-        self.lo > 0.0
+        !is_not_negative(-self.lo)
     }
 
     /// Whether every number of the interval is below 0.
     pub const fn is_negative(self) -> bool {
-        self.hi < 0.0
+        !is_not_negative(self.hi)
     }
 
     /// Whether both ends are finite.
@@ -122,25 +122,25 @@ impl Interval {
     pub const fn mul(self, other: Self) -> Self {
         let (a, b, c, d) = (self.lo, self.hi, other.lo, other.hi);
         // Which end points give the smallest and the largest product.
-        let (p, q, r, s) = if a >= 0.0 {
-            if c >= 0.0 {
+        let (p, q, r, s) = if is_not_negative(a) {
+            if is_not_negative(c) {
                 (a, c, b, d)
-            } else if d <= 0.0 {
+            } else if is_not_negative(-d) {
                 (b, c, a, d)
             } else {
                 (b, c, b, d)
             }
-        } else if b <= 0.0 {
-            if c >= 0.0 {
+        } else if is_not_negative(-b) {
+            if is_not_negative(c) {
                 (a, d, b, c)
-            } else if d <= 0.0 {
+            } else if is_not_negative(-d) {
                 (b, d, a, c)
             } else {
                 (a, d, a, c)
             }
-        } else if c >= 0.0 {
+        } else if is_not_negative(c) {
             (a, d, b, d)
-        } else if d <= 0.0 {
+        } else if is_not_negative(-d) {
             (b, c, a, c)
         } else {
             return Self {
@@ -155,8 +155,8 @@ impl Interval {
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn div(self, other: Self) -> Self {
         if other.is_positive() {
-            let lo = div_down(self.lo, if self.lo >= 0.0 { other.hi } else { other.lo });
-            let hi = div_up(self.hi, if self.hi >= 0.0 { other.lo } else { other.hi });
+            let lo = div_down(self.lo, if is_not_negative(self.lo) { other.hi } else { other.lo });
+            let hi = div_up(self.hi, if is_not_negative(self.hi) { other.lo } else { other.hi });
             Self { lo, hi }
         } else if other.is_negative() {
             self.neg().div(other.neg())
@@ -184,9 +184,9 @@ impl Interval {
     /// `abs(self)`.
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn abs(self) -> Self {
-        if self.lo >= 0.0 {
+        if is_not_negative(self.lo) {
             self
-        } else if self.hi <= 0.0 {
+        } else if is_not_negative(-self.hi) {
             self.neg()
         } else {
             Self { lo: 0.0, hi: self.magnitude() }
@@ -223,10 +223,26 @@ impl Interval {
 #[cfg_attr(target_os = "none", inline(never))]
 const fn add_down(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    if sum.is_nan() {
-        return f64::NEG_INFINITY;
-    }
-    if rounding_error_of_sum(a, b, sum) >= 0.0 { sum } else { sum.next_down() }
+    let (large, small) = if magnitude_bits(a) < magnitude_bits(b) { (b, a) } else { (a, b) };
+    // Dekker's two-sum: what the sum has of the smaller summand, exact for finite numbers.
+    // Where a sum is infinite, it is no number, or so large that the step outward is made.
+    if small >= sum - large { sum } else { below(sum) }
+}
+
+/// The next double below, or nothing known of what is no number.
+const fn below(value: f64) -> f64 {
+    if value.is_nan() { f64::NEG_INFINITY } else { value.next_down() }
+}
+
+/// The bits of `abs(value)`, which are in the order of the magnitudes: emulated doubles are compared
+/// by a call, whole numbers are not.
+const fn magnitude_bits(value: f64) -> u64 {
+    value.to_bits() & (u64::MAX >> 1)
+}
+
+/// `value >= 0.0` by the bits.
+pub(super) const fn is_not_negative(value: f64) -> bool {
+    value.to_bits() <= 1 << 63
 }
 
 #[cfg_attr(target_os = "none", inline(never))]
@@ -234,20 +250,13 @@ const fn add_up(a: f64, b: f64) -> f64 {
     -add_down(-a, -b)
 }
 
-/// Knuth's two-sum: `a + b - sum`, exact for finite numbers. Infinite sums give NaN, so that the
-/// caller steps outward.
-const fn rounding_error_of_sum(a: f64, b: f64, sum: f64) -> f64 {
-    let b_seen = sum - a;
-    (a - (sum - b_seen)) + (b - b_seen)
-}
-
 #[cfg_attr(target_os = "none", inline(never))]
 const fn mul_down(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 {
+    if magnitude_bits(a) == 0 || magnitude_bits(b) == 0 {
         return 0.0;
     }
     let product = a * b;
-    if product_is_exact(a, b, product) { product } else { product.next_down() }
+    if fits_a_mantissa(a, b) && product.is_normal() { product } else { product.next_down() }
 }
 
 #[cfg_attr(target_os = "none", inline(never))]
@@ -258,15 +267,15 @@ const fn mul_up(a: f64, b: f64) -> f64 {
 /// Lower bound of a quotient; `b > 0`.
 #[cfg_attr(target_os = "none", inline(never))]
 pub(super) const fn div_down(a: f64, b: f64) -> f64 {
-    if a == 0.0 {
+    if magnitude_bits(a) == 0 {
         return 0.0;
     }
     let quotient = a / b;
-    if quotient.is_nan() {
-        return f64::NEG_INFINITY;
+    if fits_a_mantissa(quotient, b) && a.is_normal() && quotient * b == a {
+        quotient
+    } else {
+        below(quotient)
     }
-    let back = quotient * b;
-    if back == a && product_is_exact(quotient, b, back) { quotient } else { quotient.next_down() }
 }
 
 /// Upper bound of a quotient; `b > 0`.
@@ -277,23 +286,18 @@ pub(super) const fn div_up(a: f64, b: f64) -> f64 {
 
 const fn half_down(value: f64) -> f64 {
     let half = value * 0.5;
-    if half + half == value { half } else { half.next_down() }
+    if half.is_normal() || half + half == value { half } else { half.next_down() }
 }
 
-/// Whether `product`, the rounded `a * b`, is the exact one: the significant bits of the factors
-/// fit a mantissa together and the exponent stays in range.
-const fn product_is_exact(a: f64, b: f64, product: f64) -> bool {
-    product.is_normal()
-        && a.is_normal()
-        && b.is_normal()
-        && significant_bits(a) + significant_bits(b) <= 53
+/// Whether the product of two numbers is exact, as long as it is a normal number: the significant
+/// bits of the factors fit a mantissa together.
+const fn fits_a_mantissa(a: f64, b: f64) -> bool {
+    a.is_normal() && b.is_normal() && trailing_zeros(a) + trailing_zeros(b) >= 53
 }
 
-/// Bits of the mantissa of a normal number from the leading one to the last one.
-const fn significant_bits(value: f64) -> u32 {
-    const MANTISSA: u64 = (1 << 52) - 1;
-    let mantissa = (value.to_bits() & MANTISSA) | (1 << 52);
-    53 - mantissa.trailing_zeros()
+/// Bits of the 53 of a normal number's mantissa behind the last one that is set.
+const fn trailing_zeros(value: f64) -> u32 {
+    (value.to_bits() | (1 << 52)).trailing_zeros()
 }
 
 /// Newton's iteration, then the quotient on the other side of the root: `r` and `x / r` enclose
