@@ -35,7 +35,7 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
         ),
         (&["run", "--target", "board", "damper_wall"], ["no target board", "board:NAME"]),
         (
-            &["run", "--target", "board:stm32f405", "--full-scale", "2", "damper_wall"],
+            &["run", "--target", "board:stm32f405", "--full-scale", "3.5", "damper_wall"],
             ["is built for", "run it on the host"],
         ),
         (
