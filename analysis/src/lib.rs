@@ -36,6 +36,7 @@ pub mod toolchain;
 
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;
+pub mod listing;
 pub mod scope;
 pub mod twin;
 

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use clap::Args;
-use comfy_table::presets;
-use comfy_table::{CellAlignment, Table};
+use comfy_table::Table;
 use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
@@ -17,6 +16,7 @@ use crate::bench::live::live_set;
 use crate::bench::parts::{self, Inventory};
 use crate::bench::{self, CORE_CLOCK, Figure};
 use crate::emulator::Report;
+use crate::listing::listing;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
@@ -292,9 +292,7 @@ fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), Co
 const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header(["figure", "value", "unit", "against", "ratio", "which is"]);
+    let mut table = listing(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
     for figure in figures {
         let number =
             |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));
@@ -306,11 +304,6 @@ fn table(figures: &[Figure]) -> Table {
             number(figure.ratio),
             figure.source.to_owned(),
         ]);
-    }
-    for column in [1, 3, 4] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     table
 }

@@ -1,11 +1,11 @@
 //! `haptic advise --model`: how much model of the device?
 
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
 
 use crate::command::common::{ForWhom, folder};
 use crate::command::{Answer, CommandError};
 use crate::file::{Purpose, load_for};
+use crate::listing::listing;
 use crate::model::{Advice, Deviation, Judged, advise, percent};
 use crate::quantity::significant;
 
@@ -39,27 +39,23 @@ pub fn run(scene: &str, question: &Question, answer: &ForWhom) -> Result<Answer,
 }
 
 fn text(advice: &Advice) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "model",
-        "states",
-        "steps/s",
-        "certificate",
-        "stability",
-        "delta",
-        "critical stiffness",
-        "angle",
-        "torque",
-        "beyond the bound",
-    ]);
+    let mut table = listing(
+        [
+            "model",
+            "states",
+            "steps/s",
+            "certificate",
+            "stability",
+            "delta",
+            "critical stiffness",
+            "angle",
+            "torque",
+            "beyond the bound",
+        ],
+        [1, 2, 5, 6, 7, 8],
+    );
     for judged in &advice.models {
         table.add_row(row(judged));
-    }
-    for column in [1, 2, 5, 6, 7, 8] {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     let reason = advice.no_certificate.as_ref();
     let no_certificate = reason

@@ -2,12 +2,12 @@
 
 use std::cmp::Ordering;
 
-use comfy_table::{CellAlignment, Table, presets};
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
 use crate::arithmetic::{Advice, Candidate, Subject};
 use crate::bench::CORE_CLOCK;
+use crate::listing::listing;
 use crate::quantity::significant;
 
 /// The answer as JSON.
@@ -105,25 +105,21 @@ fn chosen(subject: &Subject, choice: &Candidate) -> String {
 
 /// The answer for a person.
 pub fn text(answered: &Answered) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN);
-    table.set_header([
-        "format",
-        "instructions",
-        "share of the core",
-        "error",
-        "around 1 rad",
-        "hum",
-        "with encoder",
-        "rejected",
-    ]);
+    let mut table = listing(
+        [
+            "format",
+            "instructions",
+            "share of the core",
+            "error",
+            "around 1 rad",
+            "hum",
+            "with encoder",
+            "rejected",
+        ],
+        1..7,
+    );
     for candidate in &answered.formats {
         table.add_row(row(candidate));
-    }
-    for column in 1..7 {
-        if let Some(column) = table.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
     }
     let coupling = answered.coupling_stiffness.map_or_else(
         || "rigid".to_owned(),
