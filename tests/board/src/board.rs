@@ -23,6 +23,8 @@ use crate::peripheral::{Access, Unmodelled};
 pub struct NotModelled {
     /// Who, by name, or nobody where nothing is at the address.
     pub unit: Option<&'static str>,
+    /// The register's name, where it has one.
+    pub register: Option<&'static str>,
     /// The address.
     pub address: u32,
     /// What was written, if it was.
@@ -51,7 +53,10 @@ impl fmt::Display for NotModelled {
             Some(value) => write!(f, "the program wrote {value:#010x} to ")?,
             None => f.write_str("the program read ")?,
         }
-        write!(f, "{:#010x}, offset {:#04x} of {unit}: ", self.address, self.address & 0x3FF)?;
+        match self.register {
+            Some(register) => write!(f, "{register} of {unit} at {:#010x}: ", self.address)?,
+            None => write!(f, "{:#010x}, in {unit}: ", self.address)?,
+        }
         match self.why {
             Why::Nobody => f.write_str("the virtual board has no peripheral there"),
             Why::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
@@ -238,7 +243,7 @@ impl Board {
         match self.find_and_read(address, size) {
             Ok(value) => value,
             Err((unit, why)) => {
-                self.stop(NotModelled { unit, address, written: None, why });
+                self.stop(unit, address, None, why);
                 0
             }
         }
@@ -251,7 +256,7 @@ impl Board {
             return;
         }
         if let Err((unit, why)) = self.find_and_write(address, size, value) {
-            self.stop(NotModelled { unit, address, written: Some(value), why });
+            self.stop(unit, address, Some(value), why);
         }
         self.serial.advance(self.now, self.clock.bus_divider());
         self.lines();
@@ -418,8 +423,10 @@ impl Board {
         self.stopped.is_some() || self.bus_error.is_some() || self.system.reset_requested
     }
 
-    fn stop(&mut self, reason: NotModelled) {
-        self.stopped.get_or_insert(reason);
+    fn stop(&mut self, unit: Option<&'static str>, address: u32, written: Option<u32>, why: Why) {
+        let place = self.chip.at(address);
+        let register = place.and_then(|place| (self.chip.names)(place.unit, address - place.base));
+        self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
     }
 }
 

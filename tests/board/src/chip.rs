@@ -1,5 +1,6 @@
 //! The chips: where each peripheral is, by whom it is clocked, and what is wired to its pins.
 
+use crate::names;
 use crate::peripheral::clock::{self, Layout};
 use crate::peripheral::pins::Pins;
 use crate::peripheral::plain::Plain;
@@ -91,6 +92,8 @@ pub struct Chip {
     pub flash_interface: fn() -> Plain,
     /// Its system configuration.
     pub configuration: fn() -> Plain,
+    /// Names of its units' registers, by the place behind the unit's first.
+    pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports out of reset.
     pub ports: fn(usize) -> Pins,
 }
@@ -159,6 +162,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     clock: G4,
     converter: converter::G4,
     face: Face::G4,
+    names: names::g4,
     power: power::g4,
     flash_interface: flash::g4,
     configuration: || Plain::new(&[]),
@@ -210,6 +214,7 @@ pub static STM32F405: Chip = Chip {
     clock: F4,
     converter: converter::F405,
     face: Face::F405,
+    names: names::f405,
     power: power::f405,
     flash_interface: flash::f405,
     configuration: || Plain::new(&[]),

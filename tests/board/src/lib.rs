@@ -24,6 +24,7 @@ pub mod device;
 pub mod image;
 pub mod machine;
 pub mod meter;
+mod names;
 pub mod peripheral;
 pub mod processor;
 pub mod semihosting;

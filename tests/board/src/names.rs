@@ -1,0 +1,193 @@
+//! Names of registers, as the reference manuals (RM0440, RM0090) have them: for whoever reads that one
+//! is not modelled.
+
+use crate::chip::Unit;
+
+/// Registers one after the other, a word each; "" for a gap.
+type Row = &'static [&'static str];
+
+/// Timers of every kind.
+const TIMER: Row = &[
+    "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC", "ARR",
+    "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR",
+];
+/// Ports of pins.
+const PINS: Row =
+    &["MODER", "OTYPER", "OSPEEDR", "PUPDR", "IDR", "ODR", "BSRR", "LCKR", "AFRL", "AFRH", "BRR"];
+/// The converter; the F4's ends with the status.
+const CONVERTER: Row = &[
+    "CR", "SWTRGR", "DHR12R1", "DHR12L1", "DHR8R1", "DHR12R2", "DHR12L2", "DHR8R2", "DHR12RD",
+    "DHR12LD", "DHR8RD", "DOR1", "DOR2", "SR", "CCR", "MCR", "SHSR1", "SHSR2", "SHHR", "SHRR", "",
+    "", "STR1", "STR2", "STMODR",
+];
+/// The watchdog; the F4's ends with the status.
+const WATCHDOG: Row = &["KR", "PR", "RLR", "SR", "WINR"];
+/// What keeps clocks running for a debugger.
+const DEBUG: Row = &["IDCODE", "CR", "APB1FZR1", "APB1FZR2", "APB2FZR"];
+
+const CLOCK_G4: Row = &[
+    "CR",
+    "ICSCR",
+    "CFGR",
+    "PLLCFGR",
+    "",
+    "",
+    "CIER",
+    "CIFR",
+    "CICR",
+    "",
+    "AHB1RSTR",
+    "AHB2RSTR",
+    "AHB3RSTR",
+    "",
+    "APB1RSTR1",
+    "APB1RSTR2",
+    "APB2RSTR",
+    "",
+    "AHB1ENR",
+    "AHB2ENR",
+    "AHB3ENR",
+    "",
+    "APB1ENR1",
+    "APB1ENR2",
+    "APB2ENR",
+    "",
+    "AHB1SMENR",
+    "AHB2SMENR",
+    "AHB3SMENR",
+    "",
+    "APB1SMENR1",
+    "APB1SMENR2",
+    "APB2SMENR",
+    "",
+    "CCIPR",
+    "",
+    "BDCR",
+    "CSR",
+    "CRRCR",
+    "CCIPR2",
+];
+const POWER_G4: Row = &["CR1", "CR2", "CR3", "CR4", "SR1", "SR2", "SCR"];
+const FLASH_G4: Row = &["ACR", "PDKEYR", "KEYR", "OPTKEYR", "SR", "CR", "ECCR", "", "OPTR"];
+const SERIAL_G4: Row =
+    &["CR1", "CR2", "CR3", "BRR", "GTPR", "RTOR", "RQR", "ISR", "ICR", "RDR", "TDR", "PRESC"];
+const CONFIGURATION_G4: Row = &[
+    "MEMRMP", "CFGR1", "EXTICR1", "EXTICR2", "EXTICR3", "EXTICR4", "SCSR", "CFGR2", "SWPR", "SKR",
+];
+
+const CLOCK_F405: Row = &[
+    "CR",
+    "PLLCFGR",
+    "CFGR",
+    "CIR",
+    "AHB1RSTR",
+    "AHB2RSTR",
+    "AHB3RSTR",
+    "",
+    "APB1RSTR",
+    "APB2RSTR",
+    "",
+    "",
+    "AHB1ENR",
+    "AHB2ENR",
+    "AHB3ENR",
+    "",
+    "APB1ENR",
+    "APB2ENR",
+    "",
+    "",
+    "AHB1LPENR",
+    "AHB2LPENR",
+    "AHB3LPENR",
+    "",
+    "APB1LPENR",
+    "APB2LPENR",
+    "",
+    "",
+    "BDCR",
+    "CSR",
+    "",
+    "",
+    "SSCGR",
+    "PLLI2SCFGR",
+];
+const POWER_F405: Row = &["CR", "CSR"];
+const FLASH_F405: Row = &["ACR", "KEYR", "OPTKEYR", "SR", "CR", "OPTCR"];
+const SERIAL_F405: Row = &["SR", "DR", "BRR", "CR1", "CR2", "CR3", "GTPR"];
+const CONFIGURATION_F405: Row =
+    &["MEMRMP", "PMC", "EXTICR1", "EXTICR2", "EXTICR3", "EXTICR4", "", "", "CMPCR"];
+
+/// A register of the G4.
+pub fn g4(unit: Unit, offset: u32) -> Option<&'static str> {
+    let row = match unit {
+        Unit::Clock => CLOCK_G4,
+        // Behind the pulls of all ports.
+        Unit::Power if offset == 0x80 => return Some("CR5"),
+        Unit::Power => POWER_G4,
+        Unit::Flash => FLASH_G4,
+        Unit::Configuration => CONFIGURATION_G4,
+        Unit::Serial => SERIAL_G4,
+        other => common(other),
+    };
+    at(row, offset)
+}
+
+/// A register of the F405.
+pub fn f405(unit: Unit, offset: u32) -> Option<&'static str> {
+    let row = match unit {
+        Unit::Clock => CLOCK_F405,
+        Unit::Power => POWER_F405,
+        Unit::Flash => FLASH_F405,
+        Unit::Configuration => CONFIGURATION_F405,
+        Unit::Serial => SERIAL_F405,
+        other => common(other),
+    };
+    at(row, offset)
+}
+
+/// What both have alike.
+fn common(unit: Unit) -> Row {
+    match unit {
+        Unit::Pacer | Unit::FreeClock | Unit::Encoder => TIMER,
+        Unit::Pins(_) => PINS,
+        Unit::Converter => CONVERTER,
+        Unit::Watchdog => WATCHDOG,
+        Unit::Debug => DEBUG,
+        Unit::Clock | Unit::Power | Unit::Flash | Unit::Configuration | Unit::Serial => &[],
+    }
+}
+
+fn at(row: Row, offset: u32) -> Option<&'static str> {
+    row.get(offset as usize / 4).copied().filter(|name| !name.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Offsets that the manuals give for the last register of a row, where a gap would show.
+    #[test]
+    fn rows_have_their_registers_where_the_manuals_have_them() {
+        for (unit, offset, name) in [
+            (Unit::Clock, 0x9C, "CCIPR2"),
+            (Unit::Clock, 0x58, "APB1ENR1"),
+            (Unit::Pacer, 0x2C, "ARR"),
+            (Unit::Converter, 0x2C, "DOR1"),
+            (Unit::Converter, 0x3C, "MCR"),
+            (Unit::Serial, 0x24, "RDR"),
+            (Unit::Pins(1), 0x18, "BSRR"),
+            (Unit::Power, 0x80, "CR5"),
+        ] {
+            assert_eq!(g4(unit, offset), Some(name));
+        }
+        for (unit, offset, name) in [
+            (Unit::Clock, 0x84, "PLLI2SCFGR"),
+            (Unit::Clock, 0x74, "CSR"),
+            (Unit::Clock, 0x40, "APB1ENR"),
+            (Unit::Serial, 0x0C, "CR1"),
+        ] {
+            assert_eq!(f405(unit, offset), Some(name));
+        }
+        assert_eq!(g4(Unit::Clock, 0x10), None);
+    }
+}
