@@ -62,6 +62,10 @@ const NOWHERE: u64 = 0xFFFF_FFF0;
 const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x0010_0000)];
 /// CONTROL: the floating-point registers are in use.
 const IN_USE: u64 = 1 << 2;
+/// The same with the bit of the same meaning that later cores have in their secure state, in which the
+/// engine believes itself: without it, the next floating-point instruction would begin with a status
+/// of zero.
+const IN_USE_TO_THE_ENGINE: u32 = 0b11 << 2;
 /// A wait for an event, as an instruction: the engine takes it for an unknown one.
 const WAIT_FOR_EVENT: u16 = 0xBF20;
 /// The engine's numbers of what interrupts it.
@@ -210,7 +214,7 @@ impl Processor {
 
     /// Says whether they are.
     pub fn set_uses_floating_point(&mut self, used: bool) {
-        self.set_register(RegisterARM::CONTROL, if used { IN_USE as u32 } else { 0 });
+        self.set_register(RegisterARM::CONTROL, if used { IN_USE_TO_THE_ENGINE } else { 0 });
     }
 
     /// Reads memory; none where there is none.
