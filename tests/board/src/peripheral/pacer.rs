@@ -130,3 +130,63 @@ impl Pacer {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Registers, as the program writes them.
+    const CR1: u32 = 0x00;
+    const DIER: u32 = 0x0C;
+    const SR: u32 = 0x10;
+    const EGR: u32 = 0x14;
+    const PSC: u32 = 0x28;
+    const ARR: u32 = 0x2C;
+
+    /// Prepared for a prescaler of 3 and a period of 1000, and started at 5000.
+    fn started(divider: u64) -> Pacer {
+        let mut pacer = Pacer::new();
+        for (register, value) in
+            [(PSC, 2), (ARR, 999), (CR1, ONLY_OVERFLOW), (EGR, 1), (DIER, 1), (CR1, ENABLE)]
+        {
+            pacer.write(register, value, 5000, divider).unwrap();
+        }
+        pacer
+    }
+
+    #[test]
+    fn a_period_is_prescaler_times_reload_in_the_timer_s_own_clocks() {
+        for divider in [1, 2] {
+            let (mut pacer, period) = (started(divider), 3000 * divider);
+            assert_eq!(pacer.due(), Some(5000 + period));
+            assert!(!pacer.advance(5000 + period - 1, divider) && !pacer.line());
+            // Late or not, the next one is a period behind.
+            assert!(pacer.advance(5000 + period + 7, divider) && pacer.line());
+            assert_eq!(pacer.due(), Some(5000 + 2 * period));
+        }
+    }
+
+    #[test]
+    fn its_flag_stays_until_it_is_cleared() {
+        let mut pacer = started(1);
+        assert!(pacer.advance(8000, 1));
+        pacer.write(SR, UPDATE, 8001, 1).unwrap();
+        assert!(pacer.line(), "a one leaves it");
+        pacer.write(SR, 0, 8002, 1).unwrap();
+        assert!(!pacer.line());
+        assert_eq!(pacer.due(), Some(11_000));
+    }
+
+    #[test]
+    fn a_new_prescaler_waits_for_an_update_and_only_an_overflow_is_one_to_the_flag() {
+        let mut pacer = started(1);
+        pacer.write(PSC, 0, 5001, 1).unwrap();
+        assert_eq!(pacer.due(), Some(8000));
+        assert!(pacer.advance(8000, 1));
+        assert_eq!(pacer.due(), Some(9000));
+        let mut pacer = Pacer::new();
+        pacer.write(DIER, UPDATE, 0, 1).unwrap();
+        pacer.write(EGR, UPDATE, 0, 1).unwrap();
+        assert!(pacer.line(), "an update by the program is one, unless it says otherwise");
+    }
+}

@@ -246,3 +246,108 @@ impl Serial {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The port's clocks of a bit, core clocks of one of them, and core clocks of a byte.
+    const RATE: u32 = 91;
+    const DIVIDER: u64 = 4;
+    const BYTE: u64 = 10 * 91 * 4;
+
+    /// Receives and sends, with the interrupt of what was received.
+    fn open(face: Face) -> Serial {
+        let mut port = Serial::new(face);
+        let setup: &[(u32, u32)] = match face {
+            Face::G4 => &[(0x0C, RATE), (0x00, ON_G4 | BOTH_WAYS | RECEIVED | QUEUES)],
+            Face::F405 => &[(0x08, RATE), (0x0C, ON_F405 | BOTH_WAYS | RECEIVED)],
+        };
+        for &(register, value) in setup {
+            port.write(register, value).unwrap();
+        }
+        port
+    }
+
+    fn received(port: &mut Serial) -> u32 {
+        port.read(if port.face == Face::G4 { 0x24 } else { 0x04 }).unwrap()
+    }
+
+    #[test]
+    fn a_byte_takes_its_time_on_the_line() {
+        for face in [Face::G4, Face::F405] {
+            let mut port = open(face);
+            port.send(b"ab");
+            port.advance(100, DIVIDER);
+            assert_eq!(port.due(), Some(100 + BYTE));
+            port.advance(100 + BYTE - 1, DIVIDER);
+            assert!(!port.line(), "{face:?}");
+            port.advance(100 + BYTE, DIVIDER);
+            assert!(port.line(), "{face:?}");
+            assert_eq!(received(&mut port), b'a'.into());
+            assert!(!port.line(), "{face:?}");
+            port.advance(100 + 2 * BYTE, DIVIDER);
+            assert_eq!(received(&mut port), b'b'.into());
+        }
+    }
+
+    #[test]
+    fn what_is_not_read_in_time_is_lost_and_told() {
+        for (face, room) in [(Face::G4, 8), (Face::F405, 1)] {
+            let mut port = open(face);
+            let bytes: Vec<u8> = (1..=room + 3).collect();
+            port.send(&bytes);
+            port.advance(0, DIVIDER);
+            let end = BYTE * u64::from(room + 3);
+            port.advance(end, DIVIDER);
+            assert_eq!(port.lost(), 3, "{face:?}");
+            // What was there stays, and what came in vain is gone.
+            let status = port.read(if face == Face::G4 { 0x1C } else { 0x00 }).unwrap();
+            assert_eq!(status & OVERRUN, OVERRUN, "{face:?}");
+            for byte in 1..=room {
+                assert_eq!(received(&mut port), byte.into(), "{face:?}");
+            }
+            // By its flag on one chip, and by having read status and data on the other.
+            if face == Face::G4 {
+                assert!(port.line());
+                port.write(0x20, OVERRUN).unwrap();
+            }
+            assert!(!port.line(), "{face:?}");
+            port.send(b"z");
+            port.advance(end, DIVIDER);
+            port.advance(end + 2 * BYTE, DIVIDER);
+            assert_eq!(received(&mut port), b'z'.into(), "{face:?}");
+        }
+    }
+
+    #[test]
+    fn silence_behind_a_byte_is_told_once() {
+        for face in [Face::G4, Face::F405] {
+            let mut port = open(face);
+            let status = if face == Face::G4 { 0x1C } else { 0x00 };
+            port.send(b"a");
+            port.advance(0, DIVIDER);
+            port.advance(BYTE, DIVIDER);
+            assert_eq!(port.read(status).unwrap() & IDLE, 0, "{face:?}");
+            port.advance(2 * BYTE, DIVIDER);
+            assert_eq!(port.read(status).unwrap() & IDLE, IDLE, "{face:?}");
+            assert_eq!(port.due(), None, "{face:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_sent_leaves_byte_by_byte() {
+        for face in [Face::G4, Face::F405] {
+            let mut port = open(face);
+            let (data, status) = if face == Face::G4 { (0x28, 0x1C) } else { (0x04, 0x00) };
+            port.write(data, b'x'.into()).unwrap();
+            port.advance(0, DIVIDER);
+            assert_eq!(port.read(status).unwrap() & SENT, 0, "{face:?}");
+            port.advance(BYTE - 1, DIVIDER);
+            assert_eq!(port.take_sent(), b"", "{face:?}");
+            port.advance(BYTE, DIVIDER);
+            assert_eq!(port.take_sent(), b"x", "{face:?}");
+            assert_eq!(port.read(status).unwrap() & SENT, SENT, "{face:?}");
+        }
+    }
+}

@@ -69,3 +69,43 @@ impl Watchdog {
         4 * (u64::from(self.reload) + 1) * clock / OSCILLATOR
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEY: u32 = 0x00;
+    const COUNTS: u32 = 0x08;
+    /// Core clocks of a count: 4 of the oscillator's.
+    const CLOCK: u64 = 168_000_000;
+    const COUNT: u64 = CLOCK / 8000;
+
+    fn write(watchdog: &mut Watchdog, now: u64, writes: &[(u32, u32)]) {
+        for &(register, value) in writes {
+            watchdog.write(register, value, now, CLOCK).unwrap();
+        }
+    }
+
+    #[test]
+    fn it_bites_a_count_after_its_reload_value_and_never_before_it_was_started() {
+        let mut watchdog = Watchdog::default();
+        write(&mut watchdog, 0, &[(KEY, OPEN), (COUNTS, 65), (KEY, RELOAD)]);
+        assert_eq!(watchdog.due(), None);
+        write(&mut watchdog, 1000, &[(KEY, START)]);
+        assert_eq!(watchdog.due(), Some(1000 + 66 * COUNT));
+        write(&mut watchdog, 5000, &[(KEY, RELOAD)]);
+        assert_eq!(watchdog.due(), Some(5000 + 66 * COUNT));
+    }
+
+    #[test]
+    fn its_patience_is_locked_and_taken_over_when_it_is_fed() {
+        let mut watchdog = Watchdog::default();
+        write(&mut watchdog, 0, &[(KEY, START), (COUNTS, 7)]);
+        write(&mut watchdog, 0, &[(KEY, RELOAD)]);
+        assert_eq!(watchdog.due(), Some(4096 * COUNT), "locked");
+        write(&mut watchdog, 0, &[(KEY, OPEN), (COUNTS, 7)]);
+        assert_eq!(watchdog.due(), Some(4096 * COUNT), "not fed yet");
+        write(&mut watchdog, 9, &[(KEY, RELOAD), (COUNTS, 9)]);
+        assert_eq!(watchdog.due(), Some(9 + 8 * COUNT), "and locked again");
+    }
+}

@@ -66,7 +66,12 @@ pub struct InHand {
 impl InHand {
     /// A program's device, in the hand that shows it, at rest at zero.
     pub fn of(program: &Program) -> Self {
-        Self { device: program.device(), count: 0 }
+        Self::with(program.device())
+    }
+
+    /// A simulated device at rest at zero.
+    pub fn with(device: SimulatedDevice) -> Self {
+        Self { device, count: 0 }
     }
 }
 

@@ -6,6 +6,7 @@ mod corpus;
 mod device;
 mod faults;
 mod harmless;
+mod hour;
 mod interrupts;
 mod scenes;
 mod start;

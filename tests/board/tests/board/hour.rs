@@ -1,0 +1,180 @@
+//! An hour of use: into the wall and out of it, turns that wrap the encoder's counter, and parameters
+//! that are changed while it is felt.
+
+use std::num::NonZeroU32;
+
+use analysis::hand::Script;
+use analysis::link::Message;
+use analysis::program::Program;
+use analysis::rig::SimulatedDevice;
+use firmware::certificate::Parameter;
+use firmware::cycle::State;
+use firmware::wire::message::{Outcome, Status, ToBoard};
+use virtual_board::chip::Chip;
+use virtual_board::device::Device;
+
+use crate::bench::{Bench, MID_SCALE, on_both};
+use crate::device::{InHand, Sample};
+
+/// Samples of the servo in a minute.
+const MINUTE: u64 = 60_000;
+
+/// The device in a hand that does the same over and over, and whose axis is spun round and back
+/// beside that, as far from the wall as it is long enough for the counter to wrap.
+struct Spun {
+    hand: InHand,
+    /// Samples so far.
+    sample: u64,
+}
+
+/// Counts of a spin a sample, and its samples each way: 1.6 turns, beyond 16 bits.
+const SPEED: i32 = 500;
+const WAY: u64 = 200;
+
+impl Spun {
+    fn of(program: &Program, minutes: u64) -> Self {
+        let script = Script::push_and_let_go().over_and_over(60.0 * (minutes + 1) as f64);
+        let (scene, transducers) = (&program.scene, &program.transducers);
+        let period = scene.timing.period;
+        let device = SimulatedDevice::new(scene.device, script, period, transducers).unwrap();
+        Self { hand: InHand::with(device), sample: 0 }
+    }
+}
+
+impl Device for Spun {
+    fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
+        let turned = self.hand.sample(code, amplifier);
+        let spun = match self.sample % MINUTE {
+            at if at < WAY => -SPEED,
+            at if at < 2 * WAY => SPEED,
+            _ => 0,
+        };
+        self.sample += 1;
+        turned + spun
+    }
+}
+
+/// What the host has found out so far.
+struct Use {
+    bench: Bench,
+    id: u16,
+    /// Sets that were answered as done.
+    sets: u32,
+    /// Ticks of the streams that were not told.
+    gaps: u32,
+    /// The last one that was.
+    last: Option<u32>,
+}
+
+impl Use {
+    fn boot(chip: &'static Chip, minutes: u64) -> Self {
+        let program = Program::find("damper_wall").unwrap();
+        let mut bench = Bench::boot(chip, program.name, Spun::of(program, minutes));
+        // Hours of them would be gigabytes.
+        bench.machine.board_mut().events = None;
+        Self { bench, id: 0, sets: 0, gaps: 0, last: None }
+    }
+
+    /// Asks for another set, and holds the board to its answer.
+    fn set(&mut self, changes: &[(Parameter, f64)], passes: bool) {
+        self.id = self.id.wrapping_add(1);
+        let id = self.id;
+        let changes = changes.iter().copied().collect();
+        let outcome = self.bench.ask(&ToBoard::Set { id, changes }, |message| match message {
+            Message::Answer { id: answered, outcome } if answered == id => Some(outcome),
+            _ => None,
+        });
+        assert_eq!(matches!(outcome, Outcome::Done), passes, "{outcome:?}");
+        self.sets += u32::from(passes);
+    }
+
+    /// Has every tick of some samples told.
+    fn stream(&mut self, samples: u64) {
+        self.bench.say(&ToBoard::Stream(NonZeroU32::new(1)));
+        for _ in 0..samples {
+            self.bench.run(1);
+            self.hear();
+        }
+        self.bench.say(&ToBoard::Stream(None));
+        self.bench.run(50);
+        self.hear();
+        self.last = None;
+    }
+
+    fn hear(&mut self) {
+        for message in self.bench.hear() {
+            let Message::Telemetry(batch) = message else { continue };
+            for tick in batch.ticks() {
+                if let Some(last) = self.last {
+                    self.gaps += tick.tick - last - 1;
+                }
+                self.last = Some(tick.tick);
+            }
+        }
+    }
+
+    /// A minute in which all of it happens.
+    fn minute(&mut self) {
+        let end = self.bench.machine.board().samples + MINUTE;
+        self.bench.run(2 * WAY + 100);
+        self.set(&[(Parameter::Stiffness, 18.0)], true);
+        self.bench.run(5000);
+        self.set(&[(Parameter::Damping, 0.0115)], true);
+        self.bench.run(5000);
+        // Past the line: the certificate says no, and what runs goes on.
+        self.set(&[(Parameter::Stiffness, 22.0)], false);
+        self.stream(1000);
+        self.set(&[(Parameter::Damping, 0.01), (Parameter::Stiffness, 22.0)], true);
+        let left = end - self.bench.machine.board().samples;
+        self.bench.run(left);
+    }
+
+    /// What the board says at the end.
+    fn check(&mut self, what: &str) {
+        let status = self.bench.status();
+        let Status { state, fault, missed, sets, dropped, thinned, .. } = status;
+        assert_eq!((state, fault), (State::Running, None), "{what}");
+        assert_eq!((missed, sets), (0, self.sets), "{what}");
+        assert_eq!(self.gaps, dropped + thinned, "{what}: ticks that were not told");
+        assert_eq!(status.discarded.total(), 0, "{what}: {:?}", status.discarded);
+        let board = self.bench.machine.board();
+        assert_eq!(board.serial.lost(), 0, "{what}");
+        // The answer is a few samples old.
+        let late = board.samples - u64::from(status.tick);
+        assert!(late < 20, "{what}: tick {} in sample {}", status.tick, board.samples);
+        let mut pins = self.bench.pins();
+        let then = pins.samples.len() - 1 - late as usize;
+        assert_eq!(status.count, i64::from(pins.samples[then].count), "{what}");
+        check_contact(&pins.samples, what);
+        pins.samples.clear();
+        drop(pins);
+        assert_eq!(self.bench.machine.resets(), [], "{what}");
+    }
+}
+
+/// The hand was in the wall, out of it, and where only the spin leads.
+fn check_contact(samples: &[Sample], what: &str) {
+    let share = |is: fn(&Sample) -> bool| {
+        samples.iter().filter(|sample| is(sample)).count() as f64 / samples.len() as f64
+    };
+    let pushed = share(|sample| sample.code.is_some_and(|code| code + 50 < MID_SCALE));
+    let free = share(|sample| sample.code == Some(MID_SCALE));
+    assert!(pushed > 0.2 && free > 0.2, "{what}: {pushed} in the wall, {free} without torque");
+    let furthest = samples.iter().map(|sample| sample.count).min().unwrap();
+    assert!(furthest < -(1 << 16), "{what}: {furthest} counts");
+}
+
+fn used(chip: &'static Chip, minutes: u64) {
+    let mut used = Use::boot(chip, minutes);
+    for minute in 0..minutes {
+        used.minute();
+        used.check(&format!("{}, minute {minute}", chip.name));
+    }
+}
+
+/// One of the chips for the hour, which takes a minute and a half alone; the other one, whose
+/// counter has half the bits, long enough for that to wrap.
+#[test]
+fn an_hour_of_use_misses_no_tick_and_loses_no_count() {
+    on_both(|chip| used(chip, if chip.counter == 32 { 60 } else { 3 }));
+}
