@@ -3,7 +3,8 @@
 //!
 //! The engine knows nothing of exceptions on this core. It stops before an instruction once
 //! something may have to be done between two of them; at a wait for an interrupt; at a return from
-//! an exception; and at what it cannot execute.
+//! an exception; and at what it cannot execute. Inside of a conditional block it does not stop: it
+//! finishes the block first, so that an interrupt comes up to four instructions later there.
 
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_error};
 

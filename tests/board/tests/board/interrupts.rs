@@ -1,5 +1,5 @@
-//! A program that is interrupted anywhere goes on as if it had not been: conditional blocks,
-//! flags, and the floating-point registers, also when the interrupt is interrupted.
+//! A program that is interrupted after any number of instructions goes on as if it had not been:
+//! conditions, flags, and the floating-point registers, also when the interrupt is interrupted.
 
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
@@ -234,6 +234,41 @@ fn a_program_goes_on_after_two_interrupts_in_a_row() {
                 let found = program.run(&[(after, PEND_SV), (lower, number)]);
                 assert_eq!(found, results(), "{}, after {after}, then {number}", chip.name);
             }
+        }
+    });
+}
+
+/// Addresses of the body's instructions, each with whether it is in a conditional block.
+fn places(body: u32) -> Vec<(u32, bool)> {
+    let (mut at, mut left) = (body, 0);
+    let place = |&word: &u32| {
+        let place = (at, left > 0);
+        at += if word >> 16 == 0 { 2 } else { 4 };
+        // How many follow stands in the lowest bit that is set.
+        let begins = word & !0xFF == 0xBF00 && word & 0xF != 0;
+        left = if begins { 4 - word.trailing_zeros() } else { u32::saturating_sub(left, 1) };
+        place
+    };
+    BODY.iter().map(place).collect()
+}
+
+/// A core may be interrupted there; this one finishes a block first, which no program can tell from
+/// an interrupt that comes some instructions later.
+#[test]
+fn a_conditional_block_is_finished_before_an_interrupt_is_served() {
+    on_both(|chip| {
+        let mut program = Interrupted::boot(chip);
+        let body = program.body;
+        let mut interrupted = Vec::new();
+        for after in 0..BODY.len() as u64 - 1 {
+            program.machine.core_mut().set_register(RegisterARM::PC, body | 1);
+            program.machine.run_for(after).unwrap();
+            let pc = program.machine.core_mut().register(RegisterARM::PC) & !1;
+            interrupted.push(pc);
+        }
+        for (at, in_block) in places(body).into_iter().rev().skip(1) {
+            let what = format!("{}, {at:#x}", chip.name);
+            assert_eq!(interrupted.contains(&at), !in_block, "{what}: {interrupted:x?}");
         }
     });
 }
