@@ -25,14 +25,16 @@ use crate::device::Pins;
 /// The code that gives no torque.
 pub const MID_SCALE: u16 = DacCode::MID_SCALE.get();
 
-/// Does a test on both chips at the same time.
-pub fn on_both(test: impl Fn(&'static Chip) + Sync) {
+/// Does a test on both chips at the same time; gives what each gave.
+pub fn on_both<T: Send>(test: impl Fn(&'static Chip) -> T + Sync) -> [T; 2] {
+    let test = &test;
     thread::scope(|scope| {
-        for chip in Chip::ALL {
-            let run = || test(chip);
-            thread::Builder::new().name(chip.name.into()).spawn_scoped(scope, run).unwrap();
-        }
-    });
+        let begin = |chip: &'static Chip| {
+            let thread = thread::Builder::new().name(chip.name.into());
+            thread.spawn_scoped(scope, move || test(chip)).unwrap()
+        };
+        Chip::ALL.map(begin).map(|thread| thread.join().expect("it was not so on this chip"))
+    })
 }
 
 /// The file of a program for a chip. All of them are built when the first is asked for.

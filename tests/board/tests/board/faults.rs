@@ -1,13 +1,13 @@
 //! Every fault, provoked from outside, and how soon the motor is without torque.
 
-use std::sync::Mutex;
-
 use firmware::cycle::State;
 use firmware::fault::Fault;
 use firmware::wire::message::{FaultCode, Outcome};
 use unicorn_engine::RegisterARM;
+use virtual_board::board::Event;
 use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
 use virtual_board::core::exceptions::FIRST_INTERRUPT;
+use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
 use crate::stub::{Masks, hold_up};
@@ -34,7 +34,7 @@ struct Case {
     /// Whether the watchdog has to reset the board, which then says what it was.
     resets: bool,
     /// The fault, where its numbers are known.
-    expected: fn(&Bench) -> Option<Fault>,
+    expected: Option<Fault>,
 }
 
 const CASES: &[Case] = &[
@@ -49,7 +49,7 @@ const CASES: &[Case] = &[
             bench.machine.board().now
         },
         resets: false,
-        expected: |_| Some(Fault::EncoderJump { counts: LARGEST_STEP + 1, largest: LARGEST_STEP }),
+        expected: Some(Fault::EncoderJump { counts: LARGEST_STEP + 1, largest: LARGEST_STEP }),
     },
     Case {
         fault: "missed-tick",
@@ -61,7 +61,7 @@ const CASES: &[Case] = &[
             hold_up(bench, instructions, Masks::All)
         },
         resets: false,
-        expected: |_| Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
+        expected: Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
     },
     Case {
         fault: "not-a-number",
@@ -76,7 +76,7 @@ const CASES: &[Case] = &[
             bench.machine.board().now
         },
         resets: false,
-        expected: |_| Some(Fault::NotANumber),
+        expected: Some(Fault::NotANumber),
     },
     Case {
         fault: "watchdog",
@@ -89,7 +89,7 @@ const CASES: &[Case] = &[
             board.now
         },
         resets: true,
-        expected: |_| Some(Fault::Watchdog),
+        expected: Some(Fault::Watchdog),
     },
     Case {
         fault: "watchdog",
@@ -101,7 +101,7 @@ const CASES: &[Case] = &[
             hold_up(bench, instructions, Masks::All)
         },
         resets: true,
-        expected: |_| Some(Fault::Watchdog),
+        expected: Some(Fault::Watchdog),
     },
     Case {
         fault: "watchdog",
@@ -114,7 +114,7 @@ const CASES: &[Case] = &[
             board.now
         },
         resets: true,
-        expected: |_| Some(Fault::Watchdog),
+        expected: Some(Fault::Watchdog),
     },
     Case {
         fault: "hard-fault",
@@ -123,7 +123,7 @@ const CASES: &[Case] = &[
         bound: 1.0,
         provoke: |bench| breaks_in_a_tick(bench, Register::Encoder),
         resets: true,
-        expected: |_| None,
+        expected: None,
     },
     Case {
         fault: "watchdog",
@@ -132,7 +132,7 @@ const CASES: &[Case] = &[
         bound: 1.0,
         provoke: |bench| breaks_in_a_tick(bench, Register::Converter),
         resets: true,
-        expected: |_| Some(Fault::Watchdog),
+        expected: Some(Fault::Watchdog),
     },
     Case {
         fault: "panic",
@@ -154,7 +154,7 @@ const CASES: &[Case] = &[
             bench.machine.board().now
         },
         resets: true,
-        expected: |_| Some(Fault::Panic { line: 12, column: 34 }),
+        expected: Some(Fault::Panic { line: 12, column: 34 }),
     },
 ];
 
@@ -242,9 +242,7 @@ impl Case {
         let status = bench.status();
         let told = status.fault.and_then(FaultCode::fault).unwrap_or_else(|| panic!("{what}"));
         assert_eq!(told.as_str(), self.fault, "{what}");
-        if let Some(expected) = (self.expected)(bench) {
-            assert_eq!(told, expected, "{what}");
-        }
+        assert_eq!(told, self.expected.unwrap_or(told), "{what}");
         let state = if self.resets { State::Disarmed } else { State::Faulted };
         assert_eq!(status.state, state, "{what}");
         let remembered = bench.remembered().and_then(|record| record.fault.fault());
@@ -258,13 +256,12 @@ impl Case {
 
 /// From the update behind the one in which the amplifier went off, there is no torque.
 fn check_torque(bench: &Bench, off: u64, what: &str) {
-    use virtual_board::board::Event;
     let later = |&&(at, _): &&(u64, Event)| at > off + bench.period();
     for (at, event) in bench.events().iter().filter(later) {
         let harmless = match event {
             // As the driver switches it on, with the amplifier off.
             Event::Torque(code) => matches!(code, None | Some(MID_SCALE | 0)),
-            Event::Amplifier(level) => *level != virtual_board::peripheral::pins::Level::High,
+            Event::Amplifier(level) => *level != Level::High,
         };
         assert!(harmless, "{what}: {event:?} at {at}");
     }
@@ -273,15 +270,13 @@ fn check_torque(bench: &Bench, off: u64, what: &str) {
 
 /// The table of what was measured, in periods, rounded up to hundredths: instructions of a tick, of
 /// which a period has 170,000, vary with the compiler.
-fn table(measured: &[[f64; 2]]) -> String {
-    let mut table = format!(
-        "| fault | provoked by | promised | {} | {} |\n|---|---|---|---|---|\n",
-        Chip::ALL[0].name,
-        Chip::ALL[1].name
-    );
-    for (case, periods) in CASES.iter().zip(measured) {
-        let [g4, f405] = periods.map(|periods| (periods * 100.0).ceil() / 100.0);
-        let Case { fault, cause, bound, .. } = case;
+fn table(measured: [Vec<f64>; 2]) -> String {
+    let [g4, f405] = Chip::ALL.map(|chip| chip.name);
+    let mut table =
+        format!("| fault | provoked by | promised | {g4} | {f405} |\n|---|---|---|---|---|\n");
+    for (number, Case { fault, cause, bound, .. }) in CASES.iter().enumerate() {
+        let [g4, f405] =
+            measured.each_ref().map(|periods| (periods[number] * 100.0).ceil() / 100.0);
         table += &format!("| {fault} | {cause} | {bound} | {g4:.2} | {f405:.2} |\n");
     }
     table
@@ -289,16 +284,7 @@ fn table(measured: &[[f64; 2]]) -> String {
 
 #[test]
 fn every_fault_takes_the_torque_away_in_time_and_is_told() {
-    let measured = Chip::ALL.map(|_| Mutex::new(Vec::new()));
-    on_both(|chip| {
-        let mine = Chip::ALL.iter().position(|other| other.name == chip.name).unwrap();
-        for case in CASES {
-            let periods = case.run(chip);
-            measured[mine].lock().unwrap().push(periods);
-        }
-    });
-    let [g4, f405] = measured.map(|periods| periods.into_inner().unwrap());
-    let both: Vec<_> = g4.into_iter().zip(f405).map(|(a, b)| [a, b]).collect();
-    let (table, kept) = (table(&both), include_str!("../../faults.md"));
+    let measured = on_both(|chip| CASES.iter().map(|case| case.run(chip)).collect());
+    let (table, kept) = (table(measured), include_str!("../../faults.md"));
     assert!(kept.ends_with(&table), "faults.md has another table than\n{table}");
 }

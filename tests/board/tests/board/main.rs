@@ -2,11 +2,11 @@
 //! renders, and stops when it must.
 
 mod bench;
+mod contact;
 mod corpus;
 mod device;
 mod faults;
 mod harmless;
-mod hour;
 mod interrupts;
 mod scenes;
 mod start;

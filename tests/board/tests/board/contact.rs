@@ -1,5 +1,5 @@
-//! An hour of use: into the wall and out of it, turns that wrap the encoder's counter, and parameters
-//! that are changed while it is felt.
+//! An hour of contact and of free motion: into the wall and out of it, turns that wrap the encoder's
+//! counter, and parameters that are changed while it is felt.
 
 use std::num::NonZeroU32;
 
@@ -18,9 +18,12 @@ use crate::device::{InHand, Sample};
 
 /// Samples of the servo in a minute.
 const MINUTE: u64 = 60_000;
+/// Minutes on the chip with an encoder's counter of 32 bits, which take a minute and a half when
+/// nothing else runs, and on the one with 16.
+const MINUTES: [u64; 2] = [60, 3];
 
-/// The device in a hand that does the same over and over, and whose axis is spun round and back
-/// beside that, as far from the wall as it is long enough for the counter to wrap.
+/// A device in a hand that does the same over and over; and once a minute the encoder is spun away
+/// from the wall and back, far enough for a counter of 16 bits to wrap.
 struct Spun {
     hand: InHand,
     /// Samples so far.
@@ -172,9 +175,8 @@ fn used(chip: &'static Chip, minutes: u64) {
     }
 }
 
-/// One of the chips for the hour, which takes a minute and a half alone; the other one, whose
-/// counter has half the bits, long enough for that to wrap.
 #[test]
 fn an_hour_of_use_misses_no_tick_and_loses_no_count() {
-    on_both(|chip| used(chip, if chip.counter == 32 { 60 } else { 3 }));
+    let [wide, narrow] = MINUTES;
+    on_both(|chip| used(chip, if chip.counter == 32 { wide } else { narrow }));
 }
