@@ -1,7 +1,5 @@
 //! The board around the core: its peripherals on their bus, and the world that is wired to them.
 
-use std::fmt;
-
 use crate::chip::{Chip, DEBUG, PACER_INTERRUPT, Place, TORQUE, Unit};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
@@ -17,57 +15,7 @@ use crate::peripheral::plain::Plain;
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
 use crate::peripheral::{Access, Unmodelled};
-
-/// Something that is not modelled was used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NotModelled {
-    /// Who, by name, or nobody where nothing is at the address.
-    pub unit: Option<&'static str>,
-    /// The register's name, where it has one.
-    pub register: Option<&'static str>,
-    /// The address.
-    pub address: u32,
-    /// What was written, if it was.
-    pub written: Option<u32>,
-    /// Why it is not.
-    pub why: Why,
-}
-
-/// Why an access has no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
-    /// Nothing of the virtual board is there.
-    Nobody,
-    /// The unit is, but not this register or these bits.
-    Unit(Unmodelled),
-    /// The unit's clock is off, or the unit is held in reset.
-    Stopped,
-    /// Such an access (by bytes) is not.
-    Width,
-}
-
-impl fmt::Display for NotModelled {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unit = self.unit.unwrap_or("nothing that is modelled");
-        match self.written {
-            Some(value) => write!(f, "the program wrote {value:#010x} to ")?,
-            None => f.write_str("the program read ")?,
-        }
-        match self.register {
-            Some(register) => write!(f, "{register} of {unit} at {:#010x}: ", self.address)?,
-            None => write!(f, "{:#010x}, in {unit}: ", self.address)?,
-        }
-        match self.why {
-            Why::Nobody => f.write_str("the virtual board has no peripheral there"),
-            Why::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
-            Why::Unit(Unmodelled::Bits(bits)) => {
-                write!(f, "the bits {bits:#010x} are not modelled in that register")
-            }
-            Why::Stopped => f.write_str("its clock is off, or it is held in reset"),
-            Why::Width => f.write_str("an access of that width is not modelled"),
-        }
-    }
-}
+use crate::trouble::{NotModelled, Why};
 
 /// What happened on the board's pins, with the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,6 +11,7 @@
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes.
+//! - [`trouble`]: why a board cannot go on.
 //! - [`semihosting`]: a debugger that answers a program's calls.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core; so it is the right
@@ -21,10 +22,13 @@ pub mod chip;
 mod conditional;
 pub mod core;
 pub mod device;
+mod frame;
 pub mod image;
 pub mod machine;
 pub mod meter;
 mod names;
 pub mod peripheral;
 pub mod processor;
+mod rtt;
 pub mod semihosting;
+pub mod trouble;

@@ -4,106 +4,17 @@ use std::path::Path;
 
 use unicorn_engine::RegisterARM;
 
-use crate::board::{Board, NotModelled};
+use crate::board::Board;
 use crate::chip::{Chip, PACER_INTERRUPT};
 use crate::core::exceptions::{FIRST_INTERRUPT, Number};
 use crate::core::system::FaultStatus;
 use crate::device::Device;
+use crate::frame::{self, Frame, THUMB};
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
-use crate::processor::{Halt, KEPT, Processor};
-
-/// A frame of an exception, and one with the floating-point registers, in bytes.
-const FRAME: u32 = 0x20;
-const LONG_FRAME: u32 = 0x68;
-/// The frame's status: the stack was moved by a word to align it.
-const REALIGNED: u32 = 1 << 9;
-/// The status: Thumb.
-const THUMB: u32 = 1 << 24;
-/// A return from an exception: all that is the same in each.
-const RETURN: u32 = 0xFFFF_FFE1;
-/// To the program and not to another exception; without the floating-point registers.
-const TO_PROGRAM: u32 = 1 << 3;
-const SHORT: u32 = 1 << 4;
-/// To the stack that exceptions do not use.
-const OTHER_STACK: u32 = 1 << 2;
-
-/// Why a board cannot go on.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Trouble {
-    /// The program uses what is not modelled.
-    #[error("{what}; instruction {now} at {address:#010x}")]
-    NotModelled {
-        /// What.
-        what: NotModelled,
-        /// When.
-        now: u64,
-        /// Where.
-        address: u32,
-    },
-    /// The core is locked up: a fault where none can be served, and no watchdog to reset it.
-    #[error(
-        "the core is locked up by a fault within a fault, and there is no watchdog; \
-         instruction {now} at {address:#010x}"
-    )]
-    LockedUp {
-        /// When.
-        now: u64,
-        /// Where.
-        address: u32,
-    },
-    /// The program wants its debugger.
-    #[error("the core is stopped by a breakpoint; instruction {now} at {address:#010x}")]
-    Breakpoint {
-        /// When.
-        now: u64,
-        /// Where.
-        address: u32,
-    },
-    /// The clock stands still, and there is no watchdog.
-    #[error("the core's clock has stopped, and there is no watchdog; instruction {now}")]
-    NoClock {
-        /// When.
-        now: u64,
-    },
-    /// What was waited for did not come.
-    #[error("{what} has not happened within {instructions} instructions")]
-    Late {
-        /// What was waited for.
-        what: &'static str,
-        /// How long.
-        instructions: u64,
-    },
-}
-
-/// Why there is no board.
-#[derive(Debug, thiserror::Error)]
-pub enum BootError {
-    /// The program's file could not be read.
-    #[error("{path}: {source}")]
-    File {
-        /// The file.
-        path: String,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It is no program.
-    #[error("{path}: {source}")]
-    Image {
-        /// The file.
-        path: String,
-        /// Why.
-        source: object::Error,
-    },
-    /// It is not for this chip's memory.
-    #[error("the program has {size} bytes at {address:#010x}, where the chip has no flash")]
-    NoFlash {
-        /// Where.
-        address: u32,
-        /// How many.
-        size: usize,
-    },
-}
+use crate::processor::{Halt, Processor};
+use crate::rtt;
+use crate::trouble::{BootError, Trouble};
 
 /// A board with its power on.
 pub struct Machine {
@@ -371,105 +282,41 @@ impl Machine {
     }
 
     /// Begins to serve an exception (ARM DDI 0403E, B1.5.6): its frame on the stack, its vector.
-    ///
-    /// The floating-point registers are put into the frame at once. A core that puts them there
-    /// only when the handler uses some itself leaves the frame's words as they were; nothing but
-    /// time tells the difference.
     fn enter(&mut self, number: Number) {
-        let core = &mut self.core;
-        let long = core.uses_floating_point();
-        let stack = core.register(RegisterARM::MSP);
-        let frame = stack.wrapping_sub(if long { LONG_FRAME } else { FRAME }) & !7;
-        let realigned = if stack & 4 != 0 { REALIGNED } else { 0 };
-        let mut words = KEPT.map(|register| core.register(register)).to_vec();
-        words.push(core.register(RegisterARM::PC));
-        words.push(core.register(RegisterARM::XPSR) & !REALIGNED | realigned);
-        if long {
-            words.extend(FLOATING.map(|register| core.register(register)));
-            words.extend([core.register(RegisterARM::FPSCR), 0]);
-        }
-        let bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
-        // A stack that has run over keeps nothing; the handler of faults does not count on it.
-        core.set_memory(frame, &bytes);
-        let nested = core.board().system.exceptions.current().is_some();
-        let word = RETURN | if nested { 0 } else { TO_PROGRAM } | if long { 0 } else { SHORT };
-        let board = core.board_mut();
+        let nested = self.board().system.exceptions.current().is_some();
+        frame::push(&mut self.core, nested);
+        let board = self.core.board_mut();
         board.system.exceptions.enter(number);
         if number == SERVO {
             board.meter.begin(board.now);
         }
-        core.set_uses_floating_point(false);
-        core.set_register(RegisterARM::MSP, frame);
-        core.set_register(RegisterARM::LR, word);
-        core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
         let vector = match self.diverted {
             Some((diverted, address)) if diverted == number => address | 1,
             _ => self.vector(number.into()),
         };
+        self.core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
         self.core.set_register(RegisterARM::PC, vector);
     }
 
     /// Ends the exception that is being served (B1.5.8): back to what its frame says.
     fn leave(&mut self, word: u32) -> Result<(), Trouble> {
-        let is_return = word & !(TO_PROGRAM | SHORT | OTHER_STACK) | 1 == RETURN;
-        let frame = self.core.register(RegisterARM::MSP);
-        let size = if word & SHORT == 0 { LONG_FRAME } else { FRAME };
-        let kept = self.core.memory(frame, size as usize);
-        let Some(kept) = kept.filter(|_| is_return && word & OTHER_STACK == 0) else {
-            return self.fault(FaultStatus::State, frame);
+        let Some(frame) = Frame::of(&self.core, word) else {
+            let stack = self.core.register(RegisterARM::MSP);
+            return self.fault(FaultStatus::State, stack);
         };
-        let words: Vec<u32> = kept
-            .chunks_exact(4)
-            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
-            .collect();
-        let core = &mut self.core;
-        let board = core.board_mut();
+        let board = self.core.board_mut();
         if board.system.exceptions.current() == Some(SERVO) {
             board.meter.end(board.now);
         }
         board.system.exceptions.leave();
-        for (register, value) in KEPT.into_iter().zip(&words) {
-            core.set_register(register, *value);
-        }
-        let (pc, status) = (words[6], words[7]);
-        if word & SHORT == 0 {
-            for (register, value) in FLOATING.into_iter().zip(&words[8..]) {
-                core.set_register(register, *value);
-            }
-            core.set_register(RegisterARM::FPSCR, words[24]);
-        }
-        core.set_uses_floating_point(word & SHORT == 0);
-        let realigned = if status & REALIGNED != 0 { 4 } else { 0 };
-        core.set_register(RegisterARM::MSP, (frame + size) | realigned);
-        core.set_register(RegisterARM::XPSR, status & !REALIGNED);
-        core.set_register(RegisterARM::XPSR_G, status & !REALIGNED);
-        core.set_register(RegisterARM::FAULTMASK, 0);
-        core.set_register(RegisterARM::PC, pc | 1);
-        let sleeps = core.board().system.sleeps_on_exit() && word & TO_PROGRAM != 0;
-        self.waiting = sleeps;
+        frame.pop(&mut self.core);
+        self.waiting = self.board().system.sleeps_on_exit() && frame.is_of_program();
         Ok(())
     }
 
-    /// Takes the log's bytes out of its ring in RAM (SEGGER's real-time transfer), as a debug probe
-    /// does.
+    /// Takes down what the program has logged since the last time.
     fn drain_log(&mut self) {
-        let Some(block) = self.image.symbol("_SEGGER_RTT") else { return };
-        let mut channel = [0; 6];
-        // Behind the mark of 16 bytes and the two numbers of channels.
-        for (i, word) in channel.iter_mut().enumerate() {
-            *word = self.core.word(block + 24 + 4 * i as u32).unwrap_or(0);
-        }
-        let [_, buffer, size, write, read, _] = channel;
-        if self.core.memory(block, 16).is_none_or(|mark| !mark.starts_with(b"SEGGER RTT")) {
-            return;
-        }
-        let pieces =
-            if write >= read { [(read, write), (0, 0)] } else { [(read, size), (0, write)] };
-        for (from, to) in pieces {
-            let bytes = self.core.memory(buffer + from, (to - from) as usize);
-            self.log.extend(bytes.unwrap_or_default());
-        }
-        self.core.set_memory(block + 24 + 16, &write.to_le_bytes());
+        self.log.extend(rtt::drain(&mut self.core, &self.image));
     }
 }
 
@@ -478,23 +325,3 @@ const SERVO: Number = FIRST_INTERRUPT + PACER_INTERRUPT;
 
 /// Instructions within which the pacing timer has to come.
 const LONGEST: u64 = 200_000_000;
-
-/// The floating-point registers that a frame keeps.
-const FLOATING: [RegisterARM; 16] = [
-    RegisterARM::S0,
-    RegisterARM::S1,
-    RegisterARM::S2,
-    RegisterARM::S3,
-    RegisterARM::S4,
-    RegisterARM::S5,
-    RegisterARM::S6,
-    RegisterARM::S7,
-    RegisterARM::S8,
-    RegisterARM::S9,
-    RegisterARM::S10,
-    RegisterARM::S11,
-    RegisterARM::S12,
-    RegisterARM::S13,
-    RegisterARM::S14,
-    RegisterARM::S15,
-];

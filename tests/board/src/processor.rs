@@ -73,16 +73,6 @@ const WAIT_FOR_EVENT: u16 = 0xBF20;
 const BREAKPOINT: u32 = 7;
 const RETURN_FROM_EXCEPTION: u32 = 8;
 
-/// Registers that an exception keeps by itself, in the order of its frame.
-pub const KEPT: [RegisterARM; 6] = [
-    RegisterARM::R0,
-    RegisterARM::R1,
-    RegisterARM::R2,
-    RegisterARM::R3,
-    RegisterARM::R12,
-    RegisterARM::LR,
-];
-
 impl Processor {
     /// A core with a chip's memory, which holds noise, and its board.
     pub fn new(board: Board) -> Self {

@@ -11,7 +11,8 @@ use unicorn_engine::RegisterARM;
 
 use crate::chip::Chip;
 use crate::device::Still;
-use crate::machine::{BootError, Machine, Trouble};
+use crate::machine::Machine;
+use crate::trouble::{BootError, Trouble};
 
 /// The instruction of a call, `BKPT 0xAB` (section 4.1).
 const CALL: u16 = 0xBEAB;

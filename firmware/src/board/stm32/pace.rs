@@ -43,11 +43,24 @@ impl Period {
         if !(wanted >= 100.0 && seconds <= LONGEST_PERIOD) {
             return Err(StartError::Period { period: seconds, longest: LONGEST_PERIOD });
         }
-        // The smallest prescaler with which the period fits: the finest steps. Both casts round
-        // down what is positive and small enough.
-        let prescale = (wanted / MOST) as u32 + 1;
-        let counts = (wanted / f64::from(prescale) + 0.5) as u32;
-        Ok(Self { prescale, counts: counts.min(MOST as u32), clock })
+        // From the smallest prescaler with which the period fits, which has the finest steps, the one
+        // that comes nearest: usual periods are whole numbers of counts with one of the next few.
+        // All casts round down what is positive and small enough.
+        let first = (wanted / MOST) as u32 + 1;
+        let mut nearest = Self { prescale: first, counts: MOST as u32, clock };
+        for prescale in first..first + PRESCALERS {
+            let counts = ((wanted / f64::from(prescale) + 0.5) as u32).min(MOST as u32);
+            let other = Self { prescale, counts, clock };
+            if other.off(wanted) < nearest.off(wanted) {
+                nearest = other;
+            }
+        }
+        Ok(nearest)
+    }
+
+    /// Clock counts by which it is longer or shorter.
+    fn off(&self, wanted: f64) -> f64 {
+        (f64::from(self.prescale * self.counts) - wanted).abs()
     }
 
     /// Clock counts in a period.
@@ -62,6 +75,8 @@ impl Period {
     }
 }
 
+/// Prescalers that are tried.
+const PRESCALERS: u32 = 16;
 /// Values of a 16-bit counter.
 const MOST: f64 = 65_536.0;
 

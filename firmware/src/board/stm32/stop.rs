@@ -16,8 +16,10 @@ pub fn stop() {
 /// is, for a person to look at.
 pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
-    stop();
+    // The record before the converter: a register that does not answer ends all that is behind it.
+    AMPLIFIER.set(false);
     retained::keep_fault(fault);
+    CONVERTER.stop();
     loop {
         cortex_m::asm::nop();
     }

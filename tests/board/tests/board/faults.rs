@@ -126,13 +126,13 @@ const CASES: &[Case] = &[
         expected: None,
     },
     Case {
-        fault: "watchdog",
+        fault: "hard-fault",
         cause: "the bus has an error at the converter's register, also for the fault's handler",
         program: "damper_wall",
         bound: 1.0,
         provoke: |bench| breaks_in_a_tick(bench, Register::Converter),
         resets: true,
-        expected: Some(Fault::Watchdog),
+        expected: None,
     },
     Case {
         fault: "panic",

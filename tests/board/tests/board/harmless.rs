@@ -7,8 +7,8 @@ use firmware::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
 use virtual_board::device::Still;
-use virtual_board::machine::Trouble;
 use virtual_board::peripheral::pins::Level;
+use virtual_board::trouble::Trouble;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
 use crate::device::InHand;

@@ -13,6 +13,17 @@ const DEEP: u16 = 1500;
 /// alternation decay by a factor of 0.96 a sample.
 const SETTLING: u64 = 300;
 
+/// A thousandth of a second is a whole number of counts of either chip's timer, with a prescaler that
+/// divides it.
+#[test]
+fn the_pacing_timer_s_period_is_the_scene_s() {
+    on_both(|chip| {
+        let bench = Bench::running(chip, "damper_wall");
+        assert_eq!(bench.machine.board().clock.core(), chip.core, "{}", chip.name);
+        assert_eq!(bench.period(), chip.core / 1000, "{}", chip.name);
+    });
+}
+
 #[test]
 fn a_count_reaches_the_converter_within_its_sample_and_the_motor_exactly_at_the_next() {
     on_both(|chip| {

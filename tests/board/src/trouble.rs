@@ -1,0 +1,133 @@
+//! Why a board cannot be switched on, or cannot go on.
+
+use std::fmt;
+
+use crate::peripheral::Unmodelled;
+
+/// Why a board cannot go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Trouble {
+    /// The program uses what is not modelled.
+    #[error("{what}; instruction {now} at {address:#010x}")]
+    NotModelled {
+        /// What.
+        what: NotModelled,
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
+    /// The core is locked up: a fault where none can be served, and no watchdog to reset it.
+    #[error(
+        "the core is locked up by a fault within a fault, and there is no watchdog; \
+         instruction {now} at {address:#010x}"
+    )]
+    LockedUp {
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
+    /// The program wants its debugger.
+    #[error("the core is stopped by a breakpoint; instruction {now} at {address:#010x}")]
+    Breakpoint {
+        /// When.
+        now: u64,
+        /// Where.
+        address: u32,
+    },
+    /// The clock stands still, and there is no watchdog.
+    #[error("the core's clock has stopped, and there is no watchdog; instruction {now}")]
+    NoClock {
+        /// When.
+        now: u64,
+    },
+    /// What was waited for did not come.
+    #[error("{what} has not happened within {instructions} instructions")]
+    Late {
+        /// What was waited for.
+        what: &'static str,
+        /// How long.
+        instructions: u64,
+    },
+}
+
+/// Why there is no board.
+#[derive(Debug, thiserror::Error)]
+pub enum BootError {
+    /// The program's file could not be read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is no program.
+    #[error("{path}: {source}")]
+    Image {
+        /// The file.
+        path: String,
+        /// Why.
+        source: object::Error,
+    },
+    /// It is not for this chip's memory.
+    #[error("the program has {size} bytes at {address:#010x}, where the chip has no flash")]
+    NoFlash {
+        /// Where.
+        address: u32,
+        /// How many.
+        size: usize,
+    },
+}
+
+/// Something that is not modelled was used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotModelled {
+    /// Who, by name, or nobody where nothing is at the address.
+    pub unit: Option<&'static str>,
+    /// The register's name, where it has one.
+    pub register: Option<&'static str>,
+    /// The address.
+    pub address: u32,
+    /// What was written, if it was.
+    pub written: Option<u32>,
+    /// Why it is not.
+    pub why: Why,
+}
+
+/// Why an access has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Nothing of the virtual board is there.
+    Nobody,
+    /// The unit is, but not this register or these bits.
+    Unit(Unmodelled),
+    /// The unit's clock is off, or the unit is held in reset.
+    Stopped,
+    /// Such an access (by bytes) is not.
+    Width,
+}
+
+impl fmt::Display for NotModelled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = self.unit.unwrap_or("nothing that is modelled");
+        match self.written {
+            Some(value) => write!(f, "the program wrote {value:#010x} to ")?,
+            None => f.write_str("the program read ")?,
+        }
+        match self.register {
+            Some(register) => write!(f, "{register} of {unit} at {:#010x}: ", self.address)?,
+            None => write!(f, "{:#010x}, in {unit}: ", self.address)?,
+        }
+        match self.why {
+            Why::Nobody => f.write_str("the virtual board has no peripheral there"),
+            Why::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
+            Why::Unit(Unmodelled::Bits(bits)) => {
+                write!(f, "the bits {bits:#010x} are not modelled in that register")
+            }
+            Why::Stopped => f.write_str("its clock is off, or it is held in reset"),
+            Why::Width => f.write_str("an access of that width is not modelled"),
+        }
+    }
+}
