@@ -86,7 +86,7 @@ fn root_on_debian_installs_all_that_is_missing_at_once() {
     check(&bare_container(), Plan::Do(Step::Install(FOR_EMULATOR.to_vec())));
     let mut debian = debian();
     debian.packages[0] = PackageState::Installed(NEW);
-    let rest = Package::ALL[1..].to_vec();
+    let rest = FOR_EMULATOR[1..].to_vec();
     let facts = Facts { debian: Some(debian), ..bare_container() };
     check(&facts, Plan::Do(Step::Install(rest)));
 }
@@ -103,7 +103,7 @@ fn the_emulator_alone_is_installed_where_it_alone_is_missing() {
 #[test]
 fn a_person_who_is_not_root_is_told_the_packages() {
     let facts = Facts { root: false, ..bare_container() };
-    check(&facts, Plan::Ask(vec![Request::Packages(Package::ALL.to_vec())]));
+    check(&facts, Plan::Ask(vec![Request::Packages(FOR_EMULATOR.to_vec())]));
 }
 
 #[test]
