@@ -131,3 +131,45 @@ impl fmt::Display for NotModelled {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::board::Board;
+    use crate::chip::{Chip, NUCLEO_G474RE};
+    use crate::device::Still;
+
+    /// What a program is told that reads there, or writes this.
+    fn said(address: u32, written: Option<u32>) -> String {
+        let mut board = Board::new(&NUCLEO_G474RE, Box::new(Still));
+        // TIM6 and USART2 are clocked, and nothing else of their bus.
+        board.write(0x4002_1058, 4, (1 << 4) | (1 << 17));
+        match written {
+            Some(value) => board.write(address, 4, value),
+            None => drop(board.read(address, 4)),
+        }
+        board.stopped.expect("it is not modelled").to_string()
+    }
+
+    #[test]
+    fn what_is_not_modelled_is_named() {
+        for (sentence, parts) in [
+            (said(0x4000_1024, None), ["CNT of TIM6 at 0x40001024", "not modelled"]),
+            (said(0x4000_1000, Some(0x81)), ["CR1 of TIM6", "bits 0x00000080"]),
+            (said(0x4000_4418, Some(1)), ["wrote 0x00000001 to RQR of USART2", "not modelled"]),
+            (said(0x4000_0024, None), ["CNT of TIM2", "its clock is off"]),
+            (said(0x4002_0000, None), ["0x40020000", "no peripheral there"]),
+            (said(0xE000_EF00, Some(3)), ["0xe000ef00, in the system control space", "not"]),
+        ] {
+            assert!(parts.iter().all(|part| sentence.contains(part)), "{sentence}");
+        }
+    }
+
+    #[test]
+    fn registers_of_both_chips_have_names() {
+        for chip in Chip::ALL {
+            for place in chip.map {
+                assert!((chip.names)(place.unit, 0).is_some(), "{}: {}", chip.name, place.name);
+            }
+        }
+    }
+}
