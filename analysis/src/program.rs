@@ -82,7 +82,12 @@ impl Program {
         (self.build)(format, transducers)
     }
 
-    /// The same as a board with a latched converter renders it: a sample late at the least.
+    /// Its scene as a board with a latched converter renders it: a sample late at the least.
+    pub fn late_scene(&self) -> Scene {
+        late(self.scene)
+    }
+
+    /// The servo of that scene on the host.
     ///
     /// # Errors
     /// As of [`Self::controller`].

@@ -94,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     for (program, elf) in program::ALL.iter().zip(&built) {
         let report = verdict::judge(program.name, &program.scene);
         let outcome = emulate(program, elf, arguments)?;
-        write!(out, "{}", section(program, &report, &outcome))?;
+        writeln!(out, "{}", section(program, &report, &outcome))?;
         draw_run(folder, program, &outcome)?;
         all_well &= report.verdict == Verdict::Certified && outcome.run.difference.is_none();
     }
@@ -135,7 +135,8 @@ fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outco
     Ok(outcome)
 }
 
-fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
+/// What is shown of a scene that ran on a board: its verdict, and what it did.
+pub(super) fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
     let damping = |value: Option<f64>| {
         value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
     };
@@ -153,7 +154,7 @@ fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
     for line in super::run::text(outcome).lines() {
         text += &format!("  {line}\n");
     }
-    text + &coasting(program, outcome) + "\n"
+    text + &coasting(program, outcome)
 }
 
 /// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.

@@ -12,7 +12,7 @@ use firmware::servo::Transducers;
 use serde::Serialize;
 
 use super::identify::positive;
-use super::{Answer, CommandError};
+use super::{Answer, CommandError, demo};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::{self, SceneFile};
@@ -24,7 +24,7 @@ use crate::rig::{Difference, SimulatedDevice};
 use crate::scenario::{Beside, Input, Outcome, play};
 use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
-use crate::{replay, rig};
+use crate::{replay, rig, verdict};
 
 /// Where a scene runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,7 +201,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         stepper,
     )?;
     bar.finish_and_clear();
-    print(arguments, &question.name, &outcome)?;
+    print(arguments, &question, &outcome)?;
     Ok(if outcome.run.difference.is_none() { Answer::Yes } else { Answer::No })
 }
 
@@ -229,7 +229,10 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
     let format = arguments.format.into();
     Ok(Question {
         name: program.name.to_owned(),
-        scene: program.scene,
+        scene: match arguments.target {
+            Target::Host | Target::Qemu => program.scene,
+            Target::Board(_) => program.late_scene(),
+        },
         transducers,
         script: (program.script)(),
         controller: match arguments.target {
@@ -353,14 +356,21 @@ fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandErr
     Ok(Built::Emulated(elf))
 }
 
-fn print(arguments: &Arguments, name: &str, outcome: &Outcome) -> Result<(), CommandError> {
+fn print(
+    arguments: &Arguments,
+    question: &Question,
+    outcome: &Outcome,
+) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
         csv(&mut out, &outcome.run)?;
     } else if arguments.json {
-        let summary = summary(arguments, name, outcome);
+        let summary = summary(arguments, &question.name, outcome);
         serde_json::to_writer(&mut out, &summary).map_err(io::Error::from)?;
         writeln!(out)?;
+    } else if let (Target::Board(_), Some(program)) = (arguments.target, question.program) {
+        let report = verdict::judge(program.name, &question.scene);
+        write!(out, "{}", demo::section(program, &report, outcome))?;
     } else {
         write!(out, "{}", text(outcome))?;
     }

@@ -111,8 +111,8 @@ impl Varied<'_> {
         None
     }
 
-    /// Moves the number by a step, then by octaves, until the scene passes. Both ends are the same where the first
-    /// value passes, as that of a residual does that was none before.
+    /// Moves the number by a step, then by octaves, until the scene passes. Both ends are the same
+    /// where the first value passes, as that of a residual does that was none before.
     const fn bracket(&self, own: Option<f64>) -> Option<Bracket> {
         let mut passes = match (get(self.scene, self.parameter), self.parameter) {
             (Some(value), _) if value > 0.0 => Look { value, shortage: own },
