@@ -56,6 +56,14 @@ pub struct Sample {
     pub sent: Vec<u8>,
 }
 
+impl Sample {
+    /// The code that the motor felt: without an amplifier, or a level at its input, that of no
+    /// torque.
+    pub fn felt(&self) -> u16 {
+        self.code.filter(|_| self.amplifier).unwrap_or(DacCode::MID_SCALE.get())
+    }
+}
+
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
@@ -236,8 +244,6 @@ impl Twin for VirtualBoard {
 
     fn exchange(&mut self, raw: i32) -> Result<u16, VirtualBoardError> {
         self.answer(raw, &[])?;
-        let sample = self.sample()?;
-        // Without an amplifier there is no torque, whatever the converter puts out.
-        Ok(sample.code.filter(|_| sample.amplifier).unwrap_or(DacCode::MID_SCALE.get()))
+        Ok(self.sample()?.felt())
     }
 }

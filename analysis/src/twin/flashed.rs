@@ -5,8 +5,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use firmware::dac::DacCode;
-
 use super::listener::Listener;
 use crate::rig::Plant;
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
@@ -26,8 +24,7 @@ pub(super) fn serve(
     let (mut count, mut next) = (0, Instant::now());
     while !over.load(Ordering::Relaxed) {
         let sample = board.sample()?;
-        let code = sample.code.filter(|_| sample.amplifier).unwrap_or(DacCode::MID_SCALE.get());
-        plant.hold(code);
+        plant.hold(sample.felt());
         // A recording that has ended stands still.
         count = plant.count().unwrap_or(count);
         to_host.extend(sample.sent);

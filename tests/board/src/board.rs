@@ -167,19 +167,22 @@ impl Board {
 
     /// Turns the encoder, where it is wired as the program has set its pins up.
     pub fn turn(&mut self, counts: i32) {
-        let (pins, function) = self.chip.encoder;
-        if pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function)) {
+        if self.is_wired(self.chip.encoder) {
             self.encoder.turn(counts);
         }
     }
 
     /// Puts bytes on the line to the program, where its pin is set up for that.
     pub fn send(&mut self, bytes: &[u8]) {
-        let (pins, function) = self.chip.serial;
-        if pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function)) {
+        if self.is_wired(self.chip.serial) {
             self.serial.send(bytes);
             self.serial.advance(self.now, self.clock.bus_divider());
         }
+    }
+
+    /// Whether the program has given both pins this alternate function.
+    fn is_wired(&self, (pins, function): ([(usize, u32); 2], u32)) -> bool {
+        pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function))
     }
 
     /// Reads for the program.

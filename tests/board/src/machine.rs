@@ -183,7 +183,8 @@ impl Machine {
             self.fault(FaultStatus::Data, address)?;
         }
         if self.locked_up {
-            return self.wait(end);
+            self.wait(end);
+            return Ok(());
         }
         let masks = self.core.masks();
         let exceptions = &self.core.board().system.exceptions;
@@ -194,7 +195,8 @@ impl Machine {
             self.waiting = false;
         }
         if self.waiting {
-            return self.wait(end);
+            self.wait(end);
+            return Ok(());
         }
         let until = end.min(self.core.board().due());
         let masked = self.core.board().system.exceptions.any_pending();
@@ -217,10 +219,9 @@ impl Machine {
     }
 
     /// Time passes up to the next event, and no instruction is executed.
-    fn wait(&mut self, end: u64) -> Result<(), Trouble> {
+    fn wait(&mut self, end: u64) {
         let board = self.core.board_mut();
         board.now = board.now.max(end.min(board.due()));
-        Ok(())
     }
 
     /// The clock of the core and of all that it paces stands still. The watchdog has its own.

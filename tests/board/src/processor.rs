@@ -62,7 +62,7 @@ const NOWHERE: u64 = 0xFFFF_FFF0;
 /// The regions of peripherals, and of the core's own registers.
 const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x0010_0000)];
 /// CONTROL: the floating-point registers are in use.
-const IN_USE: u64 = 1 << 2;
+const IN_USE: u32 = 1 << 2;
 /// The same with the bit of the same meaning that later cores have in their secure state, in which the
 /// engine believes itself: without it, the next floating-point instruction would begin with a status
 /// of zero.
@@ -200,7 +200,7 @@ impl Processor {
 
     /// Whether the floating-point registers are in use.
     pub fn uses_floating_point(&self) -> bool {
-        u64::from(self.register(RegisterARM::CONTROL)) & IN_USE != 0
+        self.register(RegisterARM::CONTROL) & IN_USE != 0
     }
 
     /// Says whether they are.

@@ -1,9 +1,8 @@
 //! Reset and clock control: oscillators that are ready as soon as they are switched on, unless a
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
-use std::collections::BTreeMap;
-
-use super::{Access, Unmodelled, only};
+use super::Access;
+use super::plain::Plain;
 
 /// What differs between the families.
 #[derive(Debug)]
@@ -48,7 +47,7 @@ pub enum Cause {
 #[derive(Clone, Debug)]
 pub struct Clock {
     layout: &'static Layout,
-    values: BTreeMap<u32, u32>,
+    registers: Plain,
     crystal: u64,
     /// Whether the crystal runs when it is switched on.
     pub crystal_runs: bool,
@@ -57,25 +56,30 @@ pub struct Clock {
 impl Clock {
     /// Out of reset, with a crystal of so many Hz.
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
-        let values = layout.registers.iter().map(|&(offset, value, _)| (offset, value)).collect();
-        let mut clock = Self { layout, values, crystal, crystal_runs: true };
-        clock.add_cause(cause);
+        let registers = Plain::new(layout.registers);
+        let mut clock = Self { layout, registers, crystal, crystal_runs: true };
+        clock.remember(cause as u32);
         clock
     }
 
-    /// Takes down why the chip was reset; the other causes stay until they are forgotten.
-    pub fn add_cause(&mut self, cause: Cause) {
-        *self.values.entry(self.layout.causes).or_default() |= cause as u32;
-    }
-
-    /// The same unit behind a reset.
+    /// The same unit behind a reset: the causes of earlier ones stay until they are forgotten.
     #[must_use]
     pub fn after_reset(&self, cause: Cause) -> Self {
-        let causes = self.get(self.layout.causes) & CAUSES;
         let mut clock =
             Self { crystal_runs: self.crystal_runs, ..Self::new(self.layout, self.crystal, cause) };
-        *clock.values.entry(self.layout.causes).or_default() |= causes;
+        clock.remember(self.causes());
         clock
+    }
+
+    /// Adds to the causes of resets.
+    fn remember(&mut self, causes: u32) {
+        let register = self.layout.causes;
+        self.registers.set(register, self.get(register) | causes);
+    }
+
+    /// The causes of resets that have not been forgotten.
+    fn causes(&self) -> u32 {
+        self.get(self.layout.causes) & CAUSES
     }
 
     /// The core's clock in Hz; 0 where its source does not run.
@@ -114,8 +118,7 @@ impl Clock {
 
     /// Reads.
     pub fn read(&self, offset: u32) -> Access<u32> {
-        let value = *self.values.get(&offset).ok_or(Unmodelled::Register)?;
-        let value = self.with_ready(offset, value);
+        let value = self.with_ready(offset, self.registers.read(offset)?);
         // What runs is what was chosen.
         let runs = if offset == self.layout.choice { (value & 0b11) << 2 } else { 0 };
         Ok(value | runs)
@@ -123,34 +126,30 @@ impl Clock {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        let (_, reset, modelled) = *self
-            .layout
-            .registers
-            .iter()
-            .find(|(place, ..)| *place == offset)
-            .ok_or(Unmodelled::Register)?;
-        // What the chip itself sets is written back by whoever changes something else.
-        let own = if offset == self.layout.choice { 0b1100 } else { 0 };
-        let own = self.switches(offset).fold(own, |own, (_, ready)| own | ready);
-        let is_causes = offset == self.layout.causes;
-        let own = if is_causes { own | CAUSES } else { own };
-        only((value ^ reset) & !own, modelled)?;
-        let causes = if is_causes && value & self.layout.forget == 0 {
-            self.get(offset) & CAUSES
+        let own = self.own(offset);
+        self.registers.check(offset, value, own)?;
+        let kept = if offset != self.layout.causes {
+            value & !own
+        } else if value & self.layout.forget != 0 {
+            // The bit that forgets does not stay.
+            value & !own & !self.layout.forget
         } else {
-            0
+            value & !own | self.causes()
         };
-        self.values.insert(offset, value & !own & !self.forgets(offset) | causes);
+        self.registers.set(offset, kept);
         Ok(())
     }
 
-    /// The bit that forgets the causes of resets, which does not stay.
-    fn forgets(&self, offset: u32) -> u32 {
-        if offset == self.layout.causes { self.layout.forget } else { 0 }
+    /// A register's bits that the chip itself sets, which are written back by whoever changes
+    /// something else.
+    fn own(&self, offset: u32) -> u32 {
+        let choice = if offset == self.layout.choice { 0b1100 } else { 0 };
+        let causes = if offset == self.layout.causes { CAUSES } else { 0 };
+        self.switches(offset).fold(choice | causes, |own, (_, ready)| own | ready)
     }
 
     fn get(&self, offset: u32) -> u32 {
-        self.values.get(&offset).copied().unwrap_or(0)
+        self.registers.get(offset)
     }
 
     /// A register's switches and the bits that say they are ready.

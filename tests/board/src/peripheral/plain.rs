@@ -19,9 +19,14 @@ impl Plain {
         Self { layout, values }
     }
 
-    /// What a register holds; for those who ask from outside, 0 where there is none.
-    pub fn get(&self, offset: u32) -> u32 {
+    /// What a register holds; 0 where there is none.
+    pub(super) fn get(&self, offset: u32) -> u32 {
         self.values.get(&offset).copied().unwrap_or(0)
+    }
+
+    /// Has a register hold this, whoever may write it.
+    pub(super) fn set(&mut self, offset: u32, value: u32) {
+        self.values.insert(offset, value);
     }
 
     /// Reads.
@@ -31,11 +36,16 @@ impl Plain {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
+        self.check(offset, value, 0)?;
+        self.set(offset, value);
+        Ok(())
+    }
+
+    /// Whether a value may be written there, whatever it has of the chip's `own` bits.
+    pub(super) fn check(&self, offset: u32, value: u32, own: u32) -> Access<()> {
         let (_, reset, modelled) =
             *self.layout.iter().find(|(place, ..)| *place == offset).ok_or(Unmodelled::Register)?;
         // What is not modelled may be left as it was, which is as it came out of reset.
-        only(value ^ reset, modelled)?;
-        self.values.insert(offset, value);
-        Ok(())
+        only((value ^ reset) & !own, modelled)
     }
 }
