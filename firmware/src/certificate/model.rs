@@ -125,16 +125,17 @@ pub(super) const fn transfer(
     let built = match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall(w, n)),
         Environment::FreeMode { delay, .. } => {
-            let free = free_mode(n);
-            Some(Transfer { shift: free.shift - *delay as i32, ..free })
+            let mut free = free_mode(n);
+            free.shift -= *delay as i32;
+            Some(free)
         }
-        Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(wall(w, n)),
+        Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(&wall(w, n)),
         Environment::Rational(r) => rational(r, n),
     };
     match built {
         None => Err(Unbuildable::OutOfRange),
-        Some(transfer) => {
-            let transfer = Transfer { scale: n.solved(transfer.feedthrough()), ..transfer };
+        Some(mut transfer) => {
+            transfer.scale = n.solved(transfer.feedthrough());
             match transfer.check() {
                 Ok(()) => Ok(transfer),
                 Err(error) => Err(error),

@@ -127,8 +127,7 @@ impl Posed {
     /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
     /// left out.
     pub const fn passes_exact(&self) -> bool {
-        let near = near(exact_limit(&self.numbers));
-        let index = if self.is_standard() { self.alone(&near) } else { self.behind(&near) };
+        let index = self.coupled(&near(exact_limit(&self.numbers)));
         matches!(self.exact(&index), Answer::Pass)
     }
 
@@ -168,9 +167,7 @@ impl Posed {
     }
 
     const fn exact_shortage(&self) -> Option<Interval> {
-        let roughly = Closeness::within(ROUGHLY);
-        let index = if self.is_standard() { self.alone(&roughly) } else { self.behind(&roughly) };
-        match index {
+        match self.coupled(&Closeness::within(ROUGHLY)) {
             Ok(found) => Some(found.minimum.sub(exact_limit(&self.numbers))),
             Err(_) => None,
         }
@@ -203,6 +200,11 @@ impl Posed {
     }
 
     /// Index of `E'`.
+    const fn coupled(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+        if self.is_standard() { self.alone(closeness) } else { self.behind(closeness) }
+    }
+
+    /// Index of `E'` where that is not the environment itself.
     pub(super) const fn behind(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match cancelled(self.environment).behind(self.numbers.excess_compliance()) {
             Ok(equivalent) => index_looked_at(equivalent, self.numbers.period, false, closeness),

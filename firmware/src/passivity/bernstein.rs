@@ -8,8 +8,9 @@
 //! which side of a border the minimum is gets an answer after a few boxes.
 
 use super::chebyshev::Series;
-use super::interval::{Interval, div_down, div_up};
+use super::interval::Interval;
 use super::polynomial::MAX_DEGREE;
+use super::rounding::{div_down, div_up};
 
 const SIZE: usize = MAX_DEGREE + 2;
 /// Boxes put aside share this pool: five of the largest degree, more of smaller ones. Few ever
@@ -120,7 +121,7 @@ pub const fn minimum(
     root.r[degree] = root.r[degree].and(ends[1]);
     let left = upper_bound(root.p[0], root.r[0]);
     let right = upper_bound(root.p[degree], root.r[degree]);
-    search.run(root);
+    search.run(&mut root);
     let lower = search.lower.min(search.upper);
     let flat = left.max(right) <= search.upper + 1e-12 * search.upper.abs();
     let at = if flat { Interval::new(-1.0, 1.0) } else { search.at };
@@ -153,9 +154,9 @@ struct Search {
 }
 
 impl Search {
-    const fn run(&mut self, root: Pieces) {
-        let mut pieces = root;
-        let mut current = Waiting { left: -1.0, level: 0, bound: self.look(&pieces, -1.0, 2.0) };
+    /// Searches from the whole interval on, in the memory of its pieces.
+    const fn run(&mut self, pieces: &mut Pieces) {
+        let mut current = Waiting { left: -1.0, level: 0, bound: self.look(pieces, -1.0, 2.0) };
         let mut boxes = 0;
         loop {
             boxes += 1;
@@ -166,10 +167,10 @@ impl Search {
             if boxes > MAX_BOXES || current.level >= MAX_LEVEL || self.is_settled(current.bound) {
                 self.lower = self.lower.min(current.bound.lower);
             } else {
-                current = self.split(&mut pieces, current);
+                current = self.split(pieces, current);
                 continue;
             }
-            match self.take(&mut pieces) {
+            match self.take(pieces) {
                 Some(next) => current = next,
                 None => return,
             }

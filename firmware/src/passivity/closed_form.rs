@@ -185,7 +185,7 @@ mod tests {
             let denominator = Polynomial::ascending(&[Interval::ZERO, T]);
             let undelayed = Transfer::new(numerator, denominator);
             let delayed = Transfer { shift: -1, ..undelayed };
-            let sum = |wall| canceller(be, k_vc).plus(wall).unwrap();
+            let sum = |wall| canceller(be, k_vc).plus(&wall).unwrap();
             let formula = free_mode_delayed_wall(be, k_vc, k, b, T);
             agree(formula, index(sum(delayed), T, false).unwrap().minimum);
             let formula = free_mode_undelayed_wall(be, k, b, T);

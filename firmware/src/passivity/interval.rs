@@ -10,6 +10,10 @@
 //! On a board every operation stands once and is called: in line, with its emulated doubles, it
 //! would fill a tenth of the smallest flash.
 
+use super::rounding::{
+    add_down, div_down, div_up, half_down, is_not_negative, is_zero, mul_down, mul_up,
+};
+
 /// A closed interval of reals; `lo <= hi`, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
@@ -73,7 +77,7 @@ impl Interval {
 
     /// Whether the interval is the number 0 and nothing else.
     pub const fn is_zero(self) -> bool {
-        magnitude_bits(self.lo) == 0 && magnitude_bits(self.hi) == 0
+        is_zero(self.lo) && is_zero(self.hi)
     }
 
     /// Whether `value` is inside.
@@ -109,7 +113,7 @@ impl Interval {
     /// `self + other`.
     #[cfg_attr(target_os = "none", inline(never))]
     pub const fn add(self, other: Self) -> Self {
-        Self { lo: add_down(self.lo, other.lo), hi: add_up(self.hi, other.hi) }
+        Self { lo: add_down(self.lo, other.lo), hi: -add_down(-self.hi, -other.hi) }
     }
 
     /// `self - other`.
@@ -218,86 +222,6 @@ impl Interval {
         let lo = if self.lo > 0.0 { sqrt_enclosure(self.lo).lo } else { 0.0 };
         Self { lo, hi: sqrt_enclosure(self.hi).hi }
     }
-}
-
-#[cfg_attr(target_os = "none", inline(never))]
-const fn add_down(a: f64, b: f64) -> f64 {
-    let sum = a + b;
-    let (large, small) = if magnitude_bits(a) < magnitude_bits(b) { (b, a) } else { (a, b) };
-    // Dekker's two-sum: what the sum has of the smaller summand, exact for finite numbers.
-    // Where a sum is infinite, it is no number, or so large that the step outward is made.
-    if small >= sum - large { sum } else { below(sum) }
-}
-
-/// The next double below, or nothing known of what is no number.
-const fn below(value: f64) -> f64 {
-    if value.is_nan() { f64::NEG_INFINITY } else { value.next_down() }
-}
-
-/// The bits of `abs(value)`, which are in the order of the magnitudes: emulated doubles are compared
-/// by a call, whole numbers are not.
-const fn magnitude_bits(value: f64) -> u64 {
-    value.to_bits() & (u64::MAX >> 1)
-}
-
-/// `value >= 0.0` by the bits.
-pub(super) const fn is_not_negative(value: f64) -> bool {
-    value.to_bits() <= 1 << 63
-}
-
-#[cfg_attr(target_os = "none", inline(never))]
-const fn add_up(a: f64, b: f64) -> f64 {
-    -add_down(-a, -b)
-}
-
-#[cfg_attr(target_os = "none", inline(never))]
-const fn mul_down(a: f64, b: f64) -> f64 {
-    if magnitude_bits(a) == 0 || magnitude_bits(b) == 0 {
-        return 0.0;
-    }
-    let product = a * b;
-    if fits_a_mantissa(a, b) && product.is_normal() { product } else { product.next_down() }
-}
-
-#[cfg_attr(target_os = "none", inline(never))]
-const fn mul_up(a: f64, b: f64) -> f64 {
-    -mul_down(-a, b)
-}
-
-/// Lower bound of a quotient; `b > 0`.
-#[cfg_attr(target_os = "none", inline(never))]
-pub(super) const fn div_down(a: f64, b: f64) -> f64 {
-    if magnitude_bits(a) == 0 {
-        return 0.0;
-    }
-    let quotient = a / b;
-    if fits_a_mantissa(quotient, b) && a.is_normal() && quotient * b == a {
-        quotient
-    } else {
-        below(quotient)
-    }
-}
-
-/// Upper bound of a quotient; `b > 0`.
-#[cfg_attr(target_os = "none", inline(never))]
-pub(super) const fn div_up(a: f64, b: f64) -> f64 {
-    -div_down(-a, b)
-}
-
-const fn half_down(value: f64) -> f64 {
-    let half = value * 0.5;
-    if half.is_normal() || half + half == value { half } else { half.next_down() }
-}
-
-/// Whether the product of two numbers is exact, as long as it is a normal number: the significant
-/// bits of the factors fit a mantissa together.
-const fn fits_a_mantissa(a: f64, b: f64) -> bool {
-    a.is_normal() && b.is_normal() && trailing_zeros(a) + trailing_zeros(b) >= 53
-}
-
-/// Bits of the 53 of a normal number's mantissa behind the last one that is set.
-const fn trailing_zeros(value: f64) -> u32 {
-    (value.to_bits() | (1 << 52)).trailing_zeros()
 }
 
 /// Newton's iteration, then the quotient on the other side of the root: `r` and `x / r` enclose

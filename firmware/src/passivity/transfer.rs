@@ -118,26 +118,30 @@ impl Transfer {
 
     /// `self + other`; `None` if the result has too high a degree.
     #[inline(never)]
-    pub const fn plus(self, other: Self) -> Option<Self> {
-        let ones = if self.ones < other.ones { self.ones } else { other.ones };
-        let ones = positive(ones);
-        let (Some(mut a), Some(mut b)) = (
-            self.numerator_with_roots(self.shift, self.ones - ones, self.minus_ones),
-            other.numerator_with_roots(other.shift, other.ones - ones, other.minus_ones),
-        ) else {
-            return None;
-        };
-        a = a.scaled(self.scale);
-        b = b.scaled(other.scale);
-        let (Some(p), Some(q)) = (self.denominator_with_roots(), other.denominator_with_roots())
+    pub const fn plus(&self, other: &Self) -> Option<Self> {
+        let ones = positive(if self.ones < other.ones { self.ones } else { other.ones });
+        let (Some(left), Some(right)) = (self.summand(other, ones), other.summand(self, ones))
         else {
             return None;
         };
-        let (Some(left), Some(right), Some(denominator)) = (a.times(&q), b.times(&p), p.times(&q))
-        else {
-            return None;
-        };
+        let Some(denominator) = self.common_denominator(other) else { return None };
         Some(Self { ones, ..Self::new(left.plus(&right), denominator) })
+    }
+
+    /// What it is of the numerator of a sum over the common denominator, without the zeros at 1
+    /// that both summands have.
+    #[inline(never)]
+    const fn summand(&self, other: &Self, ones: i32) -> Option<Polynomial> {
+        let own = self.numerator_with_roots(self.shift, self.ones - ones, self.minus_ones);
+        let (Some(own), Some(others)) = (own, other.denominator_with_roots()) else { return None };
+        own.scaled(self.scale).times(&others)
+    }
+
+    #[inline(never)]
+    const fn common_denominator(&self, other: &Self) -> Option<Polynomial> {
+        let (own, others) = (self.denominator_with_roots(), other.denominator_with_roots());
+        let (Some(own), Some(others)) = (own, others) else { return None };
+        own.times(&others)
     }
 
     const fn numerator_with_roots(&self, shift: i32, ones: i32, minus: i32) -> Option<Polynomial> {
