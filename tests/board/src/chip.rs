@@ -50,6 +50,13 @@ pub struct Place {
     pub clocked: Option<(u32, u32, u32)>,
 }
 
+/// Where flash begins, which the core sees from address 0 on out of reset.
+pub const FLASH: u32 = 0x0800_0000;
+/// Where the core-coupled memory begins.
+pub const COUPLED: u32 = 0x1000_0000;
+/// Where RAM begins.
+pub const RAM: u32 = 0x2000_0000;
+
 /// Bytes that a unit takes of the map.
 pub const SPAN: u32 = 0x400;
 
@@ -58,11 +65,11 @@ pub const SPAN: u32 = 0x400;
 pub struct Chip {
     /// Name of the board that it is on, as `haptic` has it.
     pub name: &'static str,
-    /// Flash in bytes.
+    /// Bytes of [`FLASH`].
     pub flash: u32,
-    /// RAM in bytes, from 0x20000000 on.
+    /// Bytes of [`RAM`].
     pub ram: u32,
-    /// Core-coupled memory in bytes, from 0x10000000 on, and whether instructions come from there.
+    /// Bytes of [`COUPLED`] memory, and whether instructions come from there.
     pub coupled: (u32, bool),
     /// The board's crystal in Hz.
     pub crystal: u64,

@@ -2,7 +2,11 @@
 //! them, but a core takes a clock for each.
 
 /// Instructions of a block, at most.
-const LONGEST: usize = 4;
+const LONGEST: u32 = 4;
+/// Bytes from where a block begins to its last instruction, at most: that begins it, and three.
+const TO_LAST: u32 = 2 + 4 * (LONGEST - 1);
+/// Bytes that can be skipped at once.
+const SKIPPED: u32 = 4 * LONGEST;
 
 /// Where the last instructions were, to find the block that a skipped one belongs to.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,6 +22,11 @@ pub struct Trail {
 }
 
 impl Trail {
+    /// Where the latest was.
+    pub fn latest(&self) -> u32 {
+        self.place(self.count.wrapping_sub(1))
+    }
+
     /// Whether an instruction there follows the last one, so that nothing was skipped.
     #[inline]
     pub fn is_next(&self, address: u32) -> bool {
@@ -33,8 +42,8 @@ impl Trail {
     }
 
     /// How many instructions were skipped before one that does not follow the last one; `read` gives
-    /// half a word of the program. Where none was, that was a jump.
-    pub fn skip(&mut self, address: u32, read: impl Fn(u32) -> u16) -> u64 {
+    /// the program from an address on. Where none was, that was a jump.
+    pub fn skip(&mut self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
         let skipped = self.skipped(address, read);
         if skipped == 0 {
             self.jumped = self.count;
@@ -44,21 +53,39 @@ impl Trail {
 
     /// Instructions from where the next one was expected up to `address`, if a block was there
     /// that goes as far.
-    fn skipped(&self, address: u32, read: impl Fn(u32) -> u16) -> u64 {
+    fn skipped(&self, address: u32, read: impl FnOnce(u32, &mut [u8])) -> u64 {
         // What is skipped is always ahead and near.
-        if address.wrapping_sub(self.next) > 4 * LONGEST as u32 {
+        if address.wrapping_sub(self.next) > SKIPPED {
             return 0;
         }
-        let first = self.jumped.max(self.count.saturating_sub(LONGEST + 1));
-        let mut latest = (first..self.count).rev().map(|i| self.places[i % self.places.len()]);
-        let Some(block) = latest.find(|&at| length(read(at)) > 0) else { return 0 };
+        // Of what was executed since the last jump, what is near enough to have begun the block.
+        let near = self.next.saturating_sub(TO_LAST);
+        let since = (self.jumped..self.count).rev().map(|number| self.place(number));
+        let candidates = since.take(LONGEST as usize + 1).take_while(|&at| at >= near);
+        let Some(from) = candidates.clone().last() else { return 0 };
+        let mut code = [0; (TO_LAST + SKIPPED) as usize];
+        let code = &mut code[..(address - from) as usize];
+        read(from, code);
+        let half = |at: u32| {
+            let at = (at - from) as usize;
+            u16::from_le_bytes([code[at], code[at + 1]])
+        };
+        let Some(block) = candidates.into_iter().find(|&at| length(half(at)) > 0) else { return 0 };
         let (mut at, mut skipped) = (block + 2, 0);
-        for _ in 0..length(read(block)) {
-            skipped += u64::from(at >= self.next && at < address);
-            at += if is_long(read(at)) { 4 } else { 2 };
+        for _ in 0..length(half(block)) {
+            if at >= address {
+                break;
+            }
+            skipped += u64::from(at >= self.next);
+            at += if is_long(half(at)) { 4 } else { 2 };
         }
         // Beyond the block only a jump leads.
         if address <= at { skipped } else { 0 }
+    }
+
+    /// Where the instruction of a number was.
+    fn place(&self, number: usize) -> u32 {
+        self.places[number % self.places.len()]
     }
 }
 
@@ -82,8 +109,10 @@ mod tests {
     /// `itte eq`, an instruction of 4 bytes, one of 2, one of 4, and what follows.
     const PROGRAM: [u16; 8] = [0xBF06, 0xF04F, 0x0001, 0x2002, 0xF04F, 0x0003, 0x4770, 0xBF00];
 
-    fn read(at: u32) -> u16 {
-        PROGRAM[at as usize / 2]
+    fn read(from: u32, bytes: &mut [u8]) {
+        for (byte, at) in bytes.iter_mut().zip(from as usize..) {
+            *byte = PROGRAM[at / 2].to_le_bytes()[at % 2];
+        }
     }
 
     fn skipped(run: &[(u32, u32)]) -> Vec<u64> {

@@ -5,12 +5,12 @@
 //! turned by a simulated device, and the converter's output drives that device.
 //!
 //! - [`machine`]: the board with its power on.
-//! - [`board`]: the units on the bus, and the world that is wired to them.
+//! - [`board`]: the units, and the world that is wired to them.
 //! - [`chip`]: the two chips: where what is, and which pins it uses.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
-//! - [`processor`]: the instructions, which a library executes.
+//! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile.
 //! - [`trouble`]: why a board cannot go on.
 //! - [`semihosting`]: a debugger that answers a program's calls.
 //!
@@ -23,6 +23,7 @@ mod conditional;
 pub mod core;
 pub mod device;
 mod frame;
+mod hooks;
 pub mod image;
 pub mod machine;
 pub mod meter;

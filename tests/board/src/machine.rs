@@ -1,15 +1,17 @@
 //! The board with its power on: instructions, exceptions between them, and time.
 
+mod serve;
+
 use std::path::Path;
 
 use unicorn_engine::RegisterARM;
 
 use crate::board::Board;
-use crate::chip::{Chip, PACER_INTERRUPT};
-use crate::core::exceptions::{FIRST_INTERRUPT, Number};
+use crate::chip::Chip;
+use crate::core::exceptions::Number;
 use crate::core::system::FaultStatus;
 use crate::device::Device;
-use crate::frame::{self, Frame, THUMB};
+use crate::frame::THUMB;
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
 use crate::processor::{Halt, Processor};
@@ -166,56 +168,55 @@ impl Machine {
         if self.core.board().clock.has_stopped() {
             return self.stand_still();
         }
+        self.catch_up()?;
+        if self.locked_up || self.waits() {
+            self.wait(end);
+            return Ok(());
+        }
+        let board = self.core.board();
+        let (until, masked) = (end.min(board.due()), board.system.exceptions.any_pending());
+        let halt = self.core.run(until, masked);
+        self.halted(halt)
+    }
+
+    /// What is due between two instructions, or has come of the last one.
+    fn catch_up(&mut self) -> Result<(), Trouble> {
         if self.core.board_mut().advance() {
             self.reset(Cause::Watchdog);
         }
         if self.core.board().system.reset_requested {
             self.reset(Cause::Software);
         }
+        let at = self.core.last_address();
         if let Some(what) = self.core.board().stopped.clone() {
-            let (now, address) = (self.board().now, self.core.last_address());
-            return Err(Trouble::NotModelled { what, now, address });
+            return Err(Trouble::NotModelled { what, now: self.board().now, address: at });
         }
         if let Some(address) = self.core.board_mut().bus_error.take() {
             // The access has failed; the instruction is the one that made it.
-            let at = self.core.last_address();
             self.core.set_register(RegisterARM::PC, at | 1);
             self.fault(FaultStatus::Data, address)?;
         }
-        if self.locked_up {
-            self.wait(end);
-            return Ok(());
-        }
-        let masks = self.core.masks();
-        let exceptions = &self.core.board().system.exceptions;
-        if let Some(number) = exceptions.next(masks) {
-            self.waiting = false;
-            self.enter(number);
-        } else if self.waiting && exceptions.wakes(masks) {
-            self.waiting = false;
-        }
-        if self.waiting {
-            self.wait(end);
-            return Ok(());
-        }
-        let until = end.min(self.core.board().due());
-        let masked = self.core.board().system.exceptions.any_pending();
-        match self.core.run(until, masked) {
-            Halt::Attention => {}
-            Halt::Waiting => self.waiting = true,
-            Halt::Returning(word) => self.leave(word)?,
-            Halt::NoMemory { fetch, address } => {
-                let status = if fetch { FaultStatus::Fetch } else { FaultStatus::Data };
-                self.fault(status, address)?;
+        Ok(())
+    }
+
+    /// What becomes of the core that has stopped executing.
+    fn halted(&mut self, halt: Halt) -> Result<(), Trouble> {
+        match halt {
+            Halt::Attention => Ok(()),
+            Halt::Waiting => {
+                self.waiting = true;
+                Ok(())
             }
+            Halt::Returning(word) => self.leave(word),
+            Halt::NoMemory { fetch: true, address } => self.fault(FaultStatus::Fetch, address),
+            Halt::NoMemory { fetch: false, address } => self.fault(FaultStatus::Data, address),
             Halt::Breakpoint if self.debugged => {
                 let (now, address) = (self.board().now, self.core.last_address());
-                return Err(Trouble::Breakpoint { now, address });
+                Err(Trouble::Breakpoint { now, address })
             }
-            Halt::Undefined => self.fault(FaultStatus::Undefined, 0)?,
-            Halt::Breakpoint | Halt::Invalid => self.fault(FaultStatus::State, 0)?,
+            Halt::Undefined => self.fault(FaultStatus::Undefined, 0),
+            Halt::Breakpoint | Halt::Invalid => self.fault(FaultStatus::State, 0),
         }
-        Ok(())
     }
 
     /// Time passes up to the next event, and no instruction is executed.
@@ -232,22 +233,6 @@ impl Machine {
         };
         board.now = due;
         self.reset(Cause::Watchdog);
-        Ok(())
-    }
-
-    /// A fault at the instruction where the core stands.
-    fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), Trouble> {
-        let masks = self.core.masks();
-        let board = self.core.board_mut();
-        if !board.system.exceptions.can_fault(masks) {
-            // The one way out that there is.
-            if board.watchdog.due().is_some() {
-                self.locked_up = true;
-                return Ok(());
-            }
-            return Err(Trouble::LockedUp { now: board.now, address: self.core.last_address() });
-        }
-        board.system.fault(status, address);
         Ok(())
     }
 
@@ -272,57 +257,11 @@ impl Machine {
         self.start();
     }
 
-    /// A word of the vector table, which is at the beginning of flash out of reset.
-    fn vector(&self, number: u32) -> u32 {
-        const FLASH: u32 = 0x0800_0000;
-        let table = match self.core.board().system.vectors() {
-            0 => FLASH,
-            table => table,
-        };
-        self.core.word(table + 4 * number).unwrap_or(0)
-    }
-
-    /// Begins to serve an exception (ARM DDI 0403E, B1.5.6): its frame on the stack, its vector.
-    fn enter(&mut self, number: Number) {
-        let nested = self.board().system.exceptions.current().is_some();
-        frame::push(&mut self.core, nested);
-        let board = self.core.board_mut();
-        board.system.exceptions.enter(number);
-        if number == SERVO {
-            board.meter.begin(board.now);
-        }
-        let vector = match self.diverted {
-            Some((diverted, address)) if diverted == number => address | 1,
-            _ => self.vector(number.into()),
-        };
-        self.core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
-        self.core.set_register(RegisterARM::PC, vector);
-    }
-
-    /// Ends the exception that is being served (B1.5.8): back to what its frame says.
-    fn leave(&mut self, word: u32) -> Result<(), Trouble> {
-        let Some(frame) = Frame::of(&self.core, word) else {
-            let stack = self.core.register(RegisterARM::MSP);
-            return self.fault(FaultStatus::State, stack);
-        };
-        let board = self.core.board_mut();
-        if board.system.exceptions.current() == Some(SERVO) {
-            board.meter.end(board.now);
-        }
-        board.system.exceptions.leave();
-        frame.pop(&mut self.core);
-        self.waiting = self.board().system.sleeps_on_exit() && frame.is_of_program();
-        Ok(())
-    }
-
     /// Takes down what the program has logged since the last time.
     fn drain_log(&mut self) {
         self.log.extend(rtt::drain(&mut self.core, &self.image));
     }
 }
-
-/// The servo's interrupt.
-const SERVO: Number = FIRST_INTERRUPT + PACER_INTERRUPT;
 
 /// Instructions within which the pacing timer has to come.
 const LONGEST: u64 = 200_000_000;

@@ -9,8 +9,9 @@
 use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_error};
 
 use crate::board::Board;
-use crate::conditional::Trail;
+use crate::chip::{COUPLED, FLASH, RAM};
 use crate::core::exceptions::Masks;
+use crate::hooks::{self, Context, Engine};
 
 /// Why the core has stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,31 +37,15 @@ pub enum Halt {
     Invalid,
 }
 
-/// What the engine's callbacks work with.
-struct Context {
-    board: Board,
-    /// When something is due.
-    deadline: u64,
-    /// A stop before the next instruction.
-    attention: bool,
-    /// An exception waits for its mask to fall.
-    masked: bool,
-    /// Where the last instruction was.
-    address: u32,
-    /// Where those before it were.
-    trail: Trail,
-    halt: Option<Halt>,
-}
-
 /// The core.
 pub struct Processor {
-    engine: Unicorn<'static, Context>,
+    engine: Engine<'static>,
+    /// No instruction has come from RAM.
+    ram_is_data: bool,
 }
 
 /// An address at which nothing is ever executed, since a run has to end somewhere.
 const NOWHERE: u64 = 0xFFFF_FFF0;
-/// The regions of peripherals, and of the core's own registers.
-const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x0010_0000)];
 /// CONTROL: the floating-point registers are in use.
 const IN_USE: u32 = 1 << 2;
 /// The same with the bit of the same meaning that later cores have in their secure state, in which the
@@ -69,76 +54,31 @@ const IN_USE: u32 = 1 << 2;
 const IN_USE_TO_THE_ENGINE: u32 = 0b11 << 2;
 /// A wait for an event, as an instruction: the engine takes it for an unknown one.
 const WAIT_FOR_EVENT: u16 = 0xBF20;
-/// The engine's numbers of what interrupts it.
-const BREAKPOINT: u32 = 7;
-const RETURN_FROM_EXCEPTION: u32 = 8;
 
 impl Processor {
     /// A core with a chip's memory, which holds noise, and its board.
     pub fn new(board: Board) -> Self {
         let chip = board.chip();
-        let context = Context {
-            board,
-            deadline: 0,
-            attention: false,
-            masked: false,
-            address: 0,
-            trail: Trail::default(),
-            halt: None,
-        };
         let mode = Mode::THUMB | Mode::MCLASS;
-        let mut engine =
-            Unicorn::new_with_data(Arch::ARM, mode, context).expect("the engine has this core");
+        let mut engine = Unicorn::new_with_data(Arch::ARM, mode, Context::new(board))
+            .expect("the engine has this core");
         engine.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32).expect("the engine has this core");
         let coupled = if chip.coupled.1 { Prot::ALL } else { Prot::READ | Prot::WRITE };
         for (base, size, access) in [
-            (0x0800_0000, chip.flash, Prot::READ | Prot::EXEC),
-            (0x2000_0000, chip.ram, Prot::ALL),
-            (0x1000_0000, chip.coupled.0, coupled),
+            (FLASH, chip.flash, Prot::READ | Prot::EXEC),
+            (COUPLED, chip.coupled.0, coupled),
+            // Until an instruction is fetched from there.
+            (RAM, chip.ram, Prot::READ | Prot::WRITE),
         ] {
-            engine.mem_map(base, size.into(), access).expect("the chip's memories do not overlap");
+            let mapped = engine.mem_map(base.into(), size.into(), access);
+            mapped.expect("the chip's memories do not overlap");
         }
-        let mut core = Self { engine };
-        core.wire();
-        for (base, size) in [(0x2000_0000, chip.ram), (0x1000_0000, chip.coupled.0)] {
+        hooks::wire(&mut engine);
+        let mut core = Self { engine, ram_is_data: true };
+        for (base, size) in [(RAM, chip.ram), (COUPLED, chip.coupled.0)] {
             core.fill_with_noise(base, size);
         }
         core
-    }
-
-    /// The engine's callbacks.
-    fn wire(&mut self) {
-        let engine = &mut self.engine;
-        for (base, size) in REGIONS {
-            let read = move |engine: &mut Unicorn<'_, Context>, offset: u64, size: usize| {
-                let context = engine.get_data_mut();
-                let value = context.board.read((base + offset) as u32, size);
-                context.accessed();
-                value.into()
-            };
-            let write = move |engine: &mut Unicorn<'_, Context>, offset, size, value: u64| {
-                let context = engine.get_data_mut();
-                context.board.write((base + offset) as u32, size, value as u32);
-                context.accessed();
-            };
-            engine.mmio_map(base, size, Some(read), Some(write)).expect("nothing else is there");
-        }
-        engine.add_code_hook(0, u64::MAX, before_instruction).expect("the engine has such hooks");
-        engine.add_intr_hook(interrupted).expect("the engine has such hooks");
-        engine
-            .add_mem_hook(
-                unicorn_engine::HookType::MEM_INVALID,
-                0,
-                u64::MAX,
-                |engine, kind, address, _, _| {
-                    use unicorn_engine::MemType;
-                    let fetch = matches!(kind, MemType::FETCH_UNMAPPED | MemType::FETCH_PROT);
-                    let address = address as u32;
-                    engine.get_data_mut().halt = Some(Halt::NoMemory { fetch, address });
-                    false
-                },
-            )
-            .expect("the engine has such hooks");
     }
 
     /// The board.
@@ -154,12 +94,17 @@ impl Processor {
     /// Runs until something may have to be done, at the latest at a time. With `masked`, also as
     /// soon as the masks change.
     pub fn run(&mut self, until: u64, masked: bool) -> Halt {
+        loop {
+            let halt = self.execute(until, masked);
+            if !self.has_let_ram_execute(halt) {
+                return halt;
+            }
+        }
+    }
+
+    fn execute(&mut self, until: u64, masked: bool) -> Halt {
         let pc = u64::from(self.register(RegisterARM::PC));
-        let context = self.engine.get_data_mut();
-        context.deadline = until;
-        context.attention = false;
-        context.masked = masked;
-        context.halt = None;
+        self.engine.get_data_mut().begin(until, masked);
         let result = self.engine.emu_start(pc | 1, NOWHERE, 0, 0);
         if let Some(halt) = self.engine.get_data_mut().halt.take() {
             return halt;
@@ -173,19 +118,34 @@ impl Processor {
         }
     }
 
+    /// Lets instructions come from RAM if the core has stopped because the first one does. Before,
+    /// no store has to be looked at for instructions that it changes, which takes the engine long.
+    fn has_let_ram_execute(&mut self, halt: Halt) -> bool {
+        let ram = self.board().chip().ram;
+        match halt {
+            Halt::NoMemory { fetch: true, address }
+                if self.ram_is_data && address.wrapping_sub(RAM) < ram =>
+            {
+                self.ram_is_data = false;
+                self.engine.mem_protect(RAM.into(), ram.into(), Prot::ALL).is_ok()
+            }
+            _ => false,
+        }
+    }
+
     /// Whether the last instruction was a wait for an event.
     fn has_waited(&self) -> bool {
-        half_word(&self.engine, self.engine.get_data().address) == WAIT_FOR_EVENT
+        self.memory(self.last_address(), 2).as_deref() == Some(&WAIT_FOR_EVENT.to_le_bytes())
     }
 
     /// Where the last instruction was.
     pub fn last_address(&self) -> u32 {
-        self.engine.get_data().address
+        self.engine.get_data().trail.latest()
     }
 
     /// What holds exceptions off.
     pub fn masks(&self) -> Masks {
-        masks(&self.engine)
+        hooks::masks(&self.engine)
     }
 
     /// A register.
@@ -240,71 +200,94 @@ impl Processor {
     }
 }
 
-impl Context {
-    /// After an access of the program to a peripheral: what is due may have changed.
-    fn accessed(&mut self) {
-        let board = &self.board;
-        self.deadline = self.deadline.min(board.due());
-        self.attention |= board.wants_attention() || board.system.exceptions.any_pending();
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chip::{Chip, STM32F405};
+    use crate::device::Still;
 
-/// Counts an instruction and those that were skipped before it, or stops before it.
-fn before_instruction(engine: &mut Unicorn<'_, Context>, address: u64, size: u32) {
-    let unmasked = engine.get_data().masked && {
-        let masks = masks(engine);
-        engine.get_data().board.system.exceptions.next(masks).is_some()
-    };
-    let context = engine.get_data_mut();
-    if unmasked || context.attention || context.board.now >= context.deadline {
-        context.halt = Some(Halt::Attention);
-        // Fails only where the engine does not run.
-        let _ = engine.emu_stop();
-        return;
-    }
-    let address = address as u32;
-    if !context.trail.is_next(address) {
-        let mut trail = context.trail;
-        let skipped = trail.skip(address, |at| half_word(engine, at));
-        let context = engine.get_data_mut();
-        context.trail = trail;
-        context.board.now += skipped;
-    }
-    let context = engine.get_data_mut();
-    context.trail.push(address, size);
-    context.board.now += 1;
-    context.address = address;
-}
+    /// `b .`
+    const STAY: u16 = 0xE7FE;
 
-/// Half a word of the program; 0 where there is none.
-fn half_word(engine: &Unicorn<'_, Context>, address: u32) -> u16 {
-    let mut bytes = [0; 2];
-    match engine.mem_read(address.into(), &mut bytes) {
-        Ok(()) => u16::from_le_bytes(bytes),
-        Err(_) => 0,
-    }
-}
-
-/// What the engine calls an interrupt: the core wants something that is done outside.
-fn interrupted(engine: &mut Unicorn<'_, Context>, number: u32) {
-    let halt = match number {
-        BREAKPOINT => Halt::Breakpoint,
-        RETURN_FROM_EXCEPTION => {
-            let word = engine.reg_read(RegisterARM::PC).unwrap_or(0);
-            Halt::Returning(word as u32)
+    /// Why the core stops that executes some instructions from `at` on, and what it was then.
+    fn execute(
+        chip: &'static Chip,
+        at: u32,
+        code: &[u16],
+        registers: [u32; 4],
+    ) -> (Halt, Processor) {
+        let mut core = Processor::new(Board::new(chip, Box::new(Still)));
+        let bytes: Vec<_> = code.iter().flat_map(|half| half.to_le_bytes()).collect();
+        core.set_memory(at, &bytes);
+        let names = [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2, RegisterARM::R3];
+        for (name, value) in names.into_iter().zip(registers) {
+            core.set_register(name, value);
         }
-        _ => Halt::Invalid,
-    };
-    engine.get_data_mut().halt = Some(halt);
-    // Fails only where the engine does not run.
-    let _ = engine.emu_stop();
-}
+        core.set_register(RegisterARM::PC, at | 1);
+        (core.run(50, false), core)
+    }
 
-fn masks(engine: &Unicorn<'_, Context>) -> Masks {
-    let read = |register| engine.reg_read(register).unwrap_or(0);
-    Masks {
-        primask: read(RegisterARM::PRIMASK) & 1 != 0,
-        faultmask: read(RegisterARM::FAULTMASK) & 1 != 0,
-        basepri: read(RegisterARM::BASEPRI) as u8,
+    #[test]
+    fn instructions_come_only_from_where_the_chip_lets_them() {
+        for chip in Chip::ALL {
+            let coupled = chip.coupled.1;
+            let behind = RAM + chip.ram;
+            for (at, is_memory) in [
+                (FLASH, true),
+                (COUPLED, coupled),
+                (RAM, true),
+                (behind - 2, true),
+                (behind, false),
+                (FLASH - 0x1000, false),
+                (0x6000_0000, false),
+            ] {
+                let none = Halt::NoMemory { fetch: true, address: at };
+                let expected = if is_memory { Halt::Attention } else { none };
+                let (halt, _) = execute(chip, at, &[STAY], [0; 4]);
+                assert_eq!(halt, expected, "{}, {at:#x}", chip.name);
+            }
+        }
+    }
+
+    #[test]
+    fn data_come_from_all_memory_and_go_where_it_can_be_written() {
+        const LOAD: u16 = 0x6801; // ldr r1, [r0]
+        const STORE: u16 = 0x6001; // str r1, [r0]
+        for chip in Chip::ALL {
+            for (access, address, is_allowed) in [
+                (LOAD, FLASH, true),
+                (STORE, FLASH, false),
+                (LOAD, COUPLED, true),
+                (STORE, COUPLED, true),
+                (STORE, RAM + chip.ram - 4, true),
+                (LOAD, RAM + chip.ram, false),
+                (STORE, RAM + chip.ram, false),
+                (STORE, COUPLED + chip.coupled.0, false),
+            ] {
+                let none = Halt::NoMemory { fetch: false, address };
+                let expected = if is_allowed { Halt::Attention } else { none };
+                let (halt, _) = execute(chip, FLASH, &[access, STAY], [address, 0, 0, 0]);
+                assert_eq!(halt, expected, "{}, {access:#x} of {address:#x}", chip.name);
+            }
+        }
+    }
+
+    /// In a page that was data until then, and in one that was executed before.
+    #[test]
+    fn an_instruction_that_a_store_has_changed_is_executed_as_it_is_now() {
+        const CODE: &[u16] = &[
+            0x6001, // str r1, [r0]
+            0x4798, // blx r3
+            0x3101, // adds r1, #1
+            0x6001, // str r1, [r0]
+            0x4798, // blx r3
+            STAY,
+        ];
+        // movs r2, #1; bx lr. And the second time, with a 2.
+        const FIRST: u32 = 0x4770_2201;
+        for place in [RAM + 0x1000, RAM + 2 * CODE.len() as u32] {
+            let (_, core) = execute(&STM32F405, RAM, CODE, [place, FIRST, 0, place | 1]);
+            assert_eq!(core.register(RegisterARM::R2), 2, "{place:#x}");
+        }
     }
 }

@@ -54,33 +54,55 @@ impl Masks {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct State {
-    enabled: bool,
-    /// Asked for, by an edge or by the program.
-    pending: bool,
-    /// The line from a peripheral, which asks for as long as it is up.
-    line: bool,
-    active: bool,
-    priority: u8,
+/// A set of exceptions: a bit each, at the place of its number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Set(u128);
+
+impl Set {
+    fn has(self, number: Number) -> bool {
+        self.0 & (1 << number) != 0
+    }
+
+    fn put(&mut self, number: Number, is_in: bool) {
+        self.0 = self.0 & !(1 << number) | u128::from(is_in) << number;
+    }
+
+    /// Its numbers, lowest first.
+    fn numbers(self) -> impl Iterator<Item = Number> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let number = (left != 0).then(|| left.trailing_zeros() as Number)?;
+            left &= left - 1;
+            Some(number)
+        })
+    }
 }
 
 /// The controller of exceptions.
 #[derive(Clone, Debug)]
 pub struct Exceptions {
-    states: [State; NUMBERS],
+    enabled: Set,
+    /// Asked for, by an edge or by the program.
+    pending: Set,
+    /// Lines from peripherals that are up, each of which asks for as long as it is.
+    lines: Set,
+    active: Set,
+    priorities: [u8; NUMBERS],
     /// Those that have begun and not ended, the latest last.
     nested: Vec<Number>,
 }
 
 impl Default for Exceptions {
     fn default() -> Self {
-        let mut states = [State::default(); NUMBERS];
-        // Interrupts have to be enabled; the core's own exceptions that are here cannot be.
-        for own in &mut states[..FIRST_INTERRUPT.into()] {
-            own.enabled = true;
+        Self {
+            // Interrupts have to be enabled; the core's own exceptions that are here cannot be.
+            enabled: Set((1 << FIRST_INTERRUPT) - 1),
+            pending: Set::default(),
+            lines: Set::default(),
+            active: Set::default(),
+            priorities: [0; NUMBERS],
+            nested: Vec::new(),
         }
-        Self { states, nested: Vec::new() }
     }
 }
 
@@ -97,67 +119,65 @@ impl Exceptions {
 
     /// Asks for one.
     pub fn pend(&mut self, number: Number) {
-        self.states[usize::from(number)].pending = true;
+        self.pending.put(number, true);
     }
 
     /// Takes that back.
     pub fn unpend(&mut self, number: Number) {
-        self.states[usize::from(number)].pending = false;
+        self.pending.put(number, false);
     }
 
     /// Whether one is asked for.
     pub fn is_pending(&self, number: Number) -> bool {
-        let state = &self.states[usize::from(number)];
-        state.pending || (state.line && !state.active)
+        self.asked().has(number)
     }
 
     /// Whether one is being served.
     pub fn is_active(&self, number: Number) -> bool {
-        self.states[usize::from(number)].active
+        self.active.has(number)
     }
 
     /// A peripheral's line goes up or down. An interrupt that was asked for stays so.
     pub fn set_line(&mut self, number: Number, up: bool) {
-        let state = &mut self.states[usize::from(number)];
         // What rises while it is served comes again at its end.
-        state.pending |= up && !state.line;
-        state.line = up;
+        if up && !self.lines.has(number) {
+            self.pend(number);
+        }
+        self.lines.put(number, up);
     }
 
     /// Enables an interrupt or disables it.
     pub fn enable(&mut self, number: Number, enabled: bool) {
-        self.states[usize::from(number)].enabled = enabled;
+        self.enabled.put(number, enabled);
     }
 
     /// Whether it is enabled.
     pub fn is_enabled(&self, number: Number) -> bool {
-        self.states[usize::from(number)].enabled
+        self.enabled.has(number)
     }
 
     /// Sets its priority, of which the chips have the upper bits. Of an interrupt that the chips do
     /// not have, it is ignored.
     pub fn set_priority(&mut self, number: Number, priority: u8) {
-        if let Some(state) = self.states.get_mut(usize::from(number)) {
-            state.priority = priority & PRIORITY_BITS;
+        if let Some(own) = self.priorities.get_mut(usize::from(number)) {
+            *own = priority & PRIORITY_BITS;
         }
     }
 
     /// Its priority as the program reads it.
     pub fn priority(&self, number: Number) -> u8 {
-        self.states.get(usize::from(number)).map_or(0, |state| state.priority)
+        self.priorities.get(usize::from(number)).copied().unwrap_or(0)
     }
 
     /// Whether any is asked for and enabled, masked or not.
     pub fn any_pending(&self) -> bool {
-        (0..NUMBERS as Number).any(|number| self.is_enabled(number) && self.is_pending(number))
+        self.waiting() != Set::default()
     }
 
     /// The one to be served next, if it may interrupt what runs now.
     pub fn next(&self, masks: Masks) -> Option<Number> {
-        let (priority, number) = (0..NUMBERS as Number)
-            .filter(|&number| self.is_enabled(number) && self.is_pending(number))
-            .map(|number| (self.rank(number), number))
-            .min()?;
+        let ranked = self.waiting().numbers().map(|number| (self.rank(number), number));
+        let (priority, number) = ranked.min()?;
         (priority < self.running(masks)).then_some(number)
     }
 
@@ -168,22 +188,31 @@ impl Exceptions {
 
     /// Begins to serve one.
     pub fn enter(&mut self, number: Number) {
-        let state = &mut self.states[usize::from(number)];
-        state.pending = false;
-        state.active = true;
+        self.pending.put(number, false);
+        self.active.put(number, true);
         self.nested.push(number);
     }
 
     /// Ends the one that is being served; a line that is still up asks again.
     pub fn leave(&mut self) {
         if let Some(number) = self.nested.pop() {
-            self.states[usize::from(number)].active = false;
+            self.active.put(number, false);
         }
     }
 
     /// Whether a fault can be served where the core is now: not in or above its own priority.
     pub fn can_fault(&self, masks: Masks) -> bool {
         self.running(masks) > -1
+    }
+
+    /// All that are asked for.
+    fn asked(&self) -> Set {
+        Set(self.pending.0 | self.lines.0 & !self.active.0)
+    }
+
+    /// Those that are asked for and enabled.
+    fn waiting(&self) -> Set {
+        Set(self.asked().0 & self.enabled.0)
     }
 
     /// The priority of what runs now.

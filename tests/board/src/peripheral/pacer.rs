@@ -69,11 +69,6 @@ impl Pacer {
         (u64::from(self.counting) + 1) * (u64::from(self.reload) + 1) * divider
     }
 
-    /// Shifts the next overflow: a clock source that stops for a while.
-    pub fn delay(&mut self, clocks: u64) {
-        self.overflow = self.overflow.map(|overflow| overflow + clocks);
-    }
-
     /// Reads.
     pub fn read(&self, offset: u32) -> Access<u32> {
         match offset {

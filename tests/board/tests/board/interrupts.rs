@@ -8,6 +8,7 @@ use virtual_board::device::Still;
 use virtual_board::image::Image;
 use virtual_board::machine::Machine;
 
+use crate::assembly::bytes;
 use crate::bench::on_both;
 
 const FLASH: u32 = 0x0800_0000;
@@ -18,10 +19,10 @@ const WORDS: usize = 10;
 const COUNTS: u32 = 0x2000_0400;
 /// What the lower one adds each time.
 const ADDED: u32 = 8;
-/// Instructions after which everything is over.
+/// Instructions after which everything is over; more than all parts together have.
 const ALL: u64 = 300;
 
-/// Instructions, those of 32 bits with their first half above.
+/// Instructions for [`bytes`].
 type Code = &'static [u32];
 
 /// Switches the floating-point unit on, and gives PendSV a lower priority than SysTick's.
@@ -135,14 +136,6 @@ const HIGHER: Code = &[
     0x4770,      // bx lr
 ];
 
-fn bytes(code: Code) -> Vec<u8> {
-    let halves = |&word: &u32| {
-        let (first, second) = ((word >> 16) as u16, word as u16);
-        [first, second].into_iter().skip(usize::from(first == 0))
-    };
-    code.iter().flat_map(halves).flat_map(u16::to_le_bytes).collect()
-}
-
 /// The program on a chip.
 struct Interrupted {
     machine: Machine,
@@ -176,34 +169,44 @@ impl Interrupted {
         std::array::from_fn(|i| self.machine.core_mut().word(address + 4 * i as u32).unwrap())
     }
 
-    /// Runs the body once more, interrupted each time after so many instructions. Gives what it has
-    /// computed.
-    fn run(&mut self, interrupts: &[(u64, Number)]) -> [u32; WORDS] {
+    /// Begins the body, and executes so many instructions of it.
+    fn begin(&mut self, instructions: u64) {
+        self.machine.core_mut().set_register(RegisterARM::PC, self.body | 1);
+        self.machine.run_for(instructions).unwrap();
+    }
+
+    /// Runs the body once more, interrupted each time after so many instructions: it computes what
+    /// it does undisturbed.
+    fn check(&mut self, interrupts: &[(u64, Number)]) {
         let core = self.machine.core_mut();
         let stack = core.register(RegisterARM::MSP);
         core.set_memory(RESULTS, &[0xEE; 4 * WORDS]);
-        core.set_register(RegisterARM::PC, self.body | 1);
+        self.begin(0);
         for &(after, number) in interrupts {
             self.machine.run_for(after).unwrap();
             self.machine.board_mut().system.exceptions.pend(number);
         }
         self.machine.run_for(ALL).unwrap();
-        assert_eq!(self.machine.core_mut().register(RegisterARM::MSP), stack);
-        self.words(RESULTS)
+        let what = format!("{}, {interrupts:?}", self.machine.board().chip().name);
+        assert_eq!(self.words(RESULTS), results(), "{what}");
+        assert_eq!(self.machine.core_mut().register(RegisterARM::MSP), stack, "{what}");
     }
+}
+
+/// The numbers of instructions before each of a program's, from none on.
+fn before_each(code: Code) -> std::ops::Range<u64> {
+    0..code.len() as u64
 }
 
 #[test]
 fn a_program_goes_on_after_an_interrupt_anywhere() {
     on_both(|chip| {
         let mut program = Interrupted::boot(chip);
-        assert_eq!(program.run(&[]), results(), "{}: undisturbed", chip.name);
-        let instructions = BODY.len() as u64;
-        for after in 0..instructions {
-            let found = program.run(&[(after, PEND_SV)]);
-            assert_eq!(found, results(), "{}, after {after}", chip.name);
+        program.check(&[]);
+        for after in before_each(BODY) {
+            program.check(&[(after, PEND_SV)]);
         }
-        assert_eq!(program.words(COUNTS), [ADDED * instructions as u32, 0], "{}", chip.name);
+        assert_eq!(program.words(COUNTS), [ADDED * BODY.len() as u32, 0], "{}", chip.name);
     });
 }
 
@@ -211,14 +214,12 @@ fn a_program_goes_on_after_an_interrupt_anywhere() {
 fn an_interrupt_goes_on_after_another_one_anywhere() {
     on_both(|chip| {
         let mut program = Interrupted::boot(chip);
-        let mut times = 0;
-        for after in 0..BODY.len() as u64 {
-            for within in 0..LOWER.len() as u64 {
-                let found = program.run(&[(after, PEND_SV), (within, SYS_TICK)]);
-                assert_eq!(found, results(), "{}, after {after} and {within}", chip.name);
-                times += 1;
+        for after in before_each(BODY) {
+            for within in before_each(LOWER) {
+                program.check(&[(after, PEND_SV), (within, SYS_TICK)]);
             }
         }
+        let times = (BODY.len() * LOWER.len()) as u32;
         assert_eq!(program.words(COUNTS), [ADDED * times, times], "{}", chip.name);
     });
 }
@@ -228,11 +229,9 @@ fn an_interrupt_goes_on_after_another_one_anywhere() {
 fn a_program_goes_on_after_two_interrupts_in_a_row() {
     on_both(|chip| {
         let mut program = Interrupted::boot(chip);
-        for after in 0..BODY.len() as u64 {
-            let lower = LOWER.len() as u64;
+        for after in before_each(BODY) {
             for number in [PEND_SV, SYS_TICK] {
-                let found = program.run(&[(after, PEND_SV), (lower, number)]);
-                assert_eq!(found, results(), "{}, after {after}, then {number}", chip.name);
+                program.check(&[(after, PEND_SV), (LOWER.len() as u64, number)]);
             }
         }
     });
@@ -258,15 +257,12 @@ fn places(body: u32) -> Vec<(u32, bool)> {
 fn a_conditional_block_is_finished_before_an_interrupt_is_served() {
     on_both(|chip| {
         let mut program = Interrupted::boot(chip);
-        let body = program.body;
         let mut interrupted = Vec::new();
         for after in 0..BODY.len() as u64 - 1 {
-            program.machine.core_mut().set_register(RegisterARM::PC, body | 1);
-            program.machine.run_for(after).unwrap();
-            let pc = program.machine.core_mut().register(RegisterARM::PC) & !1;
-            interrupted.push(pc);
+            program.begin(after);
+            interrupted.push(program.machine.core_mut().register(RegisterARM::PC) & !1);
         }
-        for (at, in_block) in places(body).into_iter().rev().skip(1) {
+        for (at, in_block) in places(program.body).into_iter().rev().skip(1) {
             let what = format!("{}, {at:#x}", chip.name);
             assert_eq!(interrupted.contains(&at), !in_block, "{what}: {interrupted:x?}");
         }

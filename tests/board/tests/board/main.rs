@@ -1,6 +1,7 @@
 //! What is flashed, on both virtual boards: that it starts as it should, renders what the host
 //! renders, and stops when it must.
 
+mod assembly;
 mod bench;
 mod contact;
 mod corpus;

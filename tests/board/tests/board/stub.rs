@@ -2,6 +2,7 @@
 
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, Number};
 
+use crate::assembly::bytes;
 use crate::bench::Bench;
 
 /// What an interrupt does while it is held up.
@@ -36,18 +37,22 @@ pub fn hold_up(bench: &mut Bench, instructions: u64, masks: Masks) -> u64 {
 
 /// The code: two instructions a round, then on to the handler.
 fn stub(instructions: u64, masks: Masks, handler: u32) -> Vec<u8> {
-    const NOP: u16 = 0xBF00;
+    const NOP: u32 = 0xBF00;
     let (mask, unmask) = match masks {
         Masks::None => (NOP, NOP),
         // cpsid i, cpsie i
         Masks::All => (0xB672, 0xB662),
     };
-    let code = [
-        mask, // ldr r0, the rounds; subs r0, #1; bne to there
-        0x4803, 0x3801, 0xD1FD, unmask, // ldr pc, the handler
-        0xF8DF, 0xF008, NOP,
-    ];
-    let words = [(instructions / 2) as u32, handler];
-    let code = code.into_iter().flat_map(u16::to_le_bytes);
-    code.chain(words.into_iter().flat_map(u32::to_le_bytes)).collect()
+    let mut code = bytes(&[
+        mask,
+        0x4803, // ldr r0, the rounds
+        0x3801, // subs r0, #1
+        0xD1FD, // bne to there
+        unmask,
+        0xF8DF_F008, // ldr pc, the handler
+        NOP,
+    ]);
+    let rounds = (instructions / 2) as u32;
+    code.extend([rounds, handler].into_iter().flat_map(u32::to_le_bytes));
+    code
 }

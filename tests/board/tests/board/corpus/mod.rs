@@ -1,6 +1,6 @@
 //! The core that executes here, against two others: the servo's own functions on the same random and
-//! hard numbers, on the virtual board, in QEMU and on the host. All results are equal to the bit, and the two boards
-//! need equally many instructions for each.
+//! hard numbers, on the virtual board, in QEMU and on the host. All results are equal to the bit, and
+//! the two boards need equally many instructions for each.
 //!
 //! Both boards run the same file. Their cores are of one family, some years apart; the host's is of
 //! another, and so is its compiler's back end.

@@ -1,0 +1,222 @@
+//! The board's bus: what a program reads and writes there, or why there is no answer.
+
+use super::Board;
+use crate::chip::{DEBUG, Place, Unit};
+use crate::core::System;
+use crate::core::exceptions::Number;
+use crate::core::system::{SYSTEM, WATCH};
+use crate::peripheral::Access;
+use crate::peripheral::converter::Converter;
+use crate::peripheral::counter::Counter;
+use crate::peripheral::pacer::Pacer;
+use crate::peripheral::plain::Plain;
+use crate::peripheral::serial::Serial;
+use crate::trouble::{NotModelled, Why};
+
+/// What an address leads to; where that is registers, with the place behind the first one.
+enum Target {
+    /// Priorities of exceptions, a byte each, from this one on.
+    Priorities(Number),
+    /// The system control space.
+    System(u32),
+    /// The unit with the cycle counter.
+    Watch(u32),
+    /// A peripheral.
+    Unit(&'static Place, u32),
+}
+
+impl Target {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Priorities(_) | Self::System(_) => "the system control space",
+            Self::Watch(_) => "the DWT",
+            Self::Unit(place, _) => place.name,
+        }
+    }
+}
+
+/// Who has no answer, and why.
+type Fault = (Option<&'static str>, Why);
+
+impl Board {
+    /// Reads for the program.
+    pub fn read(&mut self, address: u32, size: usize) -> u32 {
+        if self.has_bus_error(address) {
+            return 0;
+        }
+        self.try_read(address, size).unwrap_or_else(|fault| {
+            self.stop(fault, address, None);
+            0
+        })
+    }
+
+    /// Writes for the program.
+    pub fn write(&mut self, address: u32, size: usize, value: u32) {
+        if self.has_bus_error(address) {
+            return;
+        }
+        if let Err(fault) = self.try_write(address, size, value) {
+            self.stop(fault, address, Some(value));
+        }
+        self.serial.advance(self.now, self.clock.bus_divider());
+        self.lines();
+        self.look();
+    }
+
+    /// Whether the bus gives an error there, which is kept for the core.
+    fn has_bus_error(&mut self, address: u32) -> bool {
+        let is_broken = self.broken == Some(address);
+        if is_broken {
+            self.bus_error = Some(address);
+        }
+        is_broken
+    }
+
+    fn try_read(&mut self, address: u32, size: usize) -> Result<u32, Fault> {
+        let target = self.find(address, size)?;
+        let value = match target {
+            Target::Priorities(first) => {
+                let numbers = first..first + size as Number;
+                let bytes = numbers.rev().map(|number| self.system.exceptions.priority(number));
+                Ok(bytes.fold(0, |word, byte| word << 8 | u32::from(byte)))
+            }
+            Target::System(offset) => self.system.read(offset, self.now),
+            Target::Watch(offset) => self.system.read_watch(offset, self.now),
+            Target::Unit(place, offset) => self.read_unit(place.unit, offset),
+        };
+        value.map_err(|why| (Some(target.name()), Why::Unit(why)))
+    }
+
+    fn try_write(&mut self, address: u32, size: usize, value: u32) -> Result<(), Fault> {
+        let target = self.find(address, size)?;
+        let done = match target {
+            Target::Priorities(first) => {
+                for (number, byte) in (first..first + size as Number).zip(value.to_le_bytes()) {
+                    self.system.exceptions.set_priority(number, byte);
+                }
+                Ok(())
+            }
+            Target::System(offset) => self.system.write(offset, value, self.now),
+            Target::Watch(offset) => self.system.write_watch(offset, value, self.now),
+            Target::Unit(place, offset) => self.write_unit(place.unit, offset, value),
+        };
+        done.map_err(|why| (Some(target.name()), Why::Unit(why)))
+    }
+
+    /// What an access of so many bytes leads to.
+    fn find(&self, address: u32, size: usize) -> Result<Target, Fault> {
+        if let Some(offset) = within(address, SYSTEM) {
+            let priorities = System::priority_at(offset).map(Target::Priorities);
+            return Ok(priorities.unwrap_or(Target::System(offset)));
+        }
+        if let Some(offset) = within(address, WATCH) {
+            return Ok(Target::Watch(offset));
+        }
+        let place = self.place(address)?;
+        // The serial port's data register may be accessed by bytes.
+        if size == 1 && place.unit != Unit::Serial {
+            return Err((Some(place.name), Why::Width));
+        }
+        Ok(Target::Unit(place, address - place.base))
+    }
+
+    /// The unit at an address, if it is clocked and not held in reset.
+    fn place(&self, address: u32) -> Result<&'static Place, Fault> {
+        let place = self.chip.at(address).ok_or((None, Why::Nobody))?;
+        match place.clocked {
+            Some((clock, reset, bit))
+                if !self.clock.is_set(clock, bit) || self.clock.is_set(reset, bit) =>
+            {
+                Err((Some(place.name), Why::Stopped))
+            }
+            _ => Ok(place),
+        }
+    }
+
+    fn read_unit(&mut self, unit: Unit, offset: u32) -> Access<u32> {
+        let (now, divider) = (self.now, self.clock.timer_divider());
+        match unit {
+            Unit::Clock => self.clock.read(offset),
+            Unit::Power => self.power.read(offset),
+            Unit::Flash => self.flash.read(offset),
+            Unit::Configuration => self.configuration.read(offset),
+            Unit::Debug => self.debug.read(offset),
+            Unit::Pins(port) => self.ports[port].read(offset),
+            Unit::Pacer => self.pacer.read(offset),
+            Unit::FreeClock => self.free_clock.read(offset, now, divider),
+            Unit::Encoder => {
+                self.meter.read(now);
+                self.encoder.read(offset, now, divider)
+            }
+            Unit::Converter => self.converter.read(offset),
+            Unit::Serial => self.serial.read(offset),
+            Unit::Watchdog => self.watchdog.read(offset),
+        }
+    }
+
+    fn write_unit(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {
+        let (now, divider) = (self.now, self.clock.timer_divider());
+        match unit {
+            Unit::Clock => {
+                self.clock.write(offset, value)?;
+                self.reset_units(offset);
+                Ok(())
+            }
+            Unit::Power => self.power.write(offset, value),
+            Unit::Flash => self.flash.write(offset, value),
+            Unit::Configuration => self.configuration.write(offset, value),
+            Unit::Debug => self.debug.write(offset, value),
+            Unit::Pins(port) => self.ports[port].write(offset, value),
+            Unit::Pacer => self.pacer.write(offset, value, now, divider),
+            Unit::FreeClock => self.free_clock.write(offset, value, now, divider),
+            Unit::Encoder => self.encoder.write(offset, value, now, divider),
+            Unit::Converter => {
+                self.meter.write(now);
+                self.converter.write(offset, value)
+            }
+            Unit::Serial => self.serial.write(offset, value),
+            Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
+        }
+    }
+
+    /// Resets the units whose bits are set in the register of resets at `offset`.
+    fn reset_units(&mut self, offset: u32) {
+        for place in self.chip.map {
+            if let Some((_, reset, bit)) = place.clocked
+                && reset == offset
+                && self.clock.is_set(reset, bit)
+            {
+                self.reset_unit(place.unit);
+            }
+        }
+    }
+
+    fn reset_unit(&mut self, unit: Unit) {
+        match unit {
+            Unit::Clock | Unit::Watchdog => {}
+            Unit::Power => self.power = (self.chip.power)(),
+            Unit::Flash => self.flash = (self.chip.flash_interface)(),
+            Unit::Configuration => self.configuration = (self.chip.configuration)(),
+            Unit::Debug => self.debug = Plain::new(DEBUG),
+            Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
+            Unit::Pacer => self.pacer = Pacer::new(),
+            Unit::FreeClock => self.free_clock = Counter::new(32),
+            Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
+            Unit::Converter => self.converter = Converter::new(self.chip.converter),
+            Unit::Serial => self.serial = Serial::new(self.chip.face),
+        }
+    }
+
+    /// Takes down the first access that has no answer, which ends the run.
+    fn stop(&mut self, (unit, why): Fault, address: u32, written: Option<u32>) {
+        let chip = self.chip();
+        let place = chip.at(address);
+        let register = place.and_then(|place| (chip.names)(place.unit, address - place.base));
+        self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
+    }
+}
+
+/// The place in a region of 4 KiB.
+fn within(address: u32, base: u32) -> Option<u32> {
+    (address & !0xFFF == base).then(|| address - base)
+}

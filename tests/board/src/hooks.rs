@@ -1,0 +1,149 @@
+//! What the engine asks while it executes: for each instruction whether it may go on, for each
+//! access to a peripheral what there is, and what becomes of what it cannot do itself.
+
+use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
+
+use crate::board::Board;
+use crate::conditional::Trail;
+use crate::core::exceptions::Masks;
+use crate::processor::Halt;
+
+/// The regions of peripherals, and of the core's own registers.
+const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x0010_0000)];
+/// The engine's numbers of what interrupts it.
+const BREAKPOINT: u32 = 7;
+const RETURN_FROM_EXCEPTION: u32 = 8;
+
+/// What the engine asks.
+pub type Engine<'a> = Unicorn<'a, Context>;
+
+/// What the answers depend on.
+pub struct Context {
+    /// The board.
+    pub board: Board,
+    /// A stop before the next instruction from this time on: when something is due, or at once.
+    deadline: u64,
+    /// An exception waits for its mask to fall.
+    masked: bool,
+    /// Where the last instructions were.
+    pub trail: Trail,
+    /// Why the engine was stopped, if it was.
+    pub halt: Option<Halt>,
+}
+
+impl Context {
+    /// Around a board.
+    pub fn new(board: Board) -> Self {
+        Self { board, deadline: 0, masked: false, trail: Trail::default(), halt: None }
+    }
+
+    /// A run begins, up to a time; with `masked`, also to where the masks let an exception through.
+    pub fn begin(&mut self, until: u64, masked: bool) {
+        (self.deadline, self.masked, self.halt) = (until, masked, None);
+    }
+
+    /// After an access of the program to a peripheral: what is due may have changed.
+    fn accessed(&mut self) {
+        let board = &self.board;
+        let at_once = board.wants_attention() || board.system.exceptions.any_pending();
+        self.deadline = if at_once { 0 } else { self.deadline.min(board.due()) };
+    }
+}
+
+/// Has an engine whose memory is mapped ask.
+pub fn wire(engine: &mut Engine<'static>) {
+    for (base, size) in REGIONS {
+        let read = move |engine: &mut Engine<'_>, offset: u64, size: usize| {
+            let context = engine.get_data_mut();
+            let value = context.board.read((base + offset) as u32, size);
+            context.accessed();
+            value.into()
+        };
+        let write = move |engine: &mut Engine<'_>, offset, size, value: u64| {
+            let context = engine.get_data_mut();
+            context.board.write((base + offset) as u32, size, value as u32);
+            context.accessed();
+        };
+        engine.mmio_map(base, size, Some(read), Some(write)).expect("nothing else is there");
+    }
+    engine.add_code_hook(0, u64::MAX, before_instruction).expect(HAS_HOOK);
+    engine.add_intr_hook(interrupted).expect(HAS_HOOK);
+    let missing = |engine: &mut Engine<'_>, kind, address, _, _| {
+        let fetch = matches!(kind, MemType::FETCH_UNMAPPED | MemType::FETCH_PROT);
+        engine.get_data_mut().halt = Some(Halt::NoMemory { fetch, address: address as u32 });
+        false
+    };
+    engine.add_mem_hook(HookType::MEM_INVALID, 0, u64::MAX, missing).expect(HAS_HOOK);
+}
+
+const HAS_HOOK: &str = "the engine has such hooks";
+
+/// Counts an instruction and those that were skipped before it, or stops before it.
+fn before_instruction(engine: &mut Engine<'_>, address: u64, size: u32) {
+    let address = address as u32;
+    let context = engine.get_data();
+    let is_usual =
+        context.board.now < context.deadline && !context.masked && context.trail.is_next(address);
+    // Half of the time that a board takes is spent here: nothing else is asked in the usual way.
+    if !is_usual && !goes_on(engine, address) {
+        return;
+    }
+    let context = engine.get_data_mut();
+    context.trail.push(address, size);
+    context.board.now += 1;
+}
+
+/// Stops before an instruction if it has to be, or else counts those that were skipped before it.
+#[cold]
+fn goes_on(engine: &mut Engine<'_>, address: u32) -> bool {
+    let context = engine.get_data();
+    if context.board.now >= context.deadline || (context.masked && is_unmasked(engine)) {
+        stop(engine, Halt::Attention);
+        return false;
+    }
+    if !context.trail.is_next(address) {
+        let mut trail = context.trail;
+        let skipped = trail.skip(address, |from, code| {
+            // Where there is no memory, there is no block.
+            let _ = engine.mem_read(from.into(), code);
+        });
+        let context = engine.get_data_mut();
+        context.trail = trail;
+        context.board.now += skipped;
+    }
+    true
+}
+
+/// Whether the masks let an exception through.
+fn is_unmasked(engine: &Engine<'_>) -> bool {
+    engine.get_data().board.system.exceptions.next(masks(engine)).is_some()
+}
+
+/// What the engine calls an interrupt: the core wants something that is done outside.
+fn interrupted(engine: &mut Engine<'_>, number: u32) {
+    let halt = match number {
+        BREAKPOINT => Halt::Breakpoint,
+        RETURN_FROM_EXCEPTION => {
+            let word = engine.reg_read(RegisterARM::PC).unwrap_or(0);
+            Halt::Returning(word as u32)
+        }
+        _ => Halt::Invalid,
+    };
+    stop(engine, halt);
+}
+
+fn stop(engine: &mut Engine<'_>, why: Halt) {
+    engine.get_data_mut().halt = Some(why);
+    // Fails only where the engine does not run.
+    let _ = engine.emu_stop();
+}
+
+/// What holds exceptions off.
+pub fn masks(engine: &Engine<'_>) -> Masks {
+    let read = |register| engine.reg_read(register).unwrap_or(0);
+    Masks {
+        primask: read(RegisterARM::PRIMASK) & 1 != 0,
+        faultmask: read(RegisterARM::FAULTMASK) & 1 != 0,
+        basepri: read(RegisterARM::BASEPRI) as u8,
+    }
+}
