@@ -36,6 +36,7 @@ mod rejection;
 mod remedy;
 mod rest;
 mod rules;
+mod secant;
 mod timed;
 mod varied;
 

@@ -1,26 +1,20 @@
 //! The scenes that differ in one number, and the nearest of them that passes.
 
-use super::digits::Digits;
 use super::parameter::Parameter;
 use super::posed::Posed;
 use super::remedy::Relation;
+use super::secant::{Bracket, Look, Search};
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::scene::{Coupling, Scene};
 
 /// The factor by which a number is moved at most in the search for a value that passes.
 const FARTHEST: f64 = 64.0;
-/// Looks inside of the last octave. A secant takes two or three; halving, as where there is no
-/// index to draw one by, takes ten to the three digits that are reported.
-const MAX_LOOKS: u32 = 14;
 /// How much farther than in proportion to what a scene lacks the first step goes: what it lacks is
 /// about in proportion to its numbers, and a step past zero is worth more than one before it.
 const FIRST_STEP: f64 = 1.25;
 /// The factor of a step where next to nothing is lacking.
 const LEAST_STEP: f64 = 1.01;
-/// Two looks this near to each other, relative to the value, draw a secant that needs no proof that
-/// the next digit fails.
-const NEAR: f64 = 0.03;
 /// Values that are certified in the end: past the one that was found, one more of its last digit
 /// each, for what is so near its limit that only the certificate tells.
 const CANDIDATES: u32 = 3;
@@ -34,72 +28,17 @@ pub(super) struct Varied<'a> {
     pub relation: Relation,
 }
 
-/// A value of the number, and what the scene lacks with it.
-#[derive(Clone, Copy)]
-struct Look {
-    value: f64,
-    /// [`Posed::shortage`]; `None` where the scene cannot be posed, or has none.
-    shortage: Option<f64>,
-}
-
-impl Look {
-    const fn passes(&self) -> bool {
-        matches!(self.shortage, Some(shortage) if shortage < 0.0)
-    }
-
-    /// Whether the scene lacks exactly as much with another value: the number has no part in it.
-    const fn is_as_good_as(&self, other: &Self) -> bool {
-        match (self.shortage, other.shortage) {
-            (Some(own), Some(others)) => own == others,
-            _ => false,
-        }
-    }
-}
-
-/// A value that fails and one that passes.
-struct Bracket {
-    fails: Look,
-    passes: Look,
-}
-
-impl Bracket {
-    const fn width(&self) -> f64 {
-        (self.fails.value - self.passes.value).abs()
-    }
-
-    const fn middle(&self) -> f64 {
-        0.5 * (self.fails.value + self.passes.value)
-    }
-
-    /// Where the straight line through two looks is zero, if the scene lacks more along it towards
-    /// the value that fails: next to where it has no index, it can lack ever less.
-    const fn zero_of_secant(&self, a: &Look, b: &Look) -> Option<f64> {
-        let (Some(at_a), Some(at_b)) = (a.shortage, b.shortage) else { return None };
-        let grows_upwards = (at_b > at_a) == (b.value > a.value);
-        if at_a == at_b || grows_upwards != (self.fails.value > self.passes.value) {
-            return None;
-        }
-        Some(b.value - at_b * (b.value - a.value) / (at_b - at_a))
-    }
-
-    /// Whether a value outside is on the side that passes.
-    const fn is_behind(&self, value: f64) -> bool {
-        (value <= self.passes.value) == (self.passes.value < self.fails.value)
-    }
-
-    const fn contains(&self, value: f64) -> bool {
-        let (a, b) = (self.fails.value, self.passes.value);
-        (a < value && value < b) || (b < value && value < a)
-    }
-}
-
 impl Varied<'_> {
     /// The nearest value that passes, to three digits on the side that passes, and certified.
     ///
     /// `own` is what the scene lacks as it is.
     pub const fn nearest(&self, own: Option<f64>) -> Option<f64> {
         let Some(bracket) = self.bracket(own) else { return None };
-        let mut digits = self.narrowed(bracket);
+        let mut search = Search::new(bracket, self.relation);
+        while let Some(value) = search.next() {
+            search.learn(value, self.shortage(value.value()));
+        }
+        let mut digits = search.nearest();
         let mut i = 0;
         while i < CANDIDATES {
             if self.is_certified(digits.value()) {
@@ -144,65 +83,17 @@ impl Varied<'_> {
         Some(Bracket { fails, passes })
     }
 
-    /// Narrows a bracket down to neighbours of three digits, and gives the one that passes.
-    ///
-    /// What a scene lacks is nearly straight over most of its numbers: the secant of the last two
-    /// looks meets zero next to where it is. Where two looks have not halved the bracket, it is
-    /// halved from then on.
-    const fn narrowed(&self, bracket: Bracket) -> Digits {
-        let mut bracket = bracket;
-        let (mut last, mut previous) = (bracket.passes, bracket.fails);
-        // What passes is of three digits from the first look that passes.
-        let mut nearest = Digits::of(bracket.passes.value, self.relation);
-        let mut has_digits = false;
-        let mut width = bracket.width();
-        let mut bisects = false;
-        let mut looks = 0;
-        while looks < MAX_LOOKS {
-            if looks % 2 == 0 {
-                bisects = bisects || looks > 0 && bracket.width() > 0.5 * width;
-                width = bracket.width();
-            }
-            let zero = if bisects { None } else { bracket.zero_of_secant(&previous, &last) };
-            let guess = match zero {
-                Some(zero) if bracket.is_behind(zero) => nearest.nearer(self.relation),
-                Some(zero) if bracket.contains(zero) => Digits::of(zero, self.relation),
-                Some(_) => Digits::of(bracket.fails.value, self.relation),
-                None => Digits::of(bracket.middle(), self.relation),
-            };
-            let is_near = (last.value - previous.value).abs() <= NEAR * last.value;
-            let guess = if bracket.contains(guess.value()) {
-                guess
-            } else if bracket.contains(guess.further(self.relation).value()) {
-                guess.further(self.relation)
-            } else if has_digits && is_near {
-                break;
-            } else {
-                nearest.nearer(self.relation)
-            };
-            if !bracket.contains(guess.value()) {
-                break;
-            }
-            (previous, last) = (last, self.look(guess.value()));
-            if last.passes() {
-                (nearest, has_digits) = (guess, true);
-                bracket.passes = last;
-            } else {
-                bracket.fails = last;
-            }
-            looks += 1;
-        }
-        nearest
-    }
-
     /// In a frame of its own, as what follows: a small board's stack has no room for two of them.
     #[inline(never)]
-    const fn look(&self, value: f64) -> Look {
-        let shortage = match self.posed(value) {
+    const fn shortage(&self, value: f64) -> Option<f64> {
+        match self.posed(value) {
             Some(posed) => posed.shortage(),
             None => None,
-        };
-        Look { value, shortage }
+        }
+    }
+
+    const fn look(&self, value: f64) -> Look {
+        Look { value, shortage: self.shortage(value) }
     }
 
     /// Whether the scene is certified with this value.

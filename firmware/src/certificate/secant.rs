@@ -1,0 +1,167 @@
+//! The search for the zero of what a scene lacks, between a value that fails and one that passes.
+
+use super::digits::Digits;
+use super::remedy::Relation;
+
+/// Looks inside of a bracket. A secant takes two or three; halving, as where there is no index to
+/// draw one by, takes ten to the three digits that are reported.
+const MAX_LOOKS: u32 = 14;
+/// Two looks this near to each other, relative to the value, draw a secant that needs no proof that
+/// the next digit fails.
+const NEAR: f64 = 0.03;
+
+/// A value of the number that is searched for, and what the scene lacks with it.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    pub value: f64,
+    /// [`super::Posed::shortage`]; `None` where the scene cannot be posed, or has none.
+    pub shortage: Option<f64>,
+}
+
+impl Look {
+    pub const fn passes(&self) -> bool {
+        matches!(self.shortage, Some(shortage) if shortage < 0.0)
+    }
+
+    /// Whether the scene lacks exactly as much with another value: the number has no part in it.
+    pub const fn is_as_good_as(&self, other: &Self) -> bool {
+        match (self.shortage, other.shortage) {
+            (Some(own), Some(others)) => own == others,
+            _ => false,
+        }
+    }
+}
+
+/// A value that fails and one that passes.
+#[derive(Clone, Copy)]
+pub(super) struct Bracket {
+    pub fails: Look,
+    pub passes: Look,
+}
+
+impl Bracket {
+    const fn width(&self) -> f64 {
+        (self.fails.value - self.passes.value).abs()
+    }
+
+    const fn middle(&self) -> f64 {
+        0.5 * (self.fails.value + self.passes.value)
+    }
+
+    /// Where the straight line through two looks is zero, if the scene lacks more along it towards
+    /// the value that fails: next to where it has no index, it can lack ever less.
+    const fn zero_of_secant(&self, a: &Look, b: &Look) -> Option<f64> {
+        let (Some(at_a), Some(at_b)) = (a.shortage, b.shortage) else { return None };
+        let grows_upwards = (at_b > at_a) == (b.value > a.value);
+        if at_a == at_b || grows_upwards != (self.fails.value > self.passes.value) {
+            return None;
+        }
+        Some(b.value - at_b * (b.value - a.value) / (at_b - at_a))
+    }
+
+    /// Whether a value outside is on the side that passes.
+    const fn is_behind(&self, value: f64) -> bool {
+        (value <= self.passes.value) == (self.passes.value < self.fails.value)
+    }
+
+    const fn contains(&self, value: f64) -> bool {
+        let (a, b) = (self.fails.value, self.passes.value);
+        (a < value && value < b) || (b < value && value < a)
+    }
+}
+
+/// Narrows a bracket down to neighbours of three digits.
+///
+/// What a scene lacks is nearly straight over most of its numbers: the secant of the last two looks
+/// meets zero next to where it is. Where two looks have not halved the bracket, it is halved from
+/// then on.
+pub(super) struct Search {
+    relation: Relation,
+    bracket: Bracket,
+    last: Look,
+    previous: Look,
+    /// The best value that passes, rounded to three digits.
+    nearest: Digits,
+    /// Whether what passes was looked at with these digits: not so before the first look passes.
+    has_digits: bool,
+    bisects: bool,
+    /// Of the bracket, two looks ago at most.
+    width: f64,
+    looks: u32,
+}
+
+impl Search {
+    pub const fn new(bracket: Bracket, relation: Relation) -> Self {
+        Self {
+            relation,
+            last: bracket.passes,
+            previous: bracket.fails,
+            nearest: Digits::of(bracket.passes.value, relation),
+            has_digits: false,
+            bisects: false,
+            width: bracket.width(),
+            looks: 0,
+            bracket,
+        }
+    }
+
+    /// The value that passes, to three digits.
+    pub const fn nearest(&self) -> Digits {
+        self.nearest
+    }
+
+    /// The next value to look at; `None` at the end.
+    pub const fn next(&self) -> Option<Digits> {
+        if self.looks == MAX_LOOKS {
+            return None;
+        }
+        let guess = self.guess();
+        let beside = guess.further(self.relation);
+        let inside = if self.bracket.contains(guess.value()) {
+            guess
+        } else if self.bracket.contains(beside.value()) {
+            beside
+        } else if self.has_digits && self.is_near() {
+            return None;
+        } else {
+            self.nearest.nearer(self.relation)
+        };
+        if self.bracket.contains(inside.value()) { Some(inside) } else { None }
+    }
+
+    /// Where the secant is zero, or the middle.
+    const fn guess(&self) -> Digits {
+        let zero = if self.bisects {
+            None
+        } else {
+            self.bracket.zero_of_secant(&self.previous, &self.last)
+        };
+        match zero {
+            Some(zero) if self.bracket.is_behind(zero) => self.nearest.nearer(self.relation),
+            Some(zero) if self.bracket.contains(zero) => Digits::of(zero, self.relation),
+            Some(_) => Digits::of(self.bracket.fails.value, self.relation),
+            None => Digits::of(self.bracket.middle(), self.relation),
+        }
+    }
+
+    const fn is_near(&self) -> bool {
+        (self.last.value - self.previous.value).abs() <= NEAR * self.last.value
+    }
+
+    /// Takes in what was seen at the value that [`Search::next`] asked for.
+    pub const fn learn(&mut self, value: Digits, shortage: Option<f64>) {
+        self.previous = self.last;
+        self.last = Look { value: value.value(), shortage };
+        if self.last.passes() {
+            (self.nearest, self.has_digits) = (value, true);
+            self.bracket.passes = self.last;
+        } else {
+            self.bracket.fails = self.last;
+        }
+        self.looks += 1;
+        if self.looks.is_multiple_of(2) {
+            self.bisects = self.bisects || self.bracket.width() > 0.5 * self.width;
+            self.width = self.bracket.width();
+        }
+    }
+}
