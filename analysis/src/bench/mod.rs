@@ -130,6 +130,7 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a
 /// program with `COPIES` certified scenes and the same program without, divided by their number.
+/// The two are compiled in turn, so that what else the machine does meets both.
 ///
 /// `library` is the built firmware library, `dependencies` the folder of what it depends on.
 ///
@@ -138,34 +139,32 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 pub fn compile_time(rustc: &Path, library: &Path, dependencies: &Path) -> std::io::Result<f64> {
     let folder = tempfile::tempdir()?;
     let time = |copies: usize| -> std::io::Result<f64> {
-        let source = folder.path().join("scene.rs");
+        let source = folder.path().join(format!("scene_{copies}.rs"));
         std::fs::write(&source, program(copies))?;
-        let mut times = Vec::new();
-        for _ in 0..COMPILATIONS {
-            let start = Instant::now();
-            let status = Command::new(rustc)
-                .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
-                .arg(folder.path().join("scene.rmeta"))
-                .arg(format!("--extern=firmware={}", library.display()))
-                .arg("-L")
-                .arg(format!("dependency={}", dependencies.display()))
-                .arg(&source)
-                .output()?;
-            times.push(start.elapsed().as_secs_f64() * 1e3);
-            if !status.status.success() {
-                let said = String::from_utf8_lossy(&status.stderr).into_owned();
-                return Err(std::io::Error::other(said));
-            }
+        let start = Instant::now();
+        let output = Command::new(rustc)
+            .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
+            .arg(folder.path().join("scene.rmeta"))
+            .arg(format!("--extern=firmware={}", library.display()))
+            .arg("-L")
+            .arg(format!("dependency={}", dependencies.display()))
+            .arg(&source)
+            .output()?;
+        let time = start.elapsed().as_secs_f64() * 1e3;
+        if output.status.success() {
+            Ok(time)
+        } else {
+            Err(std::io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))
         }
-        Ok(median(times))
     };
-    Ok((time(COPIES)? - time(0)?) / COPIES as f64)
+    let differences = (0..COMPILATIONS).map(|_| Ok((time(COPIES)? - time(0)?) / COPIES as f64));
+    Ok(median(differences.collect::<std::io::Result<Vec<_>>>()?))
 }
 
 /// Certificates in the program that is compiled.
 const COPIES: usize = 8;
-/// Compilations of each program, of which the median counts.
-const COMPILATIONS: usize = 7;
+/// Compilations of each program; the median of their differences counts.
+const COMPILATIONS: usize = 15;
 
 fn program(copies: usize) -> String {
     let mut text = String::from(
