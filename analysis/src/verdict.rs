@@ -84,7 +84,8 @@ pub struct AtRest {
 }
 
 impl AtRest {
-    fn of(rest: &Rest) -> Self {
+    /// Of the certificate's bound.
+    pub fn of(rest: &Rest) -> Self {
         let Rest { encoder, numbers, converter, friction } = *rest;
         let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
         Self { encoder, numbers, converter, hum, friction, comes_to_rest }

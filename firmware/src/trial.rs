@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware::board::qemu::trial::run()
+    firmware::board::qemu::trial::run::<firmware::board::qemu::trial::OfPrograms>()
 }
 
 #[cfg(not(target_os = "none"))]

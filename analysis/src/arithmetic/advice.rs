@@ -1,16 +1,19 @@
 //! Which number format is enough for a scene, and the cheapest that is.
 
+use firmware::certificate::Rest;
 use firmware::number::Arithmetic;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::{Losses, Motion};
 use crate::command::CommandError;
 use crate::quantity::significant;
+use crate::verdict::AtRest;
 
 /// What a format has to keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// Most torque in N m, from its lowest to its highest, that the format may add at rest.
+    /// Most torque in N m, from its lowest to its highest, that may be left at rest: by the format,
+    /// and by the encoder.
     pub hum: f64,
     /// Largest error of the torque in N m, if there is one.
     pub error: Option<f64>,
@@ -33,8 +36,27 @@ pub struct Candidate {
     pub share: f64,
     /// What it loses; none where the scene cannot be had in it.
     pub losses: Option<Losses>,
+    /// The most that it may hum by as certified, with encoder and converter, and the device's
+    /// friction against that; none where nothing bounds it.
+    #[serde(serialize_with = "at_rest")]
+    pub rest: Option<Rest>,
     /// Why it is not taken; empty where it is, or is only dearer.
     pub rejected: Vec<String>,
+}
+
+impl Candidate {
+    /// Whether the device's friction ends every hum, as far as encoder and converter were stated.
+    pub fn is_still(&self) -> bool {
+        is_still(self.rest.as_ref())
+    }
+}
+
+fn is_still(rest: Option<&Rest>) -> bool {
+    rest.is_some_and(|rest| rest.friction.is_some() && rest.comes_to_rest() != Some(false))
+}
+
+fn at_rest<S: Serializer>(rest: &Option<Rest>, to: S) -> Result<S::Ok, S::Error> {
+    rest.as_ref().map(AtRest::of).serialize(to)
 }
 
 /// All formats, the cheapest first.
@@ -45,6 +67,8 @@ pub struct Advice {
     /// Torque in N m by which the encoder alone hums, in the finest format; `None` where nobody has
     /// said how fine it is.
     pub encoder_hum: Option<f64>,
+    /// Most of that which is wanted.
+    hum: f64,
 }
 
 impl Advice {
@@ -72,17 +96,24 @@ impl Advice {
                 Ok(_) => instructions(arithmetic)?,
                 Err(_) => f64::INFINITY,
             };
-            candidates.push(candidate(arithmetic, instructions, losses, figures));
+            let rest = motion.subject().rest(arithmetic);
+            candidates.push(candidate(arithmetic, instructions, losses, rest, figures));
         }
         candidates.sort_by(|a, b| {
             a.instructions.total_cmp(&b.instructions).then(hum(a).total_cmp(&hum(b)))
         });
-        Ok(Self { candidates, encoder_hum })
+        Ok(Self { candidates, encoder_hum, hum: figures.hum })
     }
 
-    /// The cheapest format that keeps to the figures.
+    /// The cheapest format that keeps to the figures: with the encoder, where there is one.
     pub fn choice(&self) -> Option<&Candidate> {
-        self.candidates.iter().find(|candidate| candidate.rejected.is_empty())
+        let keep = || self.candidates.iter().filter(|candidate| candidate.rejected.is_empty());
+        keep().find(|candidate| !self.hums(candidate)).or_else(|| keep().next())
+    }
+
+    /// Whether the encoder makes a format hum by more than is wanted, and no friction ends it.
+    pub fn hums(&self, candidate: &Candidate) -> bool {
+        !candidate.is_still() && self.encoder_hum.is_some_and(|hum| hum > self.hum)
     }
 }
 
@@ -95,9 +126,11 @@ fn candidate(
     arithmetic: Arithmetic,
     instructions: f64,
     losses: Result<Losses, CommandError>,
+    rest: Option<Rest>,
     figures: &Figures,
 ) -> Candidate {
     let share = instructions * figures.rate / figures.clock;
+    let is_still = is_still(rest.as_ref());
     let mut rejected = Vec::new();
     let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
         if value > bound {
@@ -107,7 +140,9 @@ fn candidate(
     };
     match &losses {
         Ok(losses) => {
-            beyond("hum", losses.alone.hum, figures.hum, " N m");
+            if !is_still {
+                beyond("hum", losses.alone.hum, figures.hum, " N m");
+            }
             if let Some(bound) = figures.error {
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");
@@ -116,5 +151,6 @@ fn candidate(
         }
         Err(error) => rejected.push(error.to_string()),
     }
-    Candidate { format: arithmetic.name(), instructions, share, losses: losses.ok(), rejected }
+    let (format, losses) = (arithmetic.name(), losses.ok());
+    Candidate { format, instructions, share, losses, rest, rejected }
 }

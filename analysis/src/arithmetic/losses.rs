@@ -30,9 +30,9 @@ impl Losses {
             error: motion.error(arithmetic)?,
             error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,
             alone: at_rest(motion.subject(), arithmetic, false)?,
-            with_encoder: match motion.subject().has_encoder {
-                true => Some(at_rest(motion.subject(), arithmetic, true)?),
-                false => None,
+            with_encoder: match motion.subject().steps.encoder {
+                Some(_) => Some(at_rest(motion.subject(), arithmetic, true)?),
+                None => None,
             },
         })
     }

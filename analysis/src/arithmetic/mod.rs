@@ -3,6 +3,7 @@
 
 mod advice;
 mod cost;
+mod friction;
 mod losses;
 mod motion;
 mod rest;
@@ -15,6 +16,7 @@ pub use motion::{Motion, Offset};
 pub use rest::{Rest, at_rest};
 pub use units::Units;
 
+use firmware::certificate::Steps;
 use firmware::number::{Arithmetic, InEach, Number};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
@@ -33,8 +35,8 @@ pub struct Subject {
     pub scene: Scene,
     /// Its sensor and its motor.
     pub transducers: Transducers,
-    /// Whether somebody has said how fine the sensor is.
-    pub has_encoder: bool,
+    /// What somebody has said of their steps, and of the device's friction.
+    pub steps: Steps,
     /// Largest angle in rad to each side that a scaled format has to hold.
     pub range: f64,
 }

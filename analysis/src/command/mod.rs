@@ -188,15 +188,6 @@ pub enum CommandError {
         /// The tick, counted from 0.
         tick: usize,
     },
-    /// No tick of scenes of this type has been measured.
-    #[error(
-        "no tick of such a scene has been measured on a board; there are those of: {types}, each \
-         with any numbers in it, and spring and two-sided wall at zero"
-    )]
-    NotMeasured {
-        /// The types that there are.
-        types: String,
-    },
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
     Live(#[from] crate::bench::live::LiveError),

@@ -273,6 +273,14 @@ impl Toolchain {
         self.measuring("trial")
     }
 
+    /// Builds the program that does the same for any scene.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_survey(&self) -> Result<PathBuf, BuildError> {
+        self.measuring("survey")
+    }
+
     /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
     ///
     /// # Errors

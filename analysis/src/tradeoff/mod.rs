@@ -9,8 +9,10 @@ pub mod rate;
 pub mod servo;
 pub mod simulation;
 pub mod sine;
+pub mod ticks;
 
 use std::io::{Read, Write};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::command::CommandError;
@@ -18,7 +20,7 @@ use crate::emulator::Trials;
 use crate::progress;
 use crate::quantity::significant;
 use crate::table::{Column, Table, TableError};
-use crate::toolchain::{self, Tools};
+use crate::toolchain::{self, BuildError, Toolchain, Tools};
 
 /// Digits of the numbers in a table: more than a measured time has, and as many as tell a wrong
 /// error from a right one.
@@ -253,15 +255,30 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     times
 }
 
-/// An emulated board that computes what it is asked to.
+/// An emulated board that computes what it is asked to of the scenes that have a program, and sines.
 ///
 /// # Errors
 /// Where its program cannot be built or the emulator cannot be started.
 pub fn board() -> Result<Trials, CommandError> {
+    boot("building the trial of the formats", Toolchain::build_trial)
+}
+
+/// One that computes what it is asked to of any scene, whose program takes longer to build.
+///
+/// # Errors
+/// As of [`board`].
+pub fn any_board() -> Result<Trials, CommandError> {
+    boot("building all types of scenes in all formats", Toolchain::build_survey)
+}
+
+fn boot(
+    what: &str,
+    build: fn(&Toolchain) -> Result<PathBuf, BuildError>,
+) -> Result<Trials, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
-    let spinner = progress::spinner("building the trial of the formats");
-    let elf = toolchain.build_trial()?;
+    let spinner = progress::spinner(what);
+    let elf = build(&toolchain)?;
     spinner.finish_and_clear();
     Ok(Trials::boot(&elf)?)
 }

@@ -1,6 +1,7 @@
 //! Number formats of the servo: what a tick takes on the emulated board, and what is lost of the
 //! torque (theory, section 9).
 
+use firmware::certificate::Steps;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
@@ -51,15 +52,16 @@ pub struct Case {
 
 impl Case {
     /// Of a program, whose counter does not wrap.
-    fn of(program: &Program) -> Self {
+    pub(super) fn of(program: &Program) -> Self {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
         let (scene, range) = (program.scene, HALF_A_TURN);
-        let subject = arithmetic::Subject { scene, transducers, has_encoder: true, range };
+        let steps = Steps::of(&transducers, None);
+        let subject = arithmetic::Subject { scene, transducers, steps, range };
         Self { name: program.name, subject, script: (program.script)() }
     }
 
     /// The same in another environment.
-    fn with(mut self, name: &'static str, environment: Environment) -> Self {
+    pub(super) fn with(mut self, name: &'static str, environment: Environment) -> Self {
         self.subject.scene.environment = environment;
         Self { name, ..self }
     }
@@ -85,30 +87,6 @@ pub fn cases() -> Vec<Case> {
     };
     cases.extend(cases.iter().filter_map(pulls).collect::<Vec<_>>());
     cases
-}
-
-/// The case whose tick is that of a scene, with other numbers in it; `None` where no tick of its
-/// type has been measured.
-pub fn case_of(environment: &Environment) -> Option<Case> {
-    cases()
-        .into_iter()
-        .find(|case| type_of(&case.subject.scene.environment) == type_of(environment))
-}
-
-/// What of an environment decides which instructions its tick has.
-fn type_of(environment: &Environment) -> Option<(&'static str, usize, bool)> {
-    match *environment {
-        Environment::DelayedSpring(wall) if !wall.one_sided && wall.face == 0.0 => {
-            Some(("spring", wall.delay, false))
-        }
-        Environment::DamperWall(wall)
-            if wall.filter.is_none() && (wall.one_sided || wall.face == 0.0) =>
-        {
-            Some(("wall", wall.delay, wall.one_sided))
-        }
-        Environment::FreeMode { delay, .. } => Some(("free mode", delay, false)),
-        _ => None,
-    }
 }
 
 /// Measures all formats on all scenes.

@@ -338,9 +338,76 @@ fn advice_needs_figures_that_make_sense_and_a_scene_that_certifies_at_the_rate()
     let (status, words) = advise("-", "0.005", "100");
     assert_eq!(status, Some(1), "{words}");
     assert!(words.contains("rejected") && words.contains("0.12"), "{words}");
-    let rational = r#"{"type": "rational", "numerator": [1], "denominator": [1, 0]}"#;
+}
+
+/// Every type of environment, on every side and with a delay that no table has.
+#[test]
+fn advice_has_an_answer_to_every_type_of_scene() {
     let wall = &WALL[WALL.find(r#"{"type""#).unwrap()..WALL.len() - 1];
-    let scene = WALL.replace(wall, rational);
-    let output = haptic(&["advise", "-", "--hum", "1", "--rate", "1000"], scene.as_bytes());
-    assert!(complaint(output).contains("no tick of such a scene has been measured"));
+    for environment in [
+        r#"{"type": "delayed-spring", "stiffness": 5, "delay": 3}"#,
+        r#"{"type": "damper-wall", "stiffness": 5, "damping": 0.005, "delay": 0, "face": 0.1}"#,
+        r#"{"type": "damper-wall", "stiffness": 1, "damping": 0.005, "delay": 5, "filter": 0.3,
+            "one_sided": true}"#,
+        r#"{"type": "free-mode", "residual": 0.01}"#,
+        r#"{"type": "free-mode", "residual": 0.01, "delay": 2}"#,
+        r#"{"type": "free-mode-wall", "residual": 0.018, "stiffness": 5, "damping": 0.003,
+            "delay": 1, "one_sided": true}"#,
+        r#"{"type": "free-mode-wall", "residual": 0.018, "stiffness": 5, "damping": 0.003,
+            "delay": 0, "face": 0.1, "filter": 0.5}"#,
+        r#"{"type": "rational", "numerator": [5, -2], "denominator": [1, -0.3, 0.1, 0]}"#,
+    ] {
+        let scene = WALL.replace(wall, environment);
+        let question = ["advise", "-", "--hum", "1", "--rate", "1000", "--json"];
+        let output = haptic(&question, scene.as_bytes());
+        assert_eq!(output.status.code(), Some(0), "{environment}: {output:?}");
+        let answer = &lines(&output)[0];
+        assert_eq!(answer["format"], "f32", "{answer}");
+        for format in answer["formats"].as_array().unwrap() {
+            let instructions = format["instructions"].as_f64().unwrap();
+            assert!(instructions > 30.0 && instructions < 5000.0, "{environment}: {format}");
+        }
+    }
+}
+
+/// Theory, sections 6 and 8: the paper's wall, whose peak torque a position is 924 N m/rad, needs
+/// half a count times that of friction, and what converter and numbers ask for.
+#[test]
+fn friction_of_the_device_ends_a_hum() {
+    let advise = |friction: f64| {
+        let device = format!(r#""damping": 0.022, "friction": {friction}}}"#);
+        let limits = r#""limits": {"encoder_step": 1e-4, "full_scale": 2}, "environment""#;
+        let scene = WALL.replace(r#""damping": 0.022}"#, &device);
+        let scene = scene.replace(r#""environment""#, limits);
+        let output =
+            haptic(&["advise", "-", "--hum", "1e-5", "--rate", "1000", "--json"], scene.as_bytes());
+        (output.status.code(), lines(&output).remove(0))
+    };
+    let encoder = 924.0 * 1e-4 / 2.0;
+    let (status, answer) = advise(1.1 * encoder);
+    assert_eq!((status, &answer["format"]), (Some(0), &"f32".into()), "{answer}");
+    let message = answer["message"].as_str().unwrap();
+    assert!(
+        message.contains("the device's friction of 0.0508") && message.contains("keeps it still")
+    );
+    assert!(answer["encoder_hum"].as_f64().unwrap() > 1e-3, "without friction it hums");
+    let formats = answer["formats"].as_array().unwrap();
+    for format in formats {
+        let rest = &format["rest"];
+        let found = rest["encoder"].as_f64().unwrap();
+        assert!((found / encoder - 1.0).abs() < 0.02, "{format}");
+        // A code of 2 N m in 2047.
+        let converter = rest["converter"].as_f64().unwrap();
+        assert!((converter / (1.0 / 2047.0) - 1.0).abs() < 1e-3, "{format}");
+    }
+    // What a coarse format rounds takes more friction than there is: it hums as if there were none.
+    let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();
+    assert_eq!(coarse["rest"]["comes_to_rest"], false, "{coarse}");
+    assert!(coarse["rejected"].to_string().contains("hum"), "{coarse}");
+    // Too little for the encoder alone.
+    let (status, answer) = advise(0.99 * encoder);
+    assert_eq!(status, Some(1), "{answer}");
+    let message = answer["message"].as_str().unwrap();
+    assert!(message.starts_with("no:") && message.contains("friction of 0.0457"), "{message}");
+    assert!(message.contains("is below that"), "{message}");
 }

@@ -2,7 +2,7 @@
 
 use fixed::types::{I1F31, I8F24, I16F16};
 
-use super::{Number, Truncated};
+use super::{Format, Number, Truncated};
 
 /// A number format that a servo may compute in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,6 +60,11 @@ impl Arithmetic {
         }
     }
 
+    /// What the certificate knows it by.
+    pub fn format(self) -> Format {
+        self.choose(OfNumber)
+    }
+
     /// Whether a scene has to be scaled for it: neither a turn nor a torque of 1 N m fits.
     pub const fn is_scaled(self) -> bool {
         matches!(self, Self::I1F31 | Self::I1F31Truncated)
@@ -77,5 +82,16 @@ impl Arithmetic {
             Self::I1F31 => what.with::<I1F31>(),
             Self::I1F31Truncated => what.with::<Truncated<I1F31>>(),
         }
+    }
+}
+
+/// The format of a number.
+struct OfNumber;
+
+impl InEach for OfNumber {
+    type Output = Format;
+
+    fn with<N: Number>(self) -> Format {
+        N::FORMAT
     }
 }

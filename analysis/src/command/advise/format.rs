@@ -1,6 +1,9 @@
 //! `haptic advise --hum --rate`: which number format, and which method of simulation, are enough?
 
+use std::f64::consts::TAU;
+
 use clap::Args;
+use firmware::certificate::Steps;
 use firmware::encoder::CounterWidth;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
@@ -15,7 +18,8 @@ use crate::command::{Answer, CommandError};
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::tradeoff::{self, Method, servo, simulation};
+use crate::tradeoff::ticks::Ticks;
+use crate::tradeoff::{self, simulation};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
@@ -39,6 +43,9 @@ pub struct Wanted {
     /// Encoder counts a turn; the scene's own if left out
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
+    /// Dry friction of the device in N m; the scene's own if left out
+    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
+    pub friction: Option<f64>,
     /// Largest angle in rad to each side that a scaled format has to hold
     #[arg(long, value_name = "ANGLE", value_parser = positive, default_value_t = HALF_A_TURN,
           allow_negative_numbers = true)]
@@ -81,8 +88,7 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
     };
     let look = if arguments.measure { measured } else { kept };
     let advice = look(&motion, &figures)?;
-    let is_quiet = advice.encoder_hum.is_none_or(|hum| hum <= arguments.hum);
-    let is_yes = advice.choice().is_some() && is_quiet;
+    let is_yes = advice.choice().is_some_and(|choice| !advice.hums(choice));
     let answered = Answered {
         format: advice.choice().map(|choice| choice.format),
         message: message(&question.subject, arguments.hum, &advice),
@@ -103,27 +109,31 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
 /// The scene at the rate, with its sensor and motor, and what a hand does to it.
 fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
     let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
-    let counts = arguments.counts_per_rev;
-    let range = arguments.range;
+    let Wanted { counts_per_rev: counts, range, friction, .. } = *arguments;
     Ok(match Program::find(scene) {
         Some(program) => {
             let counts_per_turn = counts.unwrap_or(program.transducers.counts_per_turn);
             let counter = CounterWidth::Bits32;
             let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
-            let (scene, has_encoder) = (at_rate(&program.scene), true);
+            let (scene, steps) = (at_rate(&program.scene), Steps::of(&transducers, friction));
             Question {
                 name: program.name.to_owned(),
-                subject: Subject { scene, transducers, has_encoder, range },
+                subject: Subject { scene, transducers, steps, range },
                 script: (program.script)(),
             }
         }
         None => {
             let file = scene_file(scene)?;
             let transducers = transducers_of(&file, counts, None);
-            let has_encoder = counts.is_some() || file.encoder_step.is_some();
+            let said = file.steps();
+            let steps = Steps {
+                encoder: counts.map(|counts| TAU / counts).or(said.encoder),
+                friction: friction.or(said.friction),
+                ..said
+            };
             let scene = at_rate(&file.scene);
             Question {
-                subject: Subject { scene, transducers, has_encoder, range },
+                subject: Subject { scene, transducers, steps, range },
                 script: script_of(&file),
                 name: file.name,
             }
@@ -133,21 +143,14 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
 
 /// With the instructions that are kept for scenes of this type.
 fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
-    let table = servo::kept()?;
-    let case = servo::case_of(&motion.subject().scene.environment);
-    let case = case.ok_or_else(|| CommandError::NotMeasured {
-        types: servo::cases().iter().map(|case| case.name).collect::<Vec<_>>().join("; "),
-    })?;
-    Advice::new(motion, figures, |arithmetic| {
-        let mut methods = table.of(case.name);
-        let method = methods.find(|method| method.name == arithmetic.name());
-        Ok(method.and_then(Method::cost).unwrap_or(f64::INFINITY))
-    })
+    let ticks = Ticks::kept()?;
+    let environment = &motion.subject().scene.environment;
+    Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))
 }
 
 /// With the instructions that this scene takes on the emulated board.
 fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
-    let mut board = tradeoff::board()?;
+    let mut board = tradeoff::any_board()?;
     let advice = Advice::new(motion, figures, |arithmetic| {
         Ok(cost(&mut board, motion, arithmetic)?.most.into())
     })?;

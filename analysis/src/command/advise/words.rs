@@ -2,7 +2,9 @@
 
 use std::cmp::Ordering;
 
+use firmware::certificate::Rest;
 use firmware::number::Arithmetic;
+use firmware::text::AtMost;
 use serde::Serialize;
 
 use crate::arithmetic::{Advice, Candidate, Subject};
@@ -46,30 +48,44 @@ pub struct Simulated {
 
 /// The answer in sentences.
 pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
-    let number = |value: f64| significant(value, 3);
-    let format = match advice.choice() {
-        Some(choice) => chosen(subject, choice),
-        None => none(advice),
-    };
+    let choice = advice.choice();
+    let format = choice.map_or_else(|| none(advice), |choice| chosen(subject, choice));
+    let cheapest = choice.or_else(|| advice.candidates.first());
+    let rest = cheapest.and_then(|candidate| candidate.rest.as_ref());
     match advice.encoder_hum {
-        Some(hum) if hum > allowed => {
-            let counts = subject.transducers.counts_per_turn;
-            format!(
-                "no: in every format the encoder alone makes a device without friction hum by {} \
-                 N m, above {} N m. About {} counts a turn in place of {} would do, or a softer \
-                 scene. As to the formats: {format}",
-                number(hum),
-                number(allowed),
-                number(counts * hum / allowed),
-                significant(counts, 7),
-            )
+        Some(hum) if cheapest.is_some_and(|candidate| advice.hums(candidate)) => {
+            format!("{}. As to the formats: {format}", coarse(subject, allowed, hum, rest))
         }
-        Some(_) => format,
-        None => format!(
-            "{format}; how fine the encoder is the scene does not say, so that its part of the hum \
-             is not in this"
-        ),
+        hum => {
+            let unknown = match hum {
+                Some(_) => "",
+                None => {
+                    "; how fine the encoder is the scene does not say, so that its part of the hum \
+                     is not in this"
+                }
+            };
+            format!("{format}{}{unknown}", as_certified(rest))
+        }
     }
+}
+
+/// That the encoder is too coarse for any format, and what would do.
+fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&Rest>) -> String {
+    let counts = subject.transducers.counts_per_turn;
+    format!(
+        "no: in every format the encoder alone makes a device without friction hum by {} N m, above \
+         {} N m. About {} counts a turn in place of {} would do, or a softer scene{}",
+        number(hum),
+        number(allowed),
+        number(counts * hum / allowed),
+        significant(counts, 7),
+        as_certified(rest),
+    )
+}
+
+/// What the certificate says of rest.
+fn as_certified(rest: Option<&Rest>) -> String {
+    rest.map_or_else(String::new, |rest| format!("; as certified {rest}"))
 }
 
 /// Why no format was chosen.
@@ -85,8 +101,11 @@ fn none(advice: &Advice) -> String {
 
 /// Why a format was chosen.
 fn chosen(subject: &Subject, choice: &Candidate) -> String {
-    let number = |value: f64| significant(value, 3);
     let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
+    let hums = match choice.is_still() {
+        true => "would hum without friction",
+        false => "hums",
+    };
     let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
     let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
     let scaled = units.map_or_else(String::new, |units| {
@@ -94,13 +113,18 @@ fn chosen(subject: &Subject, choice: &Candidate) -> String {
     });
     format!(
         "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
-         core of {} MHz, and it hums by no more than {} N m",
+         core of {} MHz, and of itself it {hums} by no more than {} N m",
         choice.format,
         number(choice.instructions),
         number(100.0 * choice.share),
         number(CORE_CLOCK / 1e6),
         number(hum),
     )
+}
+
+/// A figure in a sentence or in a table.
+fn number(value: f64) -> String {
+    significant(value, 3)
 }
 
 /// The answer for a person.
@@ -114,9 +138,10 @@ pub fn text(answered: &Answered) -> String {
             "around 1 rad",
             "hum",
             "with encoder",
+            "friction needed",
             "rejected",
         ],
-        1..7,
+        1..8,
     );
     for candidate in &answered.formats {
         table.add_row(row(candidate));
@@ -140,20 +165,21 @@ pub fn text(answered: &Answered) -> String {
 }
 
 /// A format's figures; torques in N m.
-fn row(candidate: &Candidate) -> [String; 8] {
-    let number = |value: Option<f64>| match value {
-        Some(value) if value.is_finite() => significant(value, 3),
+fn row(candidate: &Candidate) -> [String; 9] {
+    let figure = |value: Option<f64>| match value {
+        Some(value) if value.is_finite() => number(value),
         _ => "none".to_owned(),
     };
     let losses = candidate.losses;
     [
         candidate.format.to_owned(),
-        number(Some(candidate.instructions)),
-        format!("{} %", number(Some(100.0 * candidate.share))),
-        number(losses.map(|losses| losses.error)),
-        number(losses.and_then(|losses| losses.error_elsewhere)),
-        number(losses.map(|losses| losses.alone.hum)),
-        number(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
+        figure(Some(candidate.instructions)),
+        format!("{} %", figure(Some(100.0 * candidate.share))),
+        figure(losses.map(|losses| losses.error)),
+        figure(losses.and_then(|losses| losses.error_elsewhere)),
+        figure(losses.map(|losses| losses.alone.hum)),
+        figure(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
+        candidate.rest.map_or_else(|| "none".to_owned(), |rest| AtMost(rest.hum()).to_string()),
         candidate.rejected.join("; "),
     ]
 }

@@ -14,7 +14,8 @@ use crate::scenario::{Beside, Input, play};
 use crate::simulation::wall;
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
-use crate::tradeoff::{Subject, Tradeoff, certificate, rate, servo, simulation, sine};
+use crate::tradeoff::ticks::{self, Ticks};
+use crate::tradeoff::{self, Subject, Tradeoff, certificate, rate, servo, simulation, sine};
 
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
@@ -104,6 +105,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             let measured = topic.measure()?;
             let out = File::create(&table).map_err(unwritable(&table))?;
             measured.write(out).map_err(unwritable(&table))?;
+            if topic == Topic::Servo {
+                let table = folder.join("ticks.csv");
+                let out = File::create(&table).map_err(unwritable(&table))?;
+                all_ticks()?.write(out).map_err(unwritable(&table))?;
+            }
         }
         let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
         let picture = chart::tradeoff::tradeoff(&tradeoff)?;
@@ -113,6 +119,16 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         print!("{}", fronts(&tradeoff));
     }
     Ok(Answer::Yes)
+}
+
+/// What a tick of any scene takes, for which there is no picture.
+fn all_ticks() -> Result<Ticks, CommandError> {
+    let mut board = tradeoff::any_board()?;
+    let bar = progress::bar(ticks::types() as u64, "types of scenes");
+    let measured = Ticks::measure(&mut board, || bar.inc(1))?;
+    bar.finish_and_clear();
+    board.finish()?;
+    Ok(measured)
 }
 
 /// The programs that render a wall, with the instructions that their interrupts take on the emulated

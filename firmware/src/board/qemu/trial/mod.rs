@@ -1,7 +1,14 @@
 //! Does [trials](crate::board::trial) on the emulated board: inputs come by the pipe `counts`,
 //! outputs go by `codes`.
 
+mod every;
+mod programs;
+
+pub use every::Every;
+pub use programs::OfPrograms;
+
 use core::hint::black_box;
+use core::marker::PhantomData;
 
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
@@ -10,30 +17,39 @@ use super::meter::{Scale, measure};
 use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
 use crate::board::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial, Words};
 use crate::encoder::RawCount;
-use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FreeMode, OneSided, Renderable, Wall,
-};
+use crate::environment::Renderable;
 use crate::excitation::sines::Sine;
 use crate::number::{InEach, Number};
 use crate::scene::Scene;
 use crate::servo::{Servo, Transducers};
 
-/// Does trials until the host closes its end.
-pub fn run() -> ! {
+/// The types of environments of which a program has servos. A servo of data would have instructions
+/// of its own to find out what it is.
+pub trait Kinds {
+    /// Has a servo of the scene's own type do its ticks, if the program has that.
+    ///
+    /// # Errors
+    /// Where the host is gone.
+    fn ticks<N: Number>(job: Job<'_>) -> Result<(), Gone>;
+}
+
+/// Does trials of these types until the host closes its end.
+pub fn run<K: Kinds>() -> ! {
     super::pace::start_clock();
     let scale = Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);
     };
     let mut host = Host { counts, codes, scale };
-    semihosting::process::exit(match host.serve() {
+    semihosting::process::exit(match host.serve::<K>() {
         Ok(()) => EXIT_DONE,
         Err(Gone) => EXIT_REFUSED,
     })
 }
 
 /// The host does not take an answer, or asks what is no question.
-struct Gone;
+#[derive(Debug)]
+pub struct Gone;
 
 /// The pipes to the host, and what the meter's numbers mean.
 struct Host {
@@ -43,11 +59,12 @@ struct Host {
 }
 
 impl Host {
-    fn serve(&mut self) -> Result<(), Gone> {
+    fn serve<K: Kinds>(&mut self) -> Result<(), Gone> {
         while let Some(trial) = self.question()? {
             match trial {
                 Trial::Servo { scene, transducers, arithmetic } => {
-                    arithmetic.choose(OfServo { host: self, scene: &scene, transducers })?;
+                    let job = Job { host: self, scene: &scene, transducers: &transducers };
+                    arithmetic.choose(OfServo::<K> { job, kinds: PhantomData })?;
                 }
                 Trial::Sine(sine) => self.sine(sine)?,
             }
@@ -90,6 +107,8 @@ impl Host {
     }
 
     /// Ticks of a servo of the scene, as long as there are counts.
+    // SAFETY: the section is one of code, in flash that the emulated board has.
+    #[unsafe(link_section = ".more")]
     #[inline(never)]
     fn ticks<E: Renderable<N>, N: Number>(
         &mut self,
@@ -153,47 +172,36 @@ fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic)
 }
 
-/// A servo's trial, whose format is still to be chosen.
-struct OfServo<'a> {
+/// A servo's trial, whose types are still to be chosen.
+pub struct Job<'a> {
     host: &'a mut Host,
     scene: &'a Scene,
-    transducers: Transducers,
+    transducers: &'a Transducers,
 }
 
-impl InEach for OfServo<'_> {
-    type Output = Result<(), Gone>;
+impl Job<'_> {
+    /// Its ticks, as a servo of this environment.
+    fn of<E: Renderable<N>, N: Number>(self, environment: E) -> Result<(), Gone> {
+        let Scene { device, timing, coupling, torque_limit, .. } = *self.scene;
+        let scene = Scene { device, timing, coupling, environment, torque_limit };
+        self.host.ticks::<E, N>(scene, self.transducers)
+    }
 
-    /// In the types of the scenes that have a program: a servo of data would have instructions of
-    /// its own to find out what it is.
-    fn with<N: Number>(self) -> Result<(), Gone> {
-        let Self { host, scene, transducers } = self;
-        let plain = |wall: &Wall| wall.delay == 1 && wall.filter.is_none();
-        let centred = |wall: &Wall| plain(wall) && !wall.one_sided && wall.face == 0.0;
-        match scene.environment {
-            Environment::DelayedSpring(wall) if centred(&wall) => {
-                let environment = DelayedSpring::<1> { stiffness: wall.stiffness };
-                host.ticks::<_, N>(with(scene, environment), &transducers)
-            }
-            Environment::DamperWall(wall) if plain(&wall) && wall.one_sided => {
-                let Wall { stiffness, damping, face, .. } = wall;
-                let wall = DamperWall::<1> { stiffness, damping };
-                host.ticks::<_, N>(with(scene, OneSided { face, wall }), &transducers)
-            }
-            Environment::DamperWall(wall) if centred(&wall) => {
-                let Wall { stiffness, damping, .. } = wall;
-                let wall = DamperWall::<1> { stiffness, damping };
-                host.ticks::<_, N>(with(scene, wall), &transducers)
-            }
-            Environment::FreeMode { residual, delay: 0 } => {
-                host.ticks::<_, N>(with(scene, FreeMode::<0> { residual }), &transducers)
-            }
-            _ => host.answer(&[REFUSED]),
-        }
+    fn refuse(self) -> Result<(), Gone> {
+        self.host.answer(&[REFUSED])
     }
 }
 
-/// The scene with another environment.
-fn with<E>(scene: &Scene, environment: E) -> Scene<E> {
-    let Scene { device, timing, coupling, torque_limit, .. } = *scene;
-    Scene { device, timing, coupling, environment, torque_limit }
+/// A job whose format is still to be chosen.
+struct OfServo<'a, K> {
+    job: Job<'a>,
+    kinds: PhantomData<K>,
+}
+
+impl<K: Kinds> InEach for OfServo<'_, K> {
+    type Output = Result<(), Gone>;
+
+    fn with<N: Number>(self) -> Result<(), Gone> {
+        K::ticks::<N>(self.job)
+    }
 }
