@@ -3,6 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::dash::{Dash, SOLID};
 use super::*;
 use crate::failures::region::{METHODS, Region};
@@ -50,26 +51,12 @@ pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
 fn paint(area: &Area<'_>, region: &Region) -> Drawn<()> {
     let steps = region.apparent.iter().flatten().map(|point| point.0);
     let steps = span(steps);
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
+    let mut chart = axes::chart(area)
         .caption(region.device, text(LABEL))
         .build_cartesian_2d(steps.clone().log_scale(), STIFFNESS.log_scale())?;
     shade(&mut chart, region)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(UNITS))
-        .axis_style(pen(1))
-        .set_all_tick_mark_size(units(5))
-        .x_labels(4)
-        .x_desc("steps a tick")
-        .y_desc("stiffness (N m/rad)")
-        .x_label_formatter(&axis_number)
-        .y_label_formatter(&axis_number)
-        .label_style(text(LABEL))
-        .draw()?;
+    let names = Axes::named("steps a tick", "stiffness (N m/rad)");
+    Axes { most: (4, 11), ..names }.draw(&mut chart)?;
     let level = |stiffness: f64| vec![(steps.start, stiffness), (steps.end, stiffness)];
     line(&chart, &level(region.truth), SOLID, 4)?;
     line(&chart, &level(region.certified), CERTIFIED, 2)?;

@@ -2,6 +2,7 @@
 
 use plotters::prelude::*;
 
+use super::axes::Axes;
 use super::*;
 
 /// Draws an angle over time that grows, with the time axis in s.
@@ -14,14 +15,11 @@ pub fn growth(title: &str, period: f64, position: &[f64]) -> Result<Picture, Cha
     }
     draw(|area| {
         let y = padded(span(position.iter().copied()), 0.1);
-        let mut chart = ChartBuilder::on(area)
+        let mut chart = axes::chart(area)
             .caption(title, text(TITLE))
-            .margin(MARGIN)
             .margin_right(MARGIN_RIGHT)
-            .x_label_area_size(X_LABELS)
-            .y_label_area_size(Y_LABELS)
             .build_cartesian_2d(0.0..period * position.len() as f64, y)?;
-        mesh(&mut chart, Some("time (s)"), "angle (rad)")?;
+        Axes::named("time (s)", "angle (rad)").draw(&mut chart)?;
         let points = position.iter().enumerate();
         let points = points.map(|(sample, &value)| (sample as f64 * period, value));
         chart.draw_series(LineSeries::new(points, pen(1)))?;

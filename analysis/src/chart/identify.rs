@@ -8,6 +8,7 @@ use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::*;
 use crate::identify::{Identification, Response};
 use crate::quantity::significant;
@@ -71,12 +72,9 @@ fn nyquist(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let part =
         (f64::from(height) - room(X_LABELS, MARGIN)) / (f64::from(width) - room(Y_LABELS, MARGIN));
     let half = 0.5 * part * (x.end - x.start);
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(x.clone(), -half..half)?;
-    mesh(&mut chart, Some("real part of J (rad/(N m s))"), "imaginary part of J (rad/(N m s))")?;
+    let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), -half..half)?;
+    let names = ("real part of J (rad/(N m s))", "imaginary part of J (rad/(N m s))");
+    Axes::named(names.0, names.1).draw(&mut chart)?;
     let axes = [vec![(x.start, 0.0), (x.end, 0.0)], vec![(0.0, -half), (0.0, half)]];
     chart.draw_series(axes.map(|axis| PathElement::new(axis, pen(1))))?;
     let rim = |i: usize| {
@@ -200,28 +198,11 @@ fn spectrum<'a, 'b>(
 ) -> Drawn<Spectrum<'a, 'b>> {
     let ends = |r: &Response| [-BAR, BAR].map(|reach| part(r) + reach * r.deviation);
     let range = padded(span(found.responses.iter().flat_map(ends)), 0.1);
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
+    let mut chart = axes::chart(area)
         .margin_top(2 * MARGIN)
         .margin_right(MARGIN_RIGHT)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(shown(found).log_scale(), range.clone())?;
-    let up = numbers(&range);
-    let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(UNITS))
-        .axis_style(pen(1))
-        .set_all_tick_mark_size(units(5))
-        .y_labels(6)
-        .y_desc(y)
-        .x_label_formatter(&axis_number)
-        .y_label_formatter(&up)
-        .label_style(text(LABEL));
-    if let Some(x) = x {
-        mesh.x_desc(x);
-    }
-    mesh.draw()?;
+    Axes { most: (11, 6), ..Axes::named(x, y) }.draw(&mut chart)?;
     Ok(chart)
 }
 

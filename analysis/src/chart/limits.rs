@@ -3,6 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::{Axes, Scale};
 use super::dash::Dash;
 use super::*;
 use crate::limits::Point;
@@ -60,32 +61,19 @@ fn paint(
     left: Range<f64>,
     right: Range<f64>,
 ) -> Drawn<()> {
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
+    let numbers = Scale::logarithmic(&right);
+    let mut chart = axes::chart(area)
         .right_y_label_area_size(RIGHT_LABELS)
         .build_cartesian_2d(rates.clone().log_scale(), left.log_scale())?
         .set_secondary_coord(rates.log_scale(), right.log_scale());
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(UNITS))
-        .axis_style(pen(1))
-        .set_all_tick_mark_size(units(5))
-        .x_labels(12)
-        .x_desc("sample rate (Hz)")
-        .y_desc("largest certified stiffness (N m/rad)")
-        .x_label_formatter(&axis_number)
-        .y_label_formatter(&axis_number)
-        .label_style(text(LABEL))
-        .draw()?;
+    let names = Axes::named("sample rate (Hz)", "largest certified stiffness (N m/rad)");
+    Axes { most: (12, 11), ..names }.draw(&mut chart)?;
     chart
         .configure_secondary_axes()
         .axis_style(pen(1))
         .set_all_tick_mark_size(units(5))
         .y_desc("torque ripple of the encoder (N m)")
-        .y_label_formatter(&axis_number)
+        .y_label_formatter(&|ripple| numbers.number(*ripple))
         .label_style(text(LABEL))
         .draw()?;
     for (index, curve) in curves.iter().enumerate() {

@@ -3,6 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::strips::polygons;
 use super::*;
 use crate::map::{Map, Region};
@@ -59,12 +60,8 @@ pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
 
 fn regions(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
     let (x, y) = (map.stiffness.clone(), map.damping.clone());
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .margin_right(MARGIN_RIGHT)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(x.clone(), y.clone())?;
+    let mut chart =
+        axes::chart(area).margin_right(MARGIN_RIGHT).build_cartesian_2d(x.clone(), y.clone())?;
     let place = |&(column, row): &(usize, usize)| {
         let along = |range: &Range<f64>, part: f64| range.start + (range.end - range.start) * part;
         let column = column as f64 / map.columns as f64;
@@ -82,7 +79,7 @@ fn regions(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
             chart.draw_series([seam])?;
         }
     }
-    mesh(&mut chart, Some("stiffness (N m/rad)"), "damping (N m s/rad)")?;
+    Axes::named("stiffness (N m/rad)", "damping (N m s/rad)").draw(&mut chart)?;
     let axis = [(x.start, 0.0), (x.end, 0.0)];
     chart.draw_series([PathElement::new(axis, pen(1))])?;
     let on_white = overlay.border.iter().copied();

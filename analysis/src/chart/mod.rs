@@ -1,6 +1,7 @@
 //! Pictures as SVG: black on white, told apart by line style and labelled where they are, so that
 //! they can be read in print.
 
+pub mod axes;
 pub mod dash;
 pub mod failures;
 pub mod growth;
@@ -145,24 +146,6 @@ fn draw_sized(
     Ok(Picture::new(svg.replacen(&drawing, &page, 1)))
 }
 
-/// The axes, grid and numbers of a chart, in the style of all of them.
-fn mesh(chart: &mut Plane<'_, '_>, x: Option<&str>, y: &str) -> Drawn<()> {
-    let (across, up) = (numbers(&chart.x_range()), numbers(&chart.y_range()));
-    let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(UNITS))
-        .axis_style(pen(1))
-        .set_all_tick_mark_size(units(5))
-        .y_desc(y)
-        .x_label_formatter(&across)
-        .y_label_formatter(&up)
-        .label_style(text(LABEL));
-    if let Some(x) = x {
-        mesh.x_desc(x);
-    }
-    mesh.draw()
-}
-
 fn text(size: i32) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).color(&BLACK)
 }
@@ -203,35 +186,9 @@ fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
     finite.fold(first..first, |range, value| range.start.min(value)..range.end.max(value))
 }
 
-/// Numbers on a logarithmic axis.
-fn axis_number(value: &f64) -> String {
-    crate::quantity::significant(*value, 4)
-}
-
-/// Numbers on an axis with a range: as many digits as tell its ticks apart, and zero where
-/// rounding misses it by a small part of the range.
-fn numbers(range: &Range<f64>) -> impl Fn(&f64) -> String + use<> {
-    let width = (range.end - range.start).abs();
-    let largest = range.start.abs().max(range.end.abs());
-    let digits = ((largest / width).log10().ceil() as usize + 2).clamp(4, 17);
-    move |value| match value.abs() < 1e-9 * width {
-        true => "0".to_owned(),
-        false => crate::quantity::significant(*value, digits),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ticks_are_told_apart_however_small_the_numbers_or_their_range() {
-        let small = numbers(&(-3e-12..3e-12));
-        assert_eq!([1e-12, 2e-12, 1e-28].map(|value| small(&value)), ["1e-12", "2e-12", "0"]);
-        let narrow = numbers(&(0.2..0.200_004));
-        assert_ne!(narrow(&0.200_001), narrow(&0.200_002));
-        assert_eq!(numbers(&(0.0..45.0))(&(3.0 * 0.1)), "0.3");
-    }
 
     #[test]
     fn ranges_are_never_empty_and_hold_what_they_are_of() {

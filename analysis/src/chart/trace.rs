@@ -5,6 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::hatch::Ground;
 use super::*;
 use crate::file::SceneFile;
@@ -137,13 +138,11 @@ fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
     let range = span(trace.position.iter().chain(&trace.hand).copied());
     let y = padded(range, 0.16);
     let time = trace.times();
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
+    let mut chart = axes::chart(area)
         .margin_right(MARGIN_RIGHT)
         .x_label_area_size(units(24))
-        .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(time.clone(), y.clone())?;
-    mesh(&mut chart, None, "angle (rad)")?;
+    Axes::named(None, "angle (rad)").draw(&mut chart)?;
     if let Some(face) = trace.face.filter(|face| y.contains(face)) {
         let line = [(time.start, face), (time.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
@@ -207,11 +206,8 @@ fn name(served: Served) -> &'static str {
 
 fn torque(area: &Area<'_>, trace: &Trace, reasons: &[(Served, Ground)]) -> Drawn<()> {
     let y = padded(span(trace.torque.iter().copied()), 0.12);
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
+    let mut chart = axes::chart(area)
         .margin_right(MARGIN_RIGHT)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(trace.times(), y.clone())?;
     for &(served, ground) in reasons {
         shade(&chart, trace, served, ground)?;
@@ -220,7 +216,7 @@ fn torque(area: &Area<'_>, trace: &Trace, reasons: &[(Served, Ground)]) -> Drawn
         Clock::Seconds => "time (s)",
         Clock::Ticks => "time (ticks)",
     };
-    mesh(&mut chart, Some(axis), "coupling torque (N m)")?;
+    Axes::named(axis, "coupling torque (N m)").draw(&mut chart)?;
     chart.draw_series(LineSeries::new(sampled(&trace.torque, trace), pen(1)))?;
     release(&mut chart, trace, &y, false)
 }

@@ -5,6 +5,7 @@ use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::*;
 use crate::tradeoff::{Axis, Method, Tradeoff};
 
@@ -105,26 +106,11 @@ impl Panel<'_> {
         if fails {
             errors.end *= 10_f64.powf(2.0 * ROOM);
         }
-        let mut chart = ChartBuilder::on(area)
-            .margin(MARGIN)
+        let mut chart = axes::chart(area)
             .margin_top(2 * MARGIN)
-            .x_label_area_size(X_LABELS)
-            .y_label_area_size(Y_LABELS)
             .build_cartesian_2d(costs.log_scale(), errors.clone().log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID.stroke_width(UNITS))
-            .axis_style(pen(1))
-            .set_all_tick_mark_size(units(5))
-            .x_labels(8)
-            .y_labels(10)
-            .x_desc(cost.label)
-            .y_desc(axis.label)
-            .x_label_formatter(&axis_number)
-            .y_label_formatter(&axis_number)
-            .label_style(text(SMALL))
-            .draw()?;
+        let names = Axes::named(cost.label, axis.label);
+        Axes { most: (8, 10), size: SMALL, ..names }.draw(&mut chart)?;
         self.paint_methods(&mut chart, top)?;
         let middle = (area.dim_in_pixel().0 as i32 + Y_LABELS) / 2;
         let caption = anchored(HPos::Center, VPos::Center);

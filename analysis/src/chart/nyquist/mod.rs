@@ -11,6 +11,7 @@ use firmware::scene::Scene;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::axes::Axes;
 use super::dash::Dash;
 use super::*;
 use crate::circle::{CirclePole, poles};
@@ -151,17 +152,13 @@ fn angles(from: f64, to: f64) -> impl Iterator<Item = f64> {
 
 fn paint(area: &Area<'_>, curves: &[Curve]) -> Drawn<()> {
     let (x, y) = window(curves);
-    let mut chart = ChartBuilder::on(area)
-        .margin(MARGIN)
-        .x_label_area_size(X_LABELS)
-        .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(x.clone(), y.clone())?;
+    let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), y.clone())?;
     let lines = critical_lines(curves);
     // What lies left of all the lines is forbidden whatever the scene.
     let leftmost = lines.iter().copied().fold(f64::INFINITY, f64::min);
     let forbidden = Rectangle::new([(x.start, y.start), (leftmost, y.end)], FORBIDDEN.filled());
     chart.draw_series([forbidden])?;
-    mesh(&mut chart, Some("real part (N m s/rad)"), "imaginary part (N m s/rad)")?;
+    Axes::named("real part (N m s/rad)", "imaginary part (N m s/rad)").draw(&mut chart)?;
     let axes = [vec![(x.start, 0.0), (x.end, 0.0)], vec![(0.0, y.start), (0.0, y.end)]];
     chart.draw_series(axes.map(|axis| PathElement::new(axis, pen(1))))?;
     for &line in &lines {
