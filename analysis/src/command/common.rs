@@ -85,7 +85,7 @@ impl Arithmetic {
 #[derive(Debug, Args)]
 pub struct ForWhom {
     /// Print JSON
-    #[arg(long)]
+    #[arg(long, global = true)]
     pub json: bool,
 }
 
@@ -98,11 +98,16 @@ impl ForWhom {
     ) -> Result<(), CommandError> {
         let mut out = io::BufWriter::new(io::stdout().lock());
         if self.json {
-            serde_json::to_writer(&mut out, answer).map_err(io::Error::from)?;
-            writeln!(out)?;
+            json(&mut out, answer)?;
         } else {
             write!(out, "{}", text(answer))?;
         }
         Ok(out.flush()?)
     }
+}
+
+/// Writes an answer as one JSON object on a line.
+pub fn json(mut out: impl Write, answer: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut out, answer)?;
+    writeln!(out)
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::common::folder;
+use super::common::{ForWhom, folder, json};
 use super::{Answer, CommandError};
 use crate::design::{self, Choice, Quantity, SAMPLES, Terms};
 use crate::file::simulation::HandTorque;
@@ -28,9 +28,9 @@ pub struct Arguments {
     /// Write the scenes that certify into this folder instead of standard output
     #[arg(long, short, global = true, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
-    /// Print one JSON object
-    #[arg(long, global = true)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// The directions of a design.
@@ -169,10 +169,9 @@ fn border(
 ) -> Result<Answer, CommandError> {
     let mut out = io::stdout().lock();
     let [first, second] = quantities.map(|quantity| quantity.name_and_unit().0);
-    if arguments.json {
+    if arguments.answer.json {
         let column = |pick: fn(&(f64, f64)) -> f64| points.iter().map(pick).collect::<Vec<_>>();
-        let object = serde_json::json!({ first: column(|p| p.0), second: column(|p| p.1) });
-        writeln!(out, "{object}")?;
+        json(&mut out, &serde_json::json!({ first: column(|p| p.0), second: column(|p| p.1) }))?;
     } else {
         writeln!(out, "{first},{second}")?;
         for (value, limit) in points {
@@ -221,11 +220,10 @@ fn answer(
         save(folder, &scenes)?;
     }
     let mut out = io::stdout().lock();
-    if arguments.json {
+    if arguments.answer.json {
         let Sought { name: quantity, unit, .. } = *sought;
         let report = Report { quantity, unit, value, limited: value.is_some(), possible, scenes };
-        serde_json::to_writer(&mut out, &report).map_err(io::Error::from)?;
-        writeln!(out)?;
+        json(&mut out, &report)?;
     } else if let ([scene], None) = (&scenes[..], &arguments.output) {
         write!(out, "{scene}")?;
     } else {

@@ -11,6 +11,7 @@ use firmware::scene::Scene;
 use firmware::servo::Transducers;
 use serde::Serialize;
 
+use super::common::{ForWhom, json};
 use super::identify::positive;
 use super::{Answer, CommandError, demo};
 use crate::controller::{Controller, controller};
@@ -124,9 +125,9 @@ pub struct Arguments {
     /// Print a row a tick: tick,count,angle,torque,code,limit
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
@@ -364,10 +365,8 @@ fn print(
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
         csv(&mut out, &outcome.run)?;
-    } else if arguments.json {
-        let summary = summary(arguments, &question.name, outcome);
-        serde_json::to_writer(&mut out, &summary).map_err(io::Error::from)?;
-        writeln!(out)?;
+    } else if arguments.answer.json {
+        json(&mut out, &summary(arguments, &question.name, outcome))?;
     } else if let (Target::Board(_), Some(program)) = (arguments.target, question.program) {
         let report = verdict::judge(program.name, &question.scene);
         write!(out, "{}", demo::section(program, &report, outcome))?;

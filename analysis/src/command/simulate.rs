@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
-use super::common::{SceneArgument, Steps};
+use super::common::{ForWhom, SceneArgument, Steps, json};
 use super::{Answer, CommandError};
 use crate::quantity::significant;
 use crate::simulation::served::Served;
@@ -23,13 +23,13 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub steps: Steps,
-    /// Print one JSON object: position (rad), velocity (rad/s), torque (N m) at the samples, and
-    /// what limited the torque
-    #[arg(long, conflicts_with = "csv")]
-    pub json: bool,
-    /// Print a line for each sample: time (s), position, velocity, torque, limit
-    #[arg(long)]
+    /// Print a line for each sample: time (s), position (rad), velocity (rad/s), torque (N m), and
+    /// what limited it
+    #[arg(long, conflicts_with = "json")]
     pub csv: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// A sample as a line of CSV.
@@ -53,9 +53,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         rows(&experiment, stride, &mut out)?
     } else {
         let trajectory = simulate(&experiment, stride)?;
-        if arguments.json {
-            serde_json::to_writer(&mut out, &trajectory).map_err(io::Error::from)?;
-            writeln!(out)?;
+        if arguments.answer.json {
+            json(&mut out, &trajectory)?;
         } else {
             write!(out, "{}", text(&file.name, experiment.scene.timing.period, &trajectory))?;
         }

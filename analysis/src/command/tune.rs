@@ -8,6 +8,7 @@ use firmware::tuning::{self, TUNABLE};
 use firmware::wire::message::{Changes, Outcome, Running, Status};
 use serde::Serialize;
 
+use super::common::{ForWhom, json};
 use super::{Answer, CommandError};
 use crate::link::{Address, Link};
 use crate::scope::words;
@@ -28,9 +29,9 @@ pub struct Arguments {
     /// Switch the amplifier off first
     #[arg(long)]
     pub disarm: bool,
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub answer: ForWhom,
 }
 
 /// `stiffness=30`
@@ -79,10 +80,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Outcome::Refused(sentence) => Some(sentence.as_str()),
     };
     let (running, status) = (link.running()?, link.status()?);
-    if arguments.json {
-        let report = report(&link, refused, &running, &status);
-        serde_json::to_writer(io::stdout(), &report).map_err(io::Error::from)?;
-        writeln!(io::stdout())?;
+    if arguments.answer.json {
+        json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
     }
