@@ -31,12 +31,9 @@ impl Judge {
     /// # Errors
     /// Where the board has ended or does not answer.
     pub fn judge(&mut self, scene: &Scene) -> Result<Reply, EmulatorError> {
-        let question = ask(scene).map(u64::to_le_bytes);
-        let mut bytes = [0; size_of::<ReplyWords>()];
-        self.guest.exchange(question.as_flattened(), &mut bytes)?;
-        let (words, _) = bytes.as_chunks();
-        let words: ReplyWords = std::array::from_fn(|i| u64::from_le_bytes(words[i]));
-        reply(&words).ok_or(EmulatorError::NoReply)
+        let mut words = [[0; 8]; size_of::<ReplyWords>() / 8];
+        self.guest.ask(&ask(scene), words.as_flattened_mut())?;
+        reply(&words.map(u64::from_le_bytes)).ok_or(EmulatorError::NoReply)
     }
 
     /// Ends the board.

@@ -38,9 +38,8 @@ impl Player {
         while self.left > 0 {
             self.exchange(0)?;
         }
-        let words: Vec<u8> = play.to_words().to_le_bytes().flatten().collect();
         let mut answer = [0; 8];
-        self.guest.exchange(&words, &mut answer)?;
+        self.guest.ask(&play.words(), &mut answer)?;
         let curtain = Curtain::from_bytes(answer).ok_or(EmulatorError::NoReply)?;
         if curtain == Curtain::Open {
             self.left = play.ticks;

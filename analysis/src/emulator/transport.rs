@@ -10,6 +10,15 @@ pub trait Transport {
     /// Where it does not.
     fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
 
+    /// The same with a question of words.
+    ///
+    /// # Errors
+    /// As of [`exchange`](Self::exchange).
+    fn ask(&mut self, question: &[u64], answer: &mut [u8]) -> Result<(), EmulatorError> {
+        let bytes: Vec<u8> = question.iter().flat_map(|word| word.to_le_bytes()).collect();
+        self.exchange(&bytes, answer)
+    }
+
     /// Tells the program that there is no more, and waits for its end.
     ///
     /// # Errors

@@ -30,9 +30,8 @@ impl Trials {
     /// # Errors
     /// Where the board has ended, does not answer, or has no program for this.
     pub fn compute(&mut self, trial: &Trial, inputs: &[u32]) -> Result<Vec<Output>, EmulatorError> {
-        let words = trial.words().map(u64::to_le_bytes);
         let mut ready = [0];
-        self.guest.exchange(words.as_flattened(), &mut ready)?;
+        self.guest.ask(&trial.words(), &mut ready)?;
         if ready != [READY] {
             return Err(EmulatorError::NoTrial);
         }

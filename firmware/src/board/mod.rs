@@ -11,6 +11,7 @@ pub mod report;
 pub mod shown;
 #[cfg(feature = "sines")]
 pub mod trial;
+pub mod words;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]

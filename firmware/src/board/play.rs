@@ -5,7 +5,7 @@
 //! has a board play many scenes in one run, whatever their delays.
 
 use super::question::{Question, ask, read};
-use crate::encoder::CounterWidth;
+use super::words::{self, MachineWords};
 use crate::number::Arithmetic;
 use crate::scene::Scene;
 use crate::servo::Transducers;
@@ -35,35 +35,10 @@ pub enum Curtain {
     Unbuildable = 2,
 }
 
-/// Words behind the scene's.
-const MORE: usize = 6;
-
+/// Words in front of a play's scene: the ticks and the machine.
+const HEAD: usize = 1 + size_of::<MachineWords>() / 8;
 /// A [`Play`] as words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PlayWords {
-    /// The scene.
-    pub question: Question,
-    /// The rest.
-    pub more: [u64; MORE],
-}
-
-impl PlayWords {
-    /// Length in bytes.
-    pub const BYTES: usize = size_of::<Question>() + 8 * MORE;
-
-    /// From the bytes of all words, in the order of the fields.
-    pub fn from_le_bytes(words: &[[u8; 8]]) -> Self {
-        let word = |i: usize| words.get(i).map_or(0, |word| u64::from_le_bytes(*word));
-        let question: Question = core::array::from_fn(word);
-        let more = core::array::from_fn(|i| word(question.len() + i));
-        Self { question, more }
-    }
-
-    /// All words, each as bytes.
-    pub fn to_le_bytes(&self) -> impl Iterator<Item = [u8; 8]> {
-        self.question.iter().chain(&self.more).map(|word| word.to_le_bytes())
-    }
-}
+pub type PlayWords = [u64; HEAD + size_of::<Question>() / 8];
 
 impl Curtain {
     /// As bytes.
@@ -79,44 +54,28 @@ impl Curtain {
 }
 
 impl Play {
-    /// As words.
-    pub fn to_words(&self) -> PlayWords {
-        let Transducers { counts_per_turn, counter, full_scale_torque, largest_speed } =
-            self.transducers;
-        PlayWords {
-            question: ask(&self.scene),
-            more: [
-                counts_per_turn.to_bits(),
-                u64::from(counter == CounterWidth::Bits16),
-                full_scale_torque.to_bits(),
-                largest_speed.to_bits(),
-                Arithmetic::ALL.iter().take_while(|other| **other != self.arithmetic).count()
-                    as u64,
-                self.ticks.into(),
-            ],
-        }
+    /// Its words.
+    pub fn words(&self) -> PlayWords {
+        let mut words = [0; _];
+        words[0] = self.ticks.into();
+        words[1..HEAD].copy_from_slice(&words::ask(&self.transducers, self.arithmetic));
+        words[HEAD..].copy_from_slice(&ask(&self.scene));
+        words
     }
 
-    /// From words; `None` if they are none.
-    pub fn from_words(words: &PlayWords) -> Option<Self> {
-        let [counts, narrow, torque, speed, arithmetic, ticks] = words.more;
-        Some(Self {
-            scene: read(&words.question)?,
-            transducers: Transducers {
-                counts_per_turn: f64::from_bits(counts),
-                counter: if narrow == 0 { CounterWidth::Bits32 } else { CounterWidth::Bits16 },
-                full_scale_torque: f64::from_bits(torque),
-                largest_speed: f64::from_bits(speed),
-            },
-            arithmetic: *Arithmetic::ALL.get(usize::try_from(arithmetic).ok()?)?,
-            ticks: ticks.try_into().ok()?,
-        })
+    /// The play of the words; `None` if they are none.
+    pub fn read(words: &PlayWords) -> Option<Self> {
+        let (&[ticks, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
+        let (transducers, arithmetic) = words::read(*machine)?;
+        let scene = read(scene.try_into().ok()?)?;
+        Some(Self { scene, transducers, arithmetic, ticks: ticks.try_into().ok()? })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::encoder::CounterWidth;
     use crate::environment::{Environment, Wall};
     use crate::scene::{Coupling, Device, Timing};
 
@@ -147,10 +106,10 @@ mod tests {
             arithmetic: Arithmetic::I16F16,
             ticks: 5000,
         };
-        let words = play.to_words();
-        assert_eq!(Play::from_words(&words), Some(play));
-        let [a, b, c, d, _, ticks] = words.more;
-        assert_eq!(Play::from_words(&PlayWords { more: [a, b, c, d, 8, ticks], ..words }), None);
+        let mut words = play.words();
+        assert_eq!(Play::read(&words), Some(play));
+        words[HEAD - 1] = Arithmetic::ALL.len() as u64;
+        assert_eq!(Play::read(&words), None);
         for curtain in [Curtain::Open, Curtain::Refused, Curtain::Unbuildable] {
             assert_eq!(Curtain::from_bytes(curtain.to_bytes()), Some(curtain));
         }

@@ -5,7 +5,7 @@
 //! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
 
 use super::question::{self, Question, ask};
-use crate::encoder::CounterWidth;
+use super::words::{self, MachineWords};
 use crate::excitation::sines::Sine;
 use crate::number::Arithmetic;
 use crate::scene::Scene;
@@ -71,48 +71,37 @@ pub const READY: u8 = 1;
 /// The board's first answer: its program has no scene of this type, or none can be built.
 pub const REFUSED: u8 = 0;
 
-/// A trial as words: which it is, the transducers' three numbers, the scene.
-pub type Words = [u64; 4 + size_of::<Question>() / 8];
+/// Words in front of a trial's scene: a sine, or [`SERVO`], and the machine.
+const HEAD: usize = 1 + size_of::<MachineWords>() / 8;
+/// A trial as words.
+pub type Words = [u64; HEAD + size_of::<Question>() / 8];
 
 impl Trial {
-    /// Its words. A counter is always one of 32 bits.
+    /// Its words.
     pub fn words(&self) -> Words {
         let mut words = [0; _];
         match self {
             Self::Servo { scene, transducers, arithmetic } => {
-                words[0] = place(&Arithmetic::ALL, arithmetic);
-                words[1] = transducers.counts_per_turn.to_bits();
-                words[2] = transducers.full_scale_torque.to_bits();
-                words[3] = transducers.largest_speed.to_bits();
-                words[4..].copy_from_slice(&ask(scene));
+                words[0] = SERVO;
+                words[1..HEAD].copy_from_slice(&words::ask(transducers, *arithmetic));
+                words[HEAD..].copy_from_slice(&ask(scene));
             }
-            Self::Sine(sine) => words[0] = SINES | place(&Sine::ALL, sine),
+            Self::Sine(sine) => words[0] = words::place(&Sine::ALL, sine),
         }
         words
     }
 
     /// The trial of the words; `None` if they are none.
     pub fn read(words: &Words) -> Option<Self> {
-        let (head, scene) = words.split_first_chunk::<4>()?;
-        let [which, counts_per_turn, full_scale_torque, largest_speed] = *head;
-        if which & SINES != 0 {
-            return Sine::ALL.get((which & !SINES) as usize).copied().map(Self::Sine);
+        let (&[which, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
+        if which != SERVO {
+            return words::at(&Sine::ALL, which).map(Self::Sine);
         }
-        let arithmetic = *Arithmetic::ALL.get(which as usize)?;
-        let transducers = Transducers {
-            counts_per_turn: f64::from_bits(counts_per_turn),
-            counter: CounterWidth::Bits32,
-            full_scale_torque: f64::from_bits(full_scale_torque),
-            largest_speed: f64::from_bits(largest_speed),
-        };
+        let (transducers, arithmetic) = words::read(*machine)?;
         let scene = question::read(scene.try_into().ok()?)?;
         Some(Self::Servo { scene, transducers, arithmetic })
     }
 }
 
-/// Tells sines from servos.
-const SINES: u64 = 1 << 32;
-
-fn place<T: PartialEq>(all: &[T], one: &T) -> u64 {
-    all.iter().take_while(|other| *other != one).count() as u64
-}
+/// Stands where a sine would.
+const SERVO: u64 = u64::MAX;

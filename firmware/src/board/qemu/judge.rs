@@ -1,10 +1,10 @@
 //! Answers scenes by their bits: questions in by the pipe `counts`, replies out by `codes`.
 
 use semihosting::fs::File;
-use semihosting::io::{Read, Write};
+use semihosting::io::Write;
 
 use super::{EXIT_DONE, EXIT_REFUSED, lockstep, meter};
-use crate::board::question::{Question, answer};
+use crate::board::question::answer;
 
 /// Answers until the host closes its end.
 pub fn run() -> ! {
@@ -23,19 +23,15 @@ pub fn run() -> ! {
 struct Unanswerable;
 
 fn serve(mut questions: File, mut replies: File, scale: meter::Scale) -> Result<(), Unanswerable> {
-    let mut bytes = [0; size_of::<Question>()];
-    while questions.read_exact(&mut bytes).is_ok() {
-        let (chunks, _) = bytes.as_chunks();
-        let question: Question = core::array::from_fn(|i| u64::from_le_bytes(chunks[i]));
+    while let Ok(question) = lockstep::words(&mut questions) {
         let words = answer(&question, |judge| {
             let start = meter::now();
             judge();
             u64::from(scale.instructions(meter::now().wrapping_sub(start)))
         })
         .ok_or(Unanswerable)?;
-        for word in words {
-            replies.write_all(&word.to_le_bytes()).map_err(|_| Unanswerable)?;
-        }
+        let bytes = words.map(u64::to_le_bytes);
+        replies.write_all(bytes.as_flattened()).map_err(|_| Unanswerable)?;
     }
     Ok(())
 }

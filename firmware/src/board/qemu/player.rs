@@ -6,7 +6,7 @@ use semihosting::fs::File;
 use semihosting::io::{Error, Read, Write};
 
 use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use crate::board::play::{Curtain, Play, PlayWords};
+use crate::board::play::{Curtain, Play};
 use crate::encoder::RawCount;
 use crate::number::{Arithmetic, Number};
 use crate::servo::Servo;
@@ -40,10 +40,7 @@ struct Stage {
 impl Stage {
     /// The next play, if the bytes are one.
     fn next(&mut self) -> Result<Option<Play>, Error> {
-        let mut bytes = [0; PlayWords::BYTES];
-        self.counts.read_exact(&mut bytes)?;
-        let (words, _) = bytes.as_chunks();
-        Ok(Play::from_words(&PlayWords::from_le_bytes(words)))
+        Ok(Play::read(&lockstep::words(&mut self.counts)?))
     }
 
     /// Judges a scene and, if it is certified, is its servo.

@@ -15,7 +15,7 @@ use semihosting::io::{Read, Write};
 
 use super::meter::{Scale, measure};
 use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use crate::board::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial, Words};
+use crate::board::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial};
 use crate::encoder::RawCount;
 use crate::environment::Renderable;
 use crate::excitation::sines::Sine;
@@ -74,13 +74,10 @@ impl Host {
 
     /// The next trial, if there is another one.
     fn question(&mut self) -> Result<Option<Trial>, Gone> {
-        let mut bytes = [0; size_of::<Words>()];
-        if self.counts.read_exact(&mut bytes).is_err() {
-            return Ok(None);
+        match lockstep::words(&mut self.counts) {
+            Ok(words) => Trial::read(&words).map(Some).ok_or(Gone),
+            Err(_) => Ok(None),
         }
-        let (chunks, _) = bytes.as_chunks();
-        let words: Words = core::array::from_fn(|i| u64::from_le_bytes(chunks[i]));
-        Trial::read(&words).map(Some).ok_or(Gone)
     }
 
     fn answer(&mut self, bytes: &[u8]) -> Result<(), Gone> {
@@ -95,10 +92,9 @@ impl Host {
         if more == [0] {
             return Ok(None);
         }
-        let mut bytes = [0; size_of::<Inputs>()];
-        self.counts.read_exact(&mut bytes).map_err(|_| Gone)?;
-        let (chunks, _) = bytes.as_chunks();
-        Ok(Some(core::array::from_fn(|i| u32::from_le_bytes(chunks[i]))))
+        let mut inputs = [[0; 4]; BLOCK];
+        self.counts.read_exact(inputs.as_flattened_mut()).map_err(|_| Gone)?;
+        Ok(Some(inputs.map(u32::from_le_bytes)))
     }
 
     #[inline(never)]
