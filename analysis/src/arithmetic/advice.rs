@@ -130,24 +130,25 @@ fn candidate(
     figures: &Figures,
 ) -> Candidate {
     let share = instructions * figures.rate / figures.clock;
-    let is_still = is_still(rest.as_ref());
     let mut rejected = Vec::new();
     let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
         if value > bound {
             let (value, bound) = (significant(value, 3), significant(bound, 3));
             rejected.push(format!("{what} {value}{unit} is above {bound}{unit}"));
         }
+        value > bound
     };
     match &losses {
         Ok(losses) => {
-            if !is_still {
-                beyond("hum", losses.alone.hum, figures.hum, " N m");
-            }
+            let hums =
+                !is_still(rest.as_ref()) && beyond("hum", losses.alone.hum, figures.hum, " N m");
             if let Some(bound) = figures.error {
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");
             }
             beyond("share of the core", 100.0 * share, 100.0 * figures.share, " %");
+            let too_little = rest.filter(|rest| hums && rest.friction.is_some());
+            rejected.extend(too_little.map(|rest| rest.to_string()));
         }
         Err(error) => rejected.push(error.to_string()),
     }

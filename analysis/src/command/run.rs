@@ -108,11 +108,11 @@ pub struct Arguments {
     /// Recorded counts (column `count`), one a tick, in place of the simulated device
     #[arg(long, value_name = "FILE.csv")]
     pub replay: Option<PathBuf>,
-    /// Encoder counts a turn; the program's own if left out
+    /// Encoder counts a turn; the scene's own if left out
     #[arg(long, value_name = "N", value_parser = positive,
           allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
-    /// Motor torque in N m at the converter's largest code; the program's own if left out
+    /// Motor torque in N m at the converter's largest code; the scene's own if left out
     #[arg(long, value_name = "TORQUE", value_parser = positive,
           allow_negative_numbers = true)]
     pub full_scale: Option<f64>,
@@ -264,7 +264,10 @@ pub(super) fn transducers_of(
     Transducers {
         counts_per_turn: counts_per_turn.or(from_step).unwrap_or(COUNTS_PER_TURN),
         counter: CounterWidth::Bits32,
-        full_scale_torque: full_scale.or(file.scene.torque_limit).unwrap_or(FULL_SCALE),
+        full_scale_torque: full_scale
+            .or(file.full_scale)
+            .or(file.scene.torque_limit)
+            .unwrap_or(FULL_SCALE),
         largest_speed: Transducers::NO_HAND_IS_FASTER,
     }
 }

@@ -316,6 +316,22 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     assert!(answer["message"].as_str().unwrap().contains("counts a turn in place of 1000"));
 }
 
+/// The converter's largest code is the torque that a file says, whatever the scene is limited to.
+#[test]
+fn a_file_says_what_the_converter_gives() {
+    let limits = r#""limits": {"torque": 0.5, "full_scale": 2}, "environment""#;
+    let scene = WALL.replace(r#""environment""#, limits);
+    let output = haptic(&["run", "-", "--ticks", "1000", "--csv"], scene.as_bytes());
+    let text = String::from_utf8(output.stdout).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows.len(), 1000);
+    for row in &rows {
+        let (torque, code): (f64, f64) = (row[3].parse().unwrap(), row[4].parse().unwrap());
+        assert!((2048.0 - torque * 2047.0 / 2.0 - code).abs() < 0.51, "{row:?}");
+    }
+    assert!(rows.iter().any(|row| row[4].parse::<f64>().unwrap() < 2000.0), "it pushes");
+}
+
 #[test]
 fn advice_needs_figures_that_make_sense_and_a_scene_that_certifies_at_the_rate() {
     let advise = |scene: &str, hum: &str, rate: &str| {
@@ -403,7 +419,8 @@ fn friction_of_the_device_ends_a_hum() {
     // What a coarse format rounds takes more friction than there is: it hums as if there were none.
     let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();
     assert_eq!(coarse["rest"]["comes_to_rest"], false, "{coarse}");
-    assert!(coarse["rejected"].to_string().contains("hum"), "{coarse}");
+    let reasons = coarse["rejected"].to_string();
+    assert!(reasons.contains("hum 0.00") && reasons.contains("is below that"), "{coarse}");
     // Too little for the encoder alone.
     let (status, answer) = advise(0.99 * encoder);
     assert_eq!(status, Some(1), "{answer}");
