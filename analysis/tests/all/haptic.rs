@@ -427,4 +427,10 @@ fn friction_of_the_device_ends_a_hum() {
     let message = answer["message"].as_str().unwrap();
     assert!(message.starts_with("no:") && message.contains("friction of 0.0457"), "{message}");
     assert!(message.contains("is below that"), "{message}");
+    // A program's scene does not say: 924 N m/rad times half of its count are 0.0473 N m.
+    let program = |friction: &str| {
+        let question = ["advise", "damper_wall", "--hum", "0.001", "--rate", "1000"];
+        haptic(&[&question[..], &["--friction", friction]].concat(), b"").status.code()
+    };
+    assert_eq!([program("0.06"), program("0.047")], [Some(0), Some(1)]);
 }
