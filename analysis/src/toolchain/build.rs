@@ -224,16 +224,19 @@ impl Toolchain {
     /// Where it does not.
     pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
         let build = ["--release", "--features", board.name(), "--bin", name, "--target", TARGET];
+        let _alone = self.workspace.lock("build")?;
         self.compile(name, &build)
     }
 
-    /// Builds the tests that run on a board, and keeps nothing of them: whether they build and fit.
+    /// Builds the tests that run on a board as somebody does who runs them, and keeps nothing of them:
+    /// whether they build and fit.
     ///
     /// # Errors
     /// Where they do not.
     pub fn try_tests(&self, board: Board) -> Result<(), BuildError> {
         let (name, features) = ("on_target", format!("{board},on-target"));
-        let build = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
+        let build = ["--release", "--package", "firmware", "--target", TARGET];
+        let _alone = self.workspace.lock("build")?;
         self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
     }
 
@@ -317,17 +320,17 @@ impl Toolchain {
 
     /// One call of cargo for all programs: it links on all cores.
     fn build(&self, names: &[&str], variant: &Variant) -> Result<Vec<PathBuf>, BuildError> {
-        // Cargo puts each build of a program, whatever its features, in the same place; the lock
-        // keeps it there until it is copied.
+        // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
+        // it there until it is copied.
         let _alone = self.workspace.lock("build")?;
-        let flash = ["--package", "firmware", "--profile", "flash", "--target", TARGET];
+        let flash = ["--release", "--config", FLASH, "--package", "firmware", "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
         let with = ["--features", &variant.features];
         self.compile(
             &names.join(", "),
             &flash.into_iter().chain(programs).chain(with).collect::<Vec<_>>(),
         )?;
-        let folder = self.target_folder().join(TARGET).join("flash");
+        let folder = self.target_folder().join(TARGET).join("release");
         let keep = |name: &&str| {
             self.workspace.keep(&folder.join(name), &format!("{name}{}", variant.suffix))
         };
@@ -369,6 +372,10 @@ impl Toolchain {
         command
     }
 }
+
+/// What is flashed is built with, from the workspace's root. Not a profile with a name, which would have
+/// a folder of its own, and in it each macro and build script once more.
+const FLASH: &str = "firmware/flash.toml";
 
 /// Has cargo build a program.
 fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {
