@@ -71,9 +71,9 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
 #[test]
 fn no_tick_can_panic() {
     let folder = copy("panic_free");
-    let output = cargo(&folder, &["run", "--release"]);
+    let output = cargo(&folder, &["run"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let output = cargo(&folder, &["build", "--release", "--features", "control"]);
+    let output = cargo(&folder, &["build", "--features", "control"]);
     let said = text(&output.stderr);
     assert!(!output.status.success() && said.contains("panic in function `control`"), "{said}");
 }
