@@ -41,17 +41,3 @@ pub fn rounded(x: f64, places: usize) -> (Q, f64) {
     let exact = of_decimal(&text).unwrap_or_else(Q::zero);
     (exact, text.parse().unwrap_or(0.0))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn decimals_are_exact() {
-        assert_eq!(of_decimal("-0.0220").unwrap(), ratio(-11, 500));
-        assert_eq!(of_decimal("25e-1").unwrap(), ratio(5, 2));
-        assert_eq!(of_decimal("-0.5").unwrap(), ratio(-1, 2));
-        assert!(of_decimal("1.2.3").is_none() && of_decimal("").is_none());
-        assert_ne!(of_f64(0.1).unwrap(), ratio(1, 10));
-    }
-}

@@ -9,6 +9,7 @@ mod continuous;
 mod decision;
 mod emulated;
 mod every_float;
+mod exact;
 mod failures;
 mod foreign;
 mod interval;
