@@ -30,6 +30,8 @@ fn cargo(folder: &TempDir, arguments: &[&str]) -> Output {
         // Kept from run to run and shared, so that the firmware is built once.
         .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("foreign"))
         .env_remove("RUSTFLAGS")
+        // Would outweigh what a foreign crate's manifest says of its profile.
+        .env_remove("CARGO_PROFILE_DEV_CODEGEN_UNITS")
         .output()
         .expect("cargo starts")
 }
