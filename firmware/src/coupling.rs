@@ -135,8 +135,8 @@ impl<N: Number> Solver<N> {
         let contact = both.times(self.contact_gain);
         match self.stiffness {
             Some(stiffness) => contact.smaller(depth.times(stiffness)).larger(free),
-            None if depth > N::ZERO => contact.larger(free),
-            None => free,
+            None if depth <= N::ZERO => free,
+            None => contact.larger(free),
         }
     }
 
@@ -175,6 +175,23 @@ mod tests {
         let solver = Solver::<f32>::new(Coupling::Rigid, Slopes { line: 5.0, wall: 0.0 }).unwrap();
         assert_eq!(solver.torque(Offer::Line(3.0)), 3.0);
         assert_eq!(solver.environment_position(0.5, 3.0), 0.5);
+    }
+
+    /// The servo takes a torque that is no number for a fault.
+    #[test]
+    fn what_is_no_number_is_not_taken_for_a_place_outside_of_a_wall() {
+        const NAN: f32 = f32::NAN;
+        for coupling in [Coupling::Rigid, spring(32.0)] {
+            let solver = Solver::<f32>::new(coupling, Slopes { line: 0.0, wall: 5.0 }).unwrap();
+            for (torque, depth) in [(NAN, NAN), (NAN, 0.5)] {
+                let contact = Contact { torque, depth };
+                assert!(solver.torque(Offer::Wall(contact)).is_nan(), "{coupling:?}, {contact:?}");
+                let both = Offer::LineAndWall(1.0, contact);
+                assert!(solver.torque(both).is_nan(), "{coupling:?}, {both:?}");
+            }
+            let outside = Contact { torque: -1.0, depth: -0.5 };
+            assert!(solver.torque(Offer::LineAndWall(NAN, outside)).is_nan(), "{coupling:?}");
+        }
     }
 
     proptest! {

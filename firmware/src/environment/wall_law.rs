@@ -108,10 +108,11 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D>
         let depth = self.side.depth(x);
         if !self.side.one_sided() {
             self.line(x, depth)
-        } else if depth > N::ZERO {
-            self.line(x, depth).positive_part()
-        } else {
+        } else if depth <= N::ZERO {
             N::ZERO
+        } else {
+            // Where the depth is no number the torque shall be none, either, which is a fault.
+            self.line(x, depth).positive_part()
         }
     }
 

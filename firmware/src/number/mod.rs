@@ -52,17 +52,17 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     fn negated(self) -> Self;
     /// Whether the magnitude is at most `bound`; never true of a NaN.
     fn within(self, bound: Self) -> bool;
-    /// The number where it is positive, else zero. Of a NaN: either.
+    /// The number where it is positive, else zero. Of a NaN: by its sign, itself or zero.
     fn positive_part(self) -> Self;
-    /// The smaller of two.
+    /// The smaller of two; `self` where one is a NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
-        if self < other { self } else { other }
+        if other < self { other } else { self }
     }
-    /// The larger of two.
+    /// The larger of two; `self` where one is a NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
-        if self > other { self } else { other }
+        if self < other { other } else { self }
     }
 
     /// The factor for [`Number::angle`] from the encoder's step in rad, rounded [`Rounding::Inward`].

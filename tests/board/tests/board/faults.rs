@@ -66,9 +66,7 @@ const CASES: &[Case] = &[
     Case {
         fault: "not-a-number",
         cause: "a coefficient in memory is no number",
-        // A wall with a face takes what is no number for a place outside of it, where there is no
-        // torque: see `harmless`.
-        program: "delayed_spring",
+        program: "damper_wall",
         bound: 1.0,
         provoke: |bench| {
             let coefficient = coefficient(bench);

@@ -178,13 +178,14 @@ fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
     });
 }
 
-/// A wall with a face has no torque where it is not known to be entered.
+/// A wall with a face never pulls, and goes by the sign there, also by that of no number.
 #[test]
-fn a_position_that_is_no_number_is_outside_of_a_wall() {
+fn a_position_that_is_no_number_with_a_negative_sign_gives_no_torque() {
     on_both(|chip| {
         let mut bench = pushing(chip);
         let coefficient = coefficient(&mut bench);
-        assert!(bench.machine.core_mut().set_memory(coefficient, &f32::NAN.to_le_bytes()));
+        let negative = (-f32::NAN).to_le_bytes();
+        assert!(bench.machine.core_mut().set_memory(coefficient, &negative));
         bench.run(3);
         assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{}", chip.name);
         assert_running(&mut bench, chip.name);
