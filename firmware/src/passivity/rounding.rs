@@ -6,6 +6,7 @@
 
 /// All bits of a double but its sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;
+const SIGN: u64 = !MAGNITUDE;
 /// The bits of the exponent, which are those of infinity; above are what is no number.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
 /// The first bit of a normal number's mantissa, which is not written.
@@ -15,8 +16,10 @@ const IMPLICIT: u64 = 1 << 52;
 #[cfg_attr(target_os = "none", inline(never))]
 pub(super) const fn add_down(a: f64, b: f64) -> f64 {
     let sum = a + b;
-    let is_larger = a.to_bits() & MAGNITUDE >= b.to_bits() & MAGNITUDE;
-    let (large, small) = if is_larger { (a, b) } else { (b, a) };
+    let (a, b) = (a.to_bits(), b.to_bits());
+    // Which is larger no branch foretells.
+    let swapped = (a ^ b) & ((a & MAGNITUDE < b & MAGNITUDE) as u64).wrapping_neg();
+    let (large, small) = (f64::from_bits(a ^ swapped), f64::from_bits(b ^ swapped));
     // Dekker's two-sum: what the sum has of the smaller summand, exact for finite numbers.
     // Where a sum is infinite, it is no number, or so large that the step outward is made.
     if small >= sum - large { sum } else { below(sum) }
@@ -77,12 +80,11 @@ const fn below(value: f64) -> f64 {
     let magnitude = bits & MAGNITUDE;
     if magnitude == 0 {
         -f64::from_bits(1)
-    } else if magnitude > EXPONENT || magnitude == EXPONENT && bits != magnitude {
+    } else if magnitude > EXPONENT || bits == EXPONENT | SIGN {
         f64::NEG_INFINITY
-    } else if bits == magnitude {
-        f64::from_bits(bits - 1)
     } else {
-        f64::from_bits(bits + 1)
+        // One less, of a negative number one more; which of the two no branch foretells.
+        f64::from_bits((bits - 1) + (bits >> 63 << 1))
     }
 }
 
