@@ -45,7 +45,8 @@ impl Bracket {
     }
 
     const fn middle(&self) -> f64 {
-        0.5 * (self.fails.value + self.passes.value)
+        // Each halved by itself: the sum of the largest numbers is infinite.
+        0.5 * self.fails.value + 0.5 * self.passes.value
     }
 
     /// Where the straight line through two looks is zero, if the scene lacks more along it towards
@@ -162,6 +163,28 @@ impl Search {
         if self.looks.is_multiple_of(2) {
             self.bisects = self.bisects || self.bracket.width() > 0.5 * self.width;
             self.width = self.bracket.width();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The middle of the largest numbers is one, too: an infinite one has no digits.
+    #[test]
+    fn a_search_among_the_largest_numbers_ends() {
+        let look = |value, shortage| Look { value, shortage };
+        for relation in [Relation::AtMost, Relation::AtLeast] {
+            let (fails, passes) = (look(f64::MAX, None), look(f64::MAX / 1.5, Some(-1.0)));
+            let mut search = Search::new(Bracket { fails, passes }, relation);
+            let mut looks = 0;
+            while let Some(value) = search.next() {
+                assert!(search.bracket.contains(value.value()));
+                search.learn(value, None);
+                looks += 1;
+            }
+            assert!((1..=MAX_LOOKS).contains(&looks), "{looks}");
         }
     }
 }
