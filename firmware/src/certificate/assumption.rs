@@ -304,15 +304,17 @@ fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<A
         // Judged by that bound already.
         return None;
     }
+    Some(Assumption::Saturates { bound: bound_that_passes(scene, assessment).map(Interval::hi) })
+}
+
+/// The nonlinear bound of a scene that has an index, if it passes.
+fn bound_that_passes(scene: &Scene, assessment: &Assessment) -> Option<Interval> {
+    // Without one its numbers may be out of range.
+    assessment.alpha?;
     let numbers = Numbers::of(scene, assessment.format);
-    let contact = transfer(&scene.environment, &numbers).ok();
-    let bound = contact.and_then(|contact| nonlinear_bound(&scene.environment, &contact, &numbers));
-    let bound = bound.filter(|bound| {
-        let limit = paper_limit(&numbers);
-        assessment.alpha.is_some()
-            && limit.is_some_and(|limit| compare(*bound, limit) == Answer::Pass)
-    });
-    Some(Assumption::Saturates { bound: bound.map(Interval::hi) })
+    let contact = transfer(&scene.environment, &numbers).ok()?;
+    let bound = nonlinear_bound(&scene.environment, &contact, &numbers)?;
+    (compare(bound, paper_limit(&numbers)?) == Answer::Pass).then_some(bound)
 }
 
 fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assumption {

@@ -5,6 +5,7 @@
 //! rounds it, and the transfer function put together from these. For [`Format::F64`] a coefficient
 //! is what was written, to the digits of a double.
 
+use super::parameter::first_invalid;
 use crate::environment::{Environment, MAX_DEGREE, Rational, Wall};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
@@ -365,6 +366,9 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
+        if first_invalid(scene).is_some() {
+            return Err(Unbuildable::OutOfRange);
+        }
         let n = Numbers::of(scene, format);
         let environment = match transfer(&scene.environment, &n) {
             Ok(environment) => environment,

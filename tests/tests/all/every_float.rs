@@ -1,7 +1,7 @@
 //! `certify` over all of `f64`: no input makes it panic, none that is not finite passes, and what
 //! it says is consistent.
 
-use firmware::certificate::{Answer, Assumptions, Rule, Steps, assess_in, certify};
+use firmware::certificate::{Answer, Assumptions, Rejection, Rule, Steps, assess_in, certify};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
@@ -178,5 +178,32 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// Nothing is calculated from numbers that are out of range: a delay that no integer of the
+/// mathematics holds has a sentence, and assumptions beside it.
+#[test]
+fn a_delay_of_any_size_gets_an_answer() {
+    for samples in [9, 1 << 31, usize::MAX] {
+        let coefficients = Coefficients::new(&[1.0]).expect("one coefficient");
+        let (numerator, denominator) = (coefficients, coefficients);
+        let environment = Environment::Rational(Rational {
+            numerator,
+            denominator,
+            delay: samples,
+            unit_zeros: samples,
+        });
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment,
+            torque_limit: None,
+        };
+        let steps = Steps { encoder: Some(1e-4), full_scale: Some(1.0), friction: Some(0.01) };
+        let assessment = assess_in(&scene, Format::F32);
+        assert!(matches!(assessment.outcome, Err(Rejection::Invalid(_))), "{assessment:?}");
+        assert!(Assumptions::of(&scene, &assessment, &steps).iter().count() > 0);
     }
 }
