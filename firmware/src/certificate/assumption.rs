@@ -285,12 +285,7 @@ impl Assumptions {
 }
 
 fn delay(environment: &Environment) -> Option<Assumption> {
-    let samples = match (environment, wall_of(environment)) {
-        (_, Some(wall)) => wall.delay,
-        (Environment::FreeMode { delay, .. }, _) => *delay,
-        (Environment::Rational(rational), _) => rational.delay,
-        _ => 0,
-    };
+    let samples = environment.delay();
     (samples > 0).then_some(Assumption::Delay { samples })
 }
 

@@ -53,6 +53,19 @@ pub enum Environment {
     Rational(Rational),
 }
 
+impl Environment {
+    /// Its delay in whole samples.
+    pub const fn delay(&self) -> usize {
+        match self {
+            Self::DelayedSpring(wall)
+            | Self::DamperWall(wall)
+            | Self::FreeModeWall { wall, .. } => wall.delay,
+            Self::FreeMode { delay, .. } => *delay,
+            Self::Rational(rational) => rational.delay,
+        }
+    }
+}
+
 /// The law of any wall. It is put together from the parts of the typed walls, and so gives the
 /// same torques to the bit.
 type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;

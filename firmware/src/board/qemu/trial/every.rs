@@ -14,22 +14,12 @@ pub struct Every;
 
 impl Kinds for Every {
     fn ticks<N: Number>(job: Job<'_>) -> Result<(), Gone> {
-        match delay(&job.scene.environment) {
+        match job.scene.environment.delay() {
             0 => typed::<0, N>(job),
             1 => typed::<1, N>(job),
             MAX_DELAY => typed::<MAX_DELAY, N>(job),
             _ => as_data::<N>(job),
         }
-    }
-}
-
-fn delay(environment: &Environment) -> usize {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.delay,
-        Environment::FreeMode { delay, .. } => *delay,
-        Environment::Rational(rational) => rational.delay,
     }
 }
 
