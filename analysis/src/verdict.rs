@@ -113,7 +113,8 @@ pub struct Report {
     /// Passivity of the device in N m s/rad, scaled to the worst period; the certificate compares
     /// with the lower end of an enclosure of it.
     pub delta: f64,
-    /// `delta` less the upper end of the index that decided, in N m s/rad: how much is to spare.
+    /// Damping in N m s/rad that the device may lose with everything else as it runs; negative: what
+    /// it lacks.
     pub margin: Option<f64>,
     /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
     /// Nyquist frequency.
@@ -153,7 +154,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
         Some(_) => Verdict::Rejected,
     };
     let delta = assessment.delta.midpoint();
-    let margin = assessment.margin();
+    let margin = assessment.margin(scene);
     let remedies = rejection.map(|rejection| rejection.remedies());
     let assumptions = Assumptions::of(scene, &assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == Standing::Fails);
@@ -184,7 +185,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
 fn passed(delta: f64, margin: Option<f64>, rest: Option<&Rest>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
-        format!("; of the device's {delta} N m s/rad of damping {margin} are to spare")
+        format!("; of the device's {delta} N m s/rad of damping {margin} may be lost with all else as it is")
     });
     let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
     format!("certified: no passive hand can make it oscillate{to_spare}{rest}")

@@ -115,8 +115,14 @@ impl Position {
             cold_path();
             self.laps = self.laps.wrapping_add(if step < 0 { -1 } else { 1 });
         }
+        self.reading()
+    }
+
+    /// The position as it was last read.
+    #[inline(always)]
+    pub(crate) const fn reading(&self) -> Reading {
         if self.laps == 0 {
-            return Reading { count, saturated: false };
+            return Reading { count: self.count, saturated: false };
         }
         Reading { count: beyond(self.laps), saturated: true }
     }

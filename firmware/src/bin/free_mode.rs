@@ -8,9 +8,9 @@ use firmware::environment::FreeMode;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
 
-/// What the hand feels: the paper's canceller, as late as the board's torque. It needs as much of the
+/// What the hand feels: the paper's canceller, as late as a board's torque. It needs as much of the
 /// device's damping with and without a sample of delay.
-pub type Environment = FreeMode<{ firmware::board::LATE }>;
+pub type Environment = FreeMode<1>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
@@ -18,8 +18,8 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
-    // A canceller that reaches its limit is outside the certificate, so it has none: its torque is
-    // 0.021 N m s/rad times the speed, below full scale in any ordinary hand.
+    // None but the converter's, which the certificate covers: whatever part of the canceller's torque
+    // is given, it takes no more than 0.021 N m s/rad.
     torque_limit: None,
 };
 

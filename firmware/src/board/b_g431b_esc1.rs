@@ -38,11 +38,6 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
-/// Where a torque is written at once, the longest time in ns from the update that starts a tick to
-/// the motor's amplifier: 2 us for the interrupt to begin and the servo to compute, 3 us for
-/// the converter and its buffer to settle (datasheet, DAC characteristics).
-#[cfg(feature = "immediate")]
-pub const LATENCY: u32 = 5_000;
 /// The amplifier: PA15, which is the pad PWM of J3. The chip pulls it up in reset, where it belongs
 /// to the debug port, so low is on.
 pub const AMPLIFIER: Line = Line { port: pac::GPIOA, pin: 15, active: Active::Low };

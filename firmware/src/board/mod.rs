@@ -54,10 +54,6 @@ use crate::text::Written;
 /// boards' clocks divide into within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
 
-/// Samples from a count to its torque on the board that this is built for: the one that a converter
-/// takes, and none on the host and on the emulated board, which are in lockstep with their device.
-pub const LATE: usize = if cfg!(feature = "stm32") { 1 } else { 0 };
-
 /// What stops a board before its servo runs. The motor has not been driven then.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StartError {

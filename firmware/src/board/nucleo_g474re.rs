@@ -31,11 +31,6 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
-/// Where a torque is written at once, the longest time in ns from the update that starts a tick to
-/// the motor's amplifier: 2 us for the interrupt to begin and the servo to compute, 3 us for
-/// the converter and its buffer to settle (datasheet, DAC characteristics).
-#[cfg(feature = "immediate")]
-pub const LATENCY: u32 = 5_000;
 /// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
 pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 10, active: Active::High };

@@ -10,6 +10,7 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
     assessment: Assessment,
+    margin: Option<f64>,
     assumptions: Assumptions,
 }
 
@@ -17,7 +18,8 @@ impl Report {
     /// Of a certified scene, of the same scene with its environment as data, and of the machine.
     pub fn new<E>(certified: &Certified<Scene<E>>, data: &Scene, steps: &Steps) -> Self {
         let assessment = *certified.assessment();
-        Self { assessment, assumptions: Assumptions::of(data, &assessment, steps) }
+        let margin = assessment.margin(data);
+        Self { assessment, margin, assumptions: Assumptions::of(data, &assessment, steps) }
     }
 }
 
@@ -38,7 +40,7 @@ impl fmt::Display for Report {
             }
         }
         writeln!(f, "{:<14} {}", "delta", Enclosure(delta))?;
-        if let Some(margin) = self.assessment.margin() {
+        if let Some(margin) = self.margin {
             writeln!(f, "margin         {margin:.9} N m s/rad")?;
         }
         if let Some(rest) = self.assumptions.rest() {

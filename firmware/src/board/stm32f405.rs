@@ -37,11 +37,6 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
 /// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
 pub const TIMER_TRIGGER: u8 = 0;
-/// Where a torque is written at once, the longest time in ns from the update that starts a tick to
-/// the motor's amplifier: 3 us for the interrupt to begin and the servo to compute, 3 us for
-/// the converter and its buffer to settle (datasheet, DAC characteristics).
-#[cfg(feature = "immediate")]
-pub const LATENCY: u32 = 6_000;
 /// The amplifier: PB6, the signal of the servo connector. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
 pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 6, active: Active::High };

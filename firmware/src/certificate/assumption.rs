@@ -4,8 +4,9 @@
 use core::f64::consts::PI;
 use core::fmt;
 
-use super::model::{Loop, Numbers, nonlinear_bound, transfer};
+use super::model::{Loop, Numbers};
 use super::rest::{Rest, Steps};
+use super::timed::limited_bound;
 use super::rules::{Answer, Assessment, compare, is_nonlinear, paper_limit, wall_of};
 use crate::environment::Environment;
 use crate::passivity::discrete::index;
@@ -307,8 +308,7 @@ fn bound_that_passes(scene: &Scene, assessment: &Assessment) -> Option<Interval>
     // Without one its numbers may be out of range.
     assessment.alpha?;
     let numbers = Numbers::of(scene, assessment.format);
-    let contact = transfer(&scene.environment, &numbers).ok()?;
-    let bound = nonlinear_bound(&scene.environment, &contact, &numbers)?;
+    let bound = limited_bound(scene, assessment, &numbers)?;
     (compare(bound, paper_limit(&numbers)?) == Answer::Pass).then_some(bound)
 }
 

@@ -29,6 +29,7 @@
 
 mod assumption;
 mod digits;
+mod margin;
 mod model;
 mod parameter;
 mod posed;
@@ -169,7 +170,7 @@ macro_rules! certify_for {
                 $environment: Renders<M>,
             {
                 match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
-                    Ok(room) => Ok(Timed::new(self, room)),
+                    Ok(spare) => Ok(Timed::new(self, spare)),
                     Err(error) => Err(error),
                 }
             }

@@ -21,6 +21,8 @@ pub(super) struct Numbers {
     /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
     /// period of `k T` leaves `delta / k` (theory, section 8).
     pub delta: Interval,
+    /// What is missed where a torque may be latched a period after its count; see [`Missed`].
+    pub missed: Option<Missed>,
     /// Damping that a canceller takes away, `be = b - epsilon`; zero without a canceller.
     pub cancelled: Interval,
     /// Coupling stiffness as it was written; `None`: rigid.
@@ -34,6 +36,39 @@ pub(super) struct Numbers {
     pub format: Format,
 }
 
+/// Updates that may be missed by a scene whose torques may be latched one period after their counts.
+#[derive(Clone, Copy)]
+pub(super) struct Missed {
+    /// Longest time between two counts over the period, `T_max / T`.
+    pub stretch: Interval,
+    /// Device passivity as declared.
+    pub declared: Interval,
+}
+
+impl Missed {
+    /// What an index has to stay below behind a coupling spring of damping `k = K_vc T / 2`, where
+    /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta`.
+    ///
+    /// Let the counts be `x_j`, `T_j <= T_max` apart, with the torque `u_j` at `x_j` and
+    /// `u_{j+1}` from one period later on, `x_E,j = x_j - V u_j`, `d = x_{j+1} - x_j`,
+    /// `w = u_{j+1} - u_j`, `e = d - V w`, and `s = T / T_j`. Summed by theory-lag, equation (2),
+    /// device and controller keep over each interval at least the quadratic form
+    ///
+    /// ```text
+    /// s delta d^2 / T - s w d + (V / 2 - (1 - s) T / (4 delta)) w^2 - alpha e^2 / T,
+    /// ```
+    ///
+    /// from which only differences of the coupling's and the environment's energy were taken. For
+    /// `nu = 2 delta V / T` and `a = alpha / delta` its determinant has the sign of
+    /// `(nu - 1) (s - a - s a (nu - 1))`: it is not negative for `nu >= 1` and
+    /// `1 / a >= 1 / s + nu - 1`, whatever the pattern of misses, and `s = T / T_max` is the worst.
+    pub const fn limit(&self, k: Interval) -> Interval {
+        let delta = self.declared;
+        let product = delta.mul(k);
+        product.div(self.stretch.sub(Interval::ONE).mul(k).add(delta))
+    }
+}
+
 impl Numbers {
     pub const fn of(scene: &Scene, format: Format) -> Self {
         let period = Interval::decimal(scene.timing.period);
@@ -41,11 +76,13 @@ impl Numbers {
             Some(passivity) => passivity,
             None => scene.device.damping,
         });
-        let delta = match scene.timing.worst_period {
+        let (delta, missed) = match scene.timing.worst_period {
             Some(worst) if worst != scene.timing.period => {
-                delta.mul(period).div(Interval::decimal(worst))
+                let worst = Interval::decimal(worst);
+                let missed = Missed { stretch: worst.div(period), declared: delta };
+                (delta.mul(period).div(worst), if scene.environment.is_late() { Some(missed) } else { None })
             }
-            _ => delta,
+            _ => (delta, None),
         };
         let cancelled = match scene.environment {
             Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. } => {
@@ -62,7 +99,7 @@ impl Numbers {
         };
         let compliance = rounded(written, format, Rounding::Outward);
         let is_standard = written.sub(standard(period, delta)).contains(0.0);
-        Self { period, delta, cancelled, coupling, compliance, is_standard, format }
+        Self { period, delta, missed, cancelled, coupling, compliance, is_standard, format }
     }
 
     /// The coefficient that a servo makes of a value.
@@ -82,6 +119,15 @@ impl Numbers {
     /// `V - T / (2 delta)`: what the coupling has over the standard one.
     pub const fn excess_compliance(&self) -> Interval {
         self.compliance.sub(standard(self.period, self.delta))
+    }
+
+    /// The same for the declared passivity, which is what counts where torques are latched and
+    /// updates are missed.
+    pub const fn excess_where_latched(&self) -> Option<Interval> {
+        match &self.missed {
+            Some(missed) => Some(self.compliance.sub(standard(self.period, missed.declared))),
+            None => None,
+        }
     }
 
     /// What the servo's gains make of an environment with this feedthrough.
@@ -229,7 +275,8 @@ pub(super) const fn canceller(n: &Numbers) -> Washout {
     }
 }
 
-const fn rational(r: &Rational, n: &Numbers) -> Option<Transfer> {
+const fn rational(written: &Rational, n: &Numbers) -> Option<Transfer> {
+    let r = written.cancelled();
     let numerator = Polynomial::descending(r.numerator.as_slice(), false);
     let denominator = Polynomial::descending(r.denominator.as_slice(), false);
     let transfer = Transfer {
@@ -286,12 +333,29 @@ pub(super) const fn nonlinear_bound(
     if matches!(n.format, Format::F64) {
         return Some(bound);
     }
-    let free = match environment {
-        Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()),
-        _ => Interval::ONE,
+    match solved(environment, Some(contact.scale), n) {
+        Some(scale) => Some(bound.mul(scale)),
+        None => None,
+    }
+}
+
+/// The larger of [`Numbers::solved`] out of contact and in contact, where that is known already;
+/// `None` where it cannot be had.
+const fn solved(environment: &Environment, contact: Option<Interval>, n: &Numbers) -> Option<Interval> {
+    if matches!(n.format, Format::F64) || environment.is_late() {
+        return Some(Interval::ONE);
+    }
+    let contact = match contact {
+        Some(scale) => scale,
+        None => match transfer(environment, n) {
+            Ok(transfer) => transfer.scale,
+            Err(_) => return None,
+        },
     };
-    // Of [`Numbers::solved`] out of contact and in contact.
-    Some(bound.mul(free.max(contact.scale)))
+    Some(match environment {
+        Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()).max(contact),
+        _ => contact.max(Interval::ONE),
+    })
 }
 
 const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
@@ -306,11 +370,48 @@ const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<
     }
 }
 
-const fn wall_bound(w: &Wall, n: &Numbers) -> Interval {
-    let damping = match n.format {
+/// The most by which an environment's torque changes for a change of its position, in the l2 norm
+/// and times the period, in N m s/rad: one-sided and limited ones included. `None` where none is
+/// known.
+///
+/// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between nothing and `B`, a
+/// canceller's the sum of past velocities by weights: two neighbours differ by at most twice the sum
+/// of their magnitudes.
+pub(super) const fn largest_gain(environment: &Environment, n: &Numbers) -> Option<Interval> {
+    let gain = match environment {
+        Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall_gain(w, n),
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } => {
+            let Some(canceller) = canceller_bound(n) else { return None };
+            match environment {
+                Environment::FreeModeWall { wall: w, .. } => {
+                    canceller.double().add(wall_gain(w, n))
+                }
+                _ => canceller.double(),
+            }
+        }
+        Environment::Rational(_) => return None,
+    };
+    match solved(environment, None, n) {
+        Some(scale) => Some(gain.mul(scale)),
+        None => None,
+    }
+}
+
+const fn wall_gain(w: &Wall, n: &Numbers) -> Interval {
+    let k = n.coefficient(Interval::decimal(w.stiffness)).abs();
+    k.mul(n.period).add(switched_damping(w, n).double())
+}
+
+/// Sum of the magnitudes of a wall's torques for a unit of velocity.
+const fn switched_damping(w: &Wall, n: &Numbers) -> Interval {
+    match n.format {
         Format::F64 => Interval::decimal(w.damping).abs(),
         _ => damper(w, n).l1_norm(),
-    };
+    }
+}
+
+const fn wall_bound(w: &Wall, n: &Numbers) -> Interval {
+    let damping = switched_damping(w, n);
     if w.delay == 0 {
         let passive = w.filter.is_none() && w.damping >= 0.0;
         return if passive { Interval::ZERO } else { damping };

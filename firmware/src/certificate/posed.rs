@@ -9,7 +9,8 @@ use crate::number::Format;
 use crate::passivity::bernstein::Closeness;
 use crate::passivity::discrete::{RealPart, index_looked_at};
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle, cancelled};
+use crate::environment::Environment;
+use crate::passivity::poles::{Doubt, Obstacle, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
@@ -86,6 +87,11 @@ impl Posed {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
         };
+        if let (Environment::Rational(_), Some(cos_theta)) =
+            (&scene.environment, hidden_mode(&environment))
+        {
+            return Err(Rejection::HiddenMode { cos_theta });
+        }
         let loop_gain = Interval::ONE.add(environment.feedthrough().mul(numbers.compliance));
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
@@ -127,7 +133,7 @@ impl Posed {
     /// Whether the rule of theory, section 4.1, proves the scene, one-sidedness and torque limit
     /// left out.
     pub const fn passes_exact(&self) -> bool {
-        let index = self.coupled(&near(exact_limit(&self.numbers)));
+        let index = self.coupled(None, &near(exact_limit(&self.numbers)));
         matches!(self.exact(&index), Answer::Pass)
     }
 
@@ -167,7 +173,7 @@ impl Posed {
     }
 
     const fn exact_shortage(&self) -> Option<Interval> {
-        match self.coupled(&Closeness::within(ROUGHLY)) {
+        match self.coupled(None, &Closeness::within(ROUGHLY)) {
             Ok(found) => Some(found.minimum.sub(exact_limit(&self.numbers))),
             Err(_) => None,
         }
@@ -199,14 +205,39 @@ impl Posed {
         index_looked_at(self.environment, self.numbers.period, true, closeness)
     }
 
-    /// Index of `E'`.
-    const fn coupled(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        if self.is_standard() { self.alone(closeness) } else { self.behind(closeness) }
+    /// Index of `E'`; that of the environment alone is not asked for again where it is known.
+    ///
+    /// The larger of the index where each torque belongs to the instant of its count, and of that
+    /// where torques are latched, if updates may be missed there: then the coupling's excess is over
+    /// the standard one of the declared passivity, and the limit is the same (see
+    /// [`super::model::Missed::limit`] with `nu = 1`).
+    pub(super) const fn coupled(
+        &self,
+        alone: Option<Result<RealPart, Obstacle>>,
+        closeness: &Closeness,
+    ) -> Result<RealPart, Obstacle> {
+        let at_once = match alone {
+            Some(alone) if self.is_standard() => alone,
+            None if self.is_standard() => self.alone(closeness),
+            _ => self.behind(self.numbers.excess_compliance(), closeness),
+        };
+        let Some(excess) = self.numbers.excess_where_latched() else { return at_once };
+        match (at_once, self.behind(excess, closeness)) {
+            (Ok(a), Ok(b)) => Ok(RealPart {
+                minimum: a.minimum.max(b.minimum),
+                cos_theta: if b.minimum.hi() > a.minimum.hi() { b.cos_theta } else { a.cos_theta },
+            }),
+            (Err(obstacle), _) | (_, Err(obstacle)) => Err(obstacle),
+        }
     }
 
-    /// Index of `E'` where that is not the environment itself.
-    pub(super) const fn behind(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        match cancelled(self.environment).behind(self.numbers.excess_compliance()) {
+    /// Index of `E'` for a coupling with this much compliance over the standard one.
+    const fn behind(
+        &self,
+        excess: Interval,
+        closeness: &Closeness,
+    ) -> Result<RealPart, Obstacle> {
+        match cancelled(self.environment).behind(excess) {
             Ok(equivalent) => index_looked_at(equivalent, self.numbers.period, false, closeness),
             Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
         }

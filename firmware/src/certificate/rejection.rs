@@ -44,6 +44,12 @@ pub enum Rejection {
         /// Cosine of its angle.
         cos_theta: Interval,
     },
+    /// A mode on the unit circle that numerator and denominator have in common: it cancels in the
+    /// transfer function, but not in what runs, where each rounding drives it.
+    HiddenMode {
+        /// Cosine of its angle.
+        cos_theta: Interval,
+    },
     /// The environment pulls away at rest: a negative spring.
     NegativeResidue {
         /// Residue at `z = 1`.
@@ -98,7 +104,7 @@ impl Rejection {
             Self::NoPassivity { .. } | Self::Shortage { .. } => "shortage",
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
-            Self::ResidueAngle { .. } => "residue_angle",
+            Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
             Self::NegativeResidue { .. } => "negative_residue",
             Self::Coupling { .. } => "coupling",
             Self::Undecided { .. } => "undecided",
@@ -159,6 +165,11 @@ impl Rejection {
             Self::ResidueAngle { cos_theta } => {
                 t.push("a pole on the unit circle has a residue of the wrong angle");
                 write_angle(&mut t, *cos_theta);
+            }
+            Self::HiddenMode { cos_theta } => {
+                t.push("numerator and denominator have a factor in common whose roots are on the unit circle");
+                write_angle(&mut t, *cos_theta);
+                t.push(": its mode does not show and does not decay; divide both by that factor");
             }
             Self::NegativeResidue { residue } => {
                 t.push("the environment pulls away at rest like a negative spring (residue at z = 1 is ");

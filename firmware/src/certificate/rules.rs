@@ -1,6 +1,8 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
 use super::model::Numbers;
+#[cfg(doc)]
+use super::model::Missed;
 use super::parameter::first_invalid;
 use super::posed::Posed;
 use super::rejection::Rejection;
@@ -65,15 +67,6 @@ impl Assessment {
         match self.rule {
             Rule::Exact => self.alpha_coupled,
             Rule::Nonlinear => self.bound,
-        }
-    }
-
-    /// Damping in N m s/rad that is certainly to spare: `delta` less the deciding index. `None`
-    /// where there is no index.
-    pub const fn margin(&self) -> Option<f64> {
-        match self.deciding_index() {
-            Some(index) => Some(self.delta.sub(index).lo()),
-            None => None,
         }
     }
 }
@@ -158,10 +151,16 @@ pub(super) const fn wall_of(environment: &Environment) -> Option<&Wall> {
 /// `delta`; a stiffness that equals it to the digits that were written, which may be a few units of
 /// the last place above it, counts as standard. `None` where the rule does not hold: above the
 /// standard coupling, and without compliance, `Q` is not passive (equation 19).
+///
+/// Where updates may be missed and torques latched, [`Missed::limit`] has to hold as well.
 pub(super) const fn paper_limit(n: &Numbers) -> Option<Interval> {
-    match n.coupling_damping() {
-        Some(damping) if !n.delta.is_below(damping) => Some(n.delta.min(damping)),
-        _ => None,
+    match (n.coupling_damping(), &n.missed) {
+        (Some(damping), _) if n.delta.is_below(damping) => None,
+        (Some(damping), None) => Some(n.delta.min(damping)),
+        (Some(damping), Some(missed)) => {
+            Some(n.delta.min(damping).min(missed.limit(damping)))
+        }
+        (None, _) => None,
     }
 }
 
@@ -197,7 +196,7 @@ const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<()
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
-    let coupled = if posed.is_standard() { alone } else { posed.behind(&Closeness::TIGHT) };
+    let coupled = posed.coupled(Some(alone), &Closeness::TIGHT);
     if let Ok(found) = coupled {
         out.alpha_coupled = Some(found.minimum);
         if matches!(out.rule, Rule::Exact) {

@@ -5,8 +5,9 @@ use super::*;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
 
-/// Ticks that a new set runs without torque before its clamp opens: its delay is then full of
-/// samples, and so is the velocity that is delayed with it.
+/// Ticks that a new set runs without torque before its clamp opens. It starts at rest where the device
+/// is, whatever it remembers for however long; after these ticks its delay, and the velocity that is
+/// delayed with it, are of how the device moves now.
 const SETTLING: u32 = MAX_DELAY as u32 + 2;
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
@@ -50,6 +51,8 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             self.fault = None;
             hardware.keep(&Retained::NOTHING);
             self.energy.reset();
+            // Whatever the environment remembers from before a fault, the motor did not do.
+            self.rendering.rest_here();
             hardware.amplifier(true);
             self.state = State::FadingIn;
         }
@@ -137,6 +140,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     fn swap(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) -> bool {
         let Some(mut set) = inbox.set() else { return false };
         set.servo_mut().follow(self.rendering.servo());
+        set.rest_here();
         self.rendering = set;
         inbox.tell(Notice::Applied);
         true

@@ -4,6 +4,13 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
 
+/// The part of a period in which a tick has to begin, for its count to be the one at the period's
+/// beginning. Later than this is what a board tells by [`BEGAN_LATE`].
+pub const IN_TIME: u32 = 32;
+
+/// What [`Hardware::passed`] gives for one period whose tick began later than an [`IN_TIME`]th of it.
+pub const BEGAN_LATE: u32 = 0;
+
 /// The board in the servo's interrupt: each method is an access or two to a register.
 pub trait Hardware {
     /// The encoder's counter.
@@ -12,7 +19,9 @@ pub trait Hardware {
     fn write(&mut self, code: DacCode);
     /// Switches the motor's amplifier.
     fn amplifier(&mut self, on: bool);
-    /// Whole periods that began since the last call: 1 in time, more where ticks were missed.
+    /// Whole periods that began since the last call: 1 in time, more where ticks were missed, and
+    /// [`BEGAN_LATE`] for one whose tick is late. A simulated board whose count is the one at its
+    /// period's beginning however late the tick is has no such thing.
     fn passed(&mut self) -> u32;
     /// Timer counts since the period of this tick began; at least a period once the next one has
     /// begun.

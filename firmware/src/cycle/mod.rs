@@ -21,7 +21,7 @@ mod trouble;
 
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
-pub use hardware::Hardware;
+pub use hardware::{BEGAN_LATE, Hardware, IN_TIME};
 pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{LinkPolicy, Options};
@@ -34,7 +34,7 @@ use crate::fault::Fault;
 use crate::number::Number;
 use crate::servo::{OutputMode, Pace, Rendering};
 use crate::torque::LimitReason;
-use trouble::Behind;
+use trouble::Late;
 
 /// What becomes of the servo once its clamp is shut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     tick: u32,
     /// Timer counts in a period.
     period: u32,
-    behind: Behind,
+    late: Late,
     /// Updates missed since the start.
     missed: u32,
     /// The longest tick so far that was in time, in timer counts.
@@ -101,7 +101,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             fault: left,
             tick: 0,
             period,
-            behind: Behind::default(),
+            late: Late::default(),
             missed: 0,
             longest: 0,
             was_late: false,
@@ -124,13 +124,13 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         frames: &mut impl FrameSink,
     ) {
         let (passed, underrun, raw) = (hardware.passed(), hardware.underrun(), hardware.count());
-        let tick = self.tick.wrapping_add(passed);
+        let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
         // One jump each, none of them taken in a usual tick: conditions that are put together first
         // cost three or four instructions each. And before there is a torque, or after there is a
         // code: what a call must not touch costs an instruction or two to be kept from it.
         if passed != 1 {
-            self.begin_late(passed, raw, hardware, inbox);
+            tick = self.begin_late(passed, raw, hardware, inbox);
         }
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);

@@ -4,38 +4,16 @@ use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
+use crate::servo::OutputTiming;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;
 
-/// Updates that were missed in a row.
+/// The last tick that began late, and by what part of a period.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Behind {
-    updates: u32,
-    /// The last tick that began late.
-    began: u32,
-    /// The last tick that ended late.
-    ended: u32,
-}
-
-impl Behind {
-    /// Tick number `tick` began `missed` periods late.
-    fn begin(&mut self, tick: u32, missed: u32) -> u32 {
-        let last = tick.wrapping_sub(missed).wrapping_sub(1);
-        let before = if self.ended == last { self.updates } else { 0 };
-        self.updates = before.saturating_add(missed);
-        self.began = tick;
-        self.updates
-    }
-
-    /// Tick number `tick` ended after the update that it was for.
-    fn end(&mut self, tick: u32) -> u32 {
-        let goes_on = self.began == tick || self.ended == tick.wrapping_sub(1);
-        let before = if goes_on { self.updates } else { 0 };
-        self.updates = before.saturating_add(1);
-        self.ended = tick;
-        self.updates
-    }
+pub(super) struct Late {
+    tick: u32,
+    part: f32,
 }
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
@@ -47,7 +25,8 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if self.state.is_armed() { code } else { DacCode::MID_SCALE }
     }
 
-    /// A tick that is not the next one after the last, and the encoder's counter in it.
+    /// A tick that is not the next one after the last, or that began late, and the encoder's counter
+    /// in it. Gives the number of the tick.
     #[cold]
     #[inline(never)]
     pub(super) fn begin_late(
@@ -56,12 +35,41 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         raw: RawCount,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) {
+    ) -> u32 {
+        let periods = passed.max(1);
+        if passed == BEGAN_LATE {
+            self.tick = self.tick.wrapping_add(1);
+        }
         self.energy.missed::<M>(self.rendering.servo().step_to(raw));
-        let missed = passed.saturating_sub(1);
+        let missed = periods - 1;
         self.missed = self.missed.wrapping_add(missed);
-        let missed = self.behind.begin(self.tick, missed);
-        self.unless_tolerated(missed, hardware, inbox);
+        let tolerated = self.rendering.pace().tolerated;
+        if missed > tolerated {
+            self.fail(Fault::MissedTick { missed, tolerated }, hardware, inbox);
+        } else if M::TIMING == OutputTiming::Latched {
+            self.unless_latched_in_time(periods, hardware, inbox);
+        }
+        self.tick
+    }
+
+    /// Where torques are latched, it also matters how long a count is read before the next latch:
+    /// see `certificate::model::Missed`, where `T / T_j` becomes that time over the one between two
+    /// counts.
+    fn unless_latched_in_time(
+        &mut self,
+        periods: u32,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+    ) {
+        let period = self.period as f32;
+        let late = hardware.elapsed();
+        let follows = self.late.tick == self.tick.wrapping_sub(periods);
+        let before = if follows { self.late.part } else { 0.0 };
+        let allowed = (self.rendering.pace().latest(periods, before) * period) as u32;
+        self.late = Late { tick: self.tick, part: late as f32 / period };
+        if late > allowed {
+            self.fail(Fault::LateTick { late, allowed }, hardware, inbox);
+        }
     }
 
     /// A step that is too far for one period; it may not be for those that passed.
@@ -74,7 +82,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
     ) {
-        let largest = self.rendering.pace().largest_step.saturating_mul(passed);
+        let largest = self.rendering.pace().largest_step.saturating_mul(passed.max(1));
         let counts = step.unsigned_abs();
         if counts > largest {
             self.fail(Fault::EncoderJump { counts, largest }, hardware, inbox);
@@ -104,7 +112,8 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// A tick that took longer than any before; gives its slack. Without any the code was late
-    /// for the update that it was for.
+    /// for the update that it was for, and the motor has a torque that the environment does not know
+    /// of: no worst period covers that.
     #[cold]
     #[inline(never)]
     pub(super) fn long(
@@ -119,21 +128,8 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         self.was_late = true;
         self.missed = self.missed.wrapping_add(1);
-        let missed = self.behind.end(self.tick);
-        self.unless_tolerated(missed, hardware, inbox);
+        self.fail(Fault::MissedTick { missed: 1, tolerated: 0 }, hardware, inbox);
         0
-    }
-
-    fn unless_tolerated(
-        &mut self,
-        missed: u32,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) {
-        let tolerated = self.rendering.pace().tolerated;
-        if missed > tolerated {
-            self.fail(Fault::MissedTick { missed, tolerated }, hardware, inbox);
-        }
     }
 
     /// The host was heard.

@@ -42,7 +42,7 @@ impl EnergyMonitor {
         let offset = i32::from(code.offset());
         match M::TIMING {
             OutputTiming::Latched => self.held = core::mem::replace(&mut self.next, offset),
-            OutputTiming::Simultaneous | OutputTiming::Immediate { .. } => self.held = offset,
+            OutputTiming::Simultaneous => self.held = offset,
         }
     }
 
@@ -118,6 +118,16 @@ impl<N: Number> Injector<N> {
         BuildError::unless_positive("injected damping", damping)?;
         let gain = BuildError::coefficient::<N>("injected damping / period", damping / period)?;
         Ok(Self { gain, last: N::ZERO, movement: N::ZERO, on: false })
+    }
+
+    /// Its damping in N m s/rad as it was rounded, and not less than that.
+    pub(crate) fn damping(&self, period: f64) -> f64 {
+        (N::coefficient_to_f64(self.gain) * period).next_up()
+    }
+
+    /// As if the environment had always been at `x_e` (rad).
+    pub(crate) fn rest_at(&mut self, x_e: N) {
+        (self.last, self.movement) = (x_e, N::ZERO);
     }
 
     /// Switches the damper.

@@ -10,7 +10,7 @@ use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DelayedSpring, Law, Renderable, Setting};
 use crate::scene::{Coupling, Device, Scene, Timing};
 use crate::servo::{
-    Immediate, Latched, Rendering, RenderingOptions, Servo, Simultaneous, Transducers,
+    Latched, Rendering, RenderingOptions, Servo, Simultaneous, Transducers,
 };
 
 const PERIOD: f64 = 1e-3;
@@ -69,7 +69,6 @@ proptest! {
         prop_assert_eq!(monitor.worst(), worst(&work));
         prop_assert_eq!(monitor.is_deficit(), *work.last().unwrap() > 0);
         let at_once = worked(&ticks, 0);
-        prop_assert_eq!(&observed::<Immediate<1000>>(&ticks).0, &at_once);
         prop_assert_eq!(&observed::<Simultaneous>(&ticks).0, &at_once);
     }
 

@@ -54,6 +54,13 @@ pub enum Environment {
 }
 
 impl Environment {
+    /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
+    /// only such an environment can be rendered where a torque is latched by the next count.
+    pub const fn is_late(&self) -> bool {
+        // The canceller in front of a wall is not delayed.
+        self.delay() > 0 && !matches!(self, Self::FreeModeWall { .. })
+    }
+
     /// Its delay in whole samples.
     pub const fn delay(&self) -> usize {
         match self {
@@ -115,6 +122,15 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeMode(law) => law.advance(x_e),
             Self::FreeModeWall(law) => law.advance(x_e),
             Self::Rational(law) => law.advance(x_e),
+        }
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        match self {
+            Self::Wall(law) => law.rest_at(x_e),
+            Self::FreeMode(law) => law.rest_at(x_e),
+            Self::FreeModeWall(law) => law.rest_at(x_e),
+            Self::Rational(law) => law.rest_at(x_e),
         }
     }
 

@@ -10,6 +10,8 @@ pub trait DelayLine<N>: Clone + core::fmt::Debug {
     fn due(&self) -> Option<N>;
     /// Takes this tick's torque and drops the one that was due.
     fn push(&mut self, torque: N);
+    /// Fills it with one torque.
+    fn fill(&mut self, torque: N);
 }
 
 /// A delay that the scene's type knows. Moving a few samples along is cheaper than an index that
@@ -35,6 +37,10 @@ impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
     #[inline(always)]
     fn push(&mut self, torque: N) {
         move_along(&mut self.oldest_first, torque);
+    }
+
+    fn fill(&mut self, torque: N) {
+        self.oldest_first = [torque; DELAY];
     }
 }
 
@@ -67,6 +73,10 @@ impl<N: Number> DelayLine<N> for VariableDelay<N> {
         if let Some(used) = self.oldest_first.get_mut(..self.delay) {
             move_along(used, torque);
         }
+    }
+
+    fn fill(&mut self, torque: N) {
+        self.oldest_first = [torque; MAX_DELAY];
     }
 }
 

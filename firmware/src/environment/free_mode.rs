@@ -68,6 +68,11 @@ impl<N: Number, D: DelayLine<N>> Law<N> for FreeModeLaw<N, D> {
         self.canceller.advance(x_e);
     }
 
+    fn rest_at(&mut self, x_e: N) {
+        self.canceller.rest_at(x_e);
+        self.delay.fill(N::ZERO);
+    }
+
     fn slopes(&self) -> Slopes {
         match self.delay.due() {
             Some(_) => Slopes::default(),
@@ -107,6 +112,11 @@ impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
     fn advance(&mut self, x_e: N) {
         self.canceller.advance(x_e);
         self.wall.advance(x_e);
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        self.canceller.rest_at(x_e);
+        self.wall.rest_at(x_e);
     }
 
     fn slopes(&self) -> Slopes {

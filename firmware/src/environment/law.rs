@@ -12,6 +12,8 @@ pub trait Law<N: Number> {
     fn offer(&self, x: N) -> Offer<N>;
     /// Ends the tick with the environment at `x_E` (rad).
     fn advance(&mut self, x_e: N);
+    /// Starts anew, as if the environment had always been at `x_e` (rad). Between two ticks.
+    fn rest_at(&mut self, x_e: N);
     /// Slopes of the lines that are offered, in N m/rad, of the coefficients as rounded.
     fn slopes(&self) -> Slopes;
 }

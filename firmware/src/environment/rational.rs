@@ -51,11 +51,48 @@ impl Coefficients {
         self.values.split_at(self.len).0
     }
 
+    /// The quotient by `z - root`, `root` being 1 or -1; `None` unless it and its remainder of zero
+    /// come out without any rounding.
+    const fn over_unit_root(&self, root: f64) -> Option<Self> {
+        let mut quotient = Self { values: [0.0; MAX_DEGREE + 1], len: self.len - 1 };
+        let mut carry = 0.0;
+        let mut i = 0;
+        while i < self.len {
+            let Some(sum) = exact_sum(self.values[i], root * carry) else { return None };
+            if i < quotient.len {
+                quotient.values[i] = sum;
+            }
+            carry = sum;
+            i += 1;
+        }
+        if carry == 0.0 && quotient.len > 0 { Some(quotient) } else { None }
+    }
+
+    /// Whether all of them are zero.
+    const fn is_zero(&self) -> bool {
+        let mut i = 0;
+        while i < self.len {
+            if self.values[i] != 0.0 {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+
     /// The coefficients from the leading one that is not zero on.
     fn without_leading_zeros(&self) -> &[f64] {
         let leading = self.as_slice().iter().position(|c| *c != 0.0).unwrap_or(self.len);
         self.as_slice().get(leading..).unwrap_or(&[])
     }
+}
+
+/// `a + b`; `None` where that has to be rounded.
+const fn exact_sum(a: f64, b: f64) -> Option<f64> {
+    let sum = a + b;
+    let b_seen = sum - a;
+    let error = (a - (sum - b_seen)) + (b - b_seen);
+    if error == 0.0 { Some(sum) } else { None }
 }
 
 /// The law of a [`Rational`]: direct form II transposed, whose state is one sum a degree.
@@ -109,6 +146,16 @@ impl<N: Number> Law<N> for RationalLaw<N> {
         self.delay.push(torque);
     }
 
+    /// At rest at zero, wherever the device is: for other places it would take the gain at rest, a
+    /// division that no tick has. No board renders a rational environment, since no bound is known
+    /// that covers its fading in.
+    fn rest_at(&mut self, _: N) {
+        for section in &mut self.sections {
+            section.sum = N::ZERO;
+        }
+        self.delay.fill(N::ZERO);
+    }
+
     fn slopes(&self) -> Slopes {
         match self.delay.due() {
             Some(_) => Slopes::default(),
@@ -121,8 +168,9 @@ impl<N: Number> Renderable<N> for Rational {
     type Law = RationalLaw<N>;
 
     fn law(&self, _: &Setting) -> Result<Self::Law, BuildError> {
-        let (numerator, above) = self.multiplied_out();
-        let denominator = self.denominator.without_leading_zeros();
+        let cancelled = self.cancelled();
+        let (numerator, above) = cancelled.multiplied_out();
+        let denominator = cancelled.denominator.without_leading_zeros();
         let degree = denominator.len().saturating_sub(1);
         let improper = BuildError::Improper { numerator: above, denominator: degree };
         let leading = *denominator.first().ok_or(improper)?;
@@ -157,6 +205,32 @@ impl<N: Number> Renderable<N> for Rational {
 }
 
 impl Rational {
+    /// The same transfer function without the factors `z - 1` and `z + 1` that numerator and
+    /// denominator have in common: this is what is judged and what runs.
+    ///
+    /// A common factor does not show in the transfer function, but in a difference equation it is a
+    /// mode that does not decay, and that each rounding drives further.
+    pub(crate) const fn cancelled(&self) -> Self {
+        let mut out = *self;
+        out.cancel(1.0);
+        out.cancel(-1.0);
+        out
+    }
+
+    const fn cancel(&mut self, root: f64) {
+        while !self.numerator.is_zero() {
+            let Some(denominator) = self.denominator.over_unit_root(root) else { return };
+            if root == 1.0 && self.unit_zeros > 0 {
+                self.unit_zeros -= 1;
+            } else if let Some(numerator) = self.numerator.over_unit_root(root) {
+                self.numerator = numerator;
+            } else {
+                return;
+            }
+            self.denominator = denominator;
+        }
+    }
+
     /// `(z - 1)^unit_zeros numerator(z)` in *ascending* powers, up to twice the degree that can
     /// run, and its degree.
     fn multiplied_out(&self) -> ([f64; 2 * MAX_DEGREE + 1], usize) {

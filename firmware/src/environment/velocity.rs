@@ -13,6 +13,8 @@ pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
     fn add_to(&self, torque: N, x: N) -> N;
     /// Ends the tick with the environment at `x_e` (rad).
     fn advance(&mut self, x_e: N);
+    /// As if the environment had always been at `x_e` (rad).
+    fn rest_at(&mut self, x_e: N);
     /// Torque a position in this tick, in N m/rad.
     fn slope(&self) -> f64;
 }
@@ -29,6 +31,8 @@ impl<N: Number> Velocity<N> for NoDamping {
 
     #[inline(always)]
     fn advance(&mut self, _: N) {}
+
+    fn rest_at(&mut self, _: N) {}
 
     fn slope(&self) -> f64 {
         0.0
@@ -58,6 +62,10 @@ impl<N: Number> Velocity<N> for Difference<N> {
 
     #[inline(always)]
     fn advance(&mut self, x_e: N) {
+        self.previous = x_e;
+    }
+
+    fn rest_at(&mut self, x_e: N) {
         self.previous = x_e;
     }
 
@@ -107,6 +115,10 @@ impl<N: Number> Velocity<N> for Washout<N> {
         self.state = self.state.plus(x_e.minus(self.state).times(self.rate));
     }
 
+    fn rest_at(&mut self, x_e: N) {
+        self.state = x_e;
+    }
+
     fn slope(&self) -> f64 {
         N::coefficient_to_f64(self.gain)
     }
@@ -137,6 +149,14 @@ impl<N: Number> Velocity<N> for AnyVelocity<N> {
             Self::None(velocity) => velocity.advance(x_e),
             Self::Difference(velocity) => velocity.advance(x_e),
             Self::Filtered(velocity) => velocity.advance(x_e),
+        }
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        match self {
+            Self::None(velocity) => velocity.rest_at(x_e),
+            Self::Difference(velocity) => velocity.rest_at(x_e),
+            Self::Filtered(velocity) => velocity.rest_at(x_e),
         }
     }
 

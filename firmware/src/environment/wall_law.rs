@@ -147,6 +147,12 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> Law<N> for WallLaw<
         self.velocity.advance(x_e);
     }
 
+    fn rest_at(&mut self, x_e: N) {
+        self.velocity.rest_at(x_e);
+        let torque = self.torque(x_e);
+        self.delay.fill(torque);
+    }
+
     fn slopes(&self) -> Slopes {
         let slope = N::coefficient_to_f64(self.stiffness) + self.velocity.slope();
         match (self.delay.due(), self.side.one_sided()) {

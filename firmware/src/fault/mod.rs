@@ -52,6 +52,13 @@ pub enum Fault {
         /// The processor's configurable fault status.
         status: u32,
     },
+    /// A tick began so late in its period that its count is not the one that the certificate has.
+    LateTick {
+        /// Timer counts after the beginning of its period.
+        late: u32,
+        /// The most that is allowed.
+        allowed: u32,
+    },
 }
 
 impl Fault {
@@ -66,6 +73,7 @@ impl Fault {
             Self::Watchdog => "watchdog",
             Self::Panic { .. } => "panic",
             Self::HardFault { .. } => "hard-fault",
+            Self::LateTick { .. } => "late-tick",
         }
     }
 
@@ -80,6 +88,7 @@ impl Fault {
             Self::Watchdog => (6, [0; 2]),
             Self::Panic { line, column } => (7, [line, column]),
             Self::HardFault { address, status } => (8, [address, status]),
+            Self::LateTick { late, allowed } => (9, [late, allowed]),
         }
     }
 
@@ -95,6 +104,7 @@ impl Fault {
             6 => Self::Watchdog,
             7 => Self::Panic { line: a, column: b },
             8 => Self::HardFault { address: a, status: b },
+            9 => Self::LateTick { late: a, allowed: b },
             _ => return None,
         })
     }
@@ -139,6 +149,11 @@ impl fmt::Display for Fault {
                 f,
                 "the processor faulted at {address:#010x} with the status {status:#010x}: this is \
                  a mistake in the program; arm again"
+            ),
+            Self::LateTick { late, allowed } => write!(
+                f,
+                "a tick began {late} timer counts after its period, and {allowed} are allowed: \
+                 shorten what keeps interrupts off, or lengthen the scene's period, then arm again"
             ),
         }
     }

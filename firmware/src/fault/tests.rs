@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const ALL: [Fault; 8] = [
+const ALL: [Fault; 9] = [
     Fault::MissedTick { missed: 3, tolerated: 1 },
     Fault::EncoderJump { counts: 5000, largest: 979 },
     Fault::NotANumber,
@@ -11,6 +11,7 @@ const ALL: [Fault; 8] = [
     Fault::Watchdog,
     Fault::Panic { line: 7, column: 13 },
     Fault::HardFault { address: 0x0800_1234, status: 0x0001_0000 },
+    Fault::LateTick { late: 40, allowed: 31 },
 ];
 
 #[test]
@@ -25,7 +26,7 @@ fn every_fault_has_a_code_and_a_word_of_its_own() {
         }
     }
     assert_eq!(Fault::decode(0, [0; 2]), None);
-    assert_eq!(Fault::decode(9, [0; 2]), None);
+    assert_eq!(Fault::decode(10, [0; 2]), None);
 }
 
 #[test]
@@ -36,6 +37,7 @@ fn sentences_have_the_value_the_bound_and_the_way_out() {
         (ALL[4], ["2000 ticks", "allowed", "arm again"]),
         (ALL[6], ["line 7", "column 13", "arm again"]),
         (ALL[7], ["0x08001234", "0x00010000", "arm again"]),
+        (ALL[8], ["40 timer counts", "31 are allowed", "arm again"]),
     ] {
         let sentence = fault.to_string();
         for part in parts {

@@ -240,6 +240,29 @@ impl Work {
     }
 }
 
+/// Cosine of the angle of a mode on the unit circle that the transfer function does not show, since
+/// its numerator has the same root: a difference equation with these polynomials has it.
+#[inline(never)]
+pub const fn hidden_mode(g: &Transfer) -> Option<Interval> {
+    let one = g.denominator.vanishes_at(UnitRoot::Plus);
+    if one && (g.ones > 0 || g.numerator.vanishes_at(UnitRoot::Plus)) {
+        return Some(Interval::ONE);
+    }
+    let minus_one = g.denominator.vanishes_at(UnitRoot::Minus);
+    if minus_one && (g.minus_ones > 0 || g.numerator.vanishes_at(UnitRoot::Minus)) {
+        return Some(Interval::ONE.neg());
+    }
+    let mut denominator = g.denominator;
+    while let Ok(Some(sum)) = circle_pair(&denominator) {
+        let (quotient, constant, linear) = g.numerator.over_pair(sum);
+        if constant.is_zero() && linear.is_zero() && !quotient.is_zero() {
+            return Some(sum.half());
+        }
+        (denominator, ..) = denominator.over_pair(sum);
+    }
+    None
+}
+
 /// `2 cos(theta_0)` of a factor `z^2 - 2 cos(theta_0) z + 1` that divides `p`, where the
 /// coefficients make it exact.
 ///

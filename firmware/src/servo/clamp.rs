@@ -1,7 +1,7 @@
 //! The servo's clamp from outside the tick: shut, opened and closed a step a tick.
 
 use super::{BuildError, Servo};
-use crate::environment::Renderable;
+use crate::environment::{Law, Renderable};
 use crate::number::Number;
 
 impl<E: Renderable<N>, N: Number> Servo<E, N> {
@@ -45,6 +45,20 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     #[cfg(test)]
     pub(crate) fn poison(&mut self, torque: N) {
         self.torque = torque;
+    }
+
+    /// Lets the environment start anew: no torque is held, and it is at rest where the device is,
+    /// which is given in rad. The clamp has to be shut.
+    ///
+    /// What an environment remembers from before then is a motion that it could have seen, so that
+    /// all energy in it is what its spring stores at this position; a state left at zero with the
+    /// device elsewhere would be none.
+    pub(crate) fn rest_here(&mut self) -> N {
+        let reading = self.position.reading();
+        let (x, _) = N::angle(reading.count, self.angle_scale);
+        self.torque = N::ZERO;
+        self.law.rest_at(x);
+        x
     }
 
     /// Goes on from another servo's position.

@@ -8,7 +8,7 @@ mod rendering;
 mod transducers;
 
 pub use build_error::BuildError;
-pub use mode::{Delayed, Immediate, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
+pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
 pub use render_error::RenderError;
 pub use rendering::{Pace, Rendering, RenderingOptions};
 pub use transducers::Transducers;
@@ -122,7 +122,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     ) -> Output {
         match M::TIMING {
             OutputTiming::Simultaneous => self.simultaneous(raw, action),
-            OutputTiming::Immediate { .. } | OutputTiming::Latched => self.ahead(raw, action),
+            OutputTiming::Latched => self.ahead(raw, action),
         }
     }
 

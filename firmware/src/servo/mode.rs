@@ -23,11 +23,6 @@ pub trait OutputMode: sealed::Sealed + Copy + Send + core::fmt::Debug + 'static 
 pub enum OutputTiming {
     /// At the instant of its count.
     Simultaneous,
-    /// As soon as it is computed.
-    Immediate {
-        /// The longest time in ns from the reading of the count to the change of the torque.
-        latency: u32,
-    },
     /// At the next count, by the timer.
     Latched,
 }
@@ -38,29 +33,16 @@ pub enum OutputTiming {
 #[derive(Clone, Copy, Debug)]
 pub struct Latched;
 
-/// The code is written as soon as it is computed, and reaches the motor at most `NANOSECONDS`
-/// after the count was read. That is rounded up to the whole sample that the scene says (theory,
-/// section 8), and computed in the same way as for [`Latched`]; only that it comes early, and with
-/// the interrupt's jitter. The certificate is therefore asked for both ends: the scene as it is,
-/// and the scene one sample less late.
-#[derive(Clone, Copy, Debug)]
-pub struct Immediate<const NANOSECONDS: u32>;
-
 /// Count and torque belong to the same instant: a simulation, or an emulated board in lockstep
 /// with one. No converter can do this.
 #[derive(Clone, Copy, Debug)]
 pub struct Simultaneous;
 
 impl sealed::Sealed for Latched {}
-impl<const NANOSECONDS: u32> sealed::Sealed for Immediate<NANOSECONDS> {}
 impl sealed::Sealed for Simultaneous {}
 
 impl OutputMode for Latched {
     const TIMING: OutputTiming = OutputTiming::Latched;
-}
-
-impl<const NANOSECONDS: u32> OutputMode for Immediate<NANOSECONDS> {
-    const TIMING: OutputTiming = OutputTiming::Immediate { latency: NANOSECONDS };
 }
 
 impl OutputMode for Simultaneous {
@@ -102,4 +84,3 @@ pub trait Renders<M: OutputMode> {}
 
 impl<E> Renders<Simultaneous> for E {}
 impl<E: Delayed> Renders<Latched> for E {}
-impl<E: Delayed, const NANOSECONDS: u32> Renders<Immediate<NANOSECONDS>> for E {}

@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 
 use super::{BuildError, Output, OutputMode, Renders, Servo, Transducers};
 use crate::certificate::Timed;
+use crate::cycle::IN_TIME;
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::Renderable;
@@ -50,6 +51,8 @@ pub struct Pace {
     pub period: f64,
     /// Updates in a row that may be missed before the certificate is void.
     pub tolerated: u32,
+    /// The worst period in periods.
+    stretch: f32,
     /// The most counts that the encoder can move within a period.
     pub largest_step: u32,
     /// Twice that.
@@ -92,14 +95,18 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
         let ticks = (options.fade / period).max(1.0);
         let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
         servo.shut();
+        let room = timed.room();
         let injector = match options.injection {
             None => None,
-            Some(damping) if timed.room().is_some_and(|room| damping < room) => {
-                Some(Injector::new(damping, period)?)
+            Some(damping) if damping < room => {
+                let injector = Injector::new(damping, period)?;
+                // Its gain may have been rounded up.
+                if injector.damping(period) >= room {
+                    return Err(BuildError::Injection { damping, room });
+                }
+                Some(injector)
             }
-            Some(damping) => {
-                return Err(BuildError::Injection { damping, room: timed.room().unwrap_or(0.0) });
-            }
+            Some(damping) => return Err(BuildError::Injection { damping, room }),
         };
         let pace = Pace::new(scene.timing, transducers)?;
         Ok(Self { servo, injector, pace, mode: PhantomData })
@@ -127,6 +134,15 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
         &mut self.servo
     }
 
+    /// Starts anew at the present position, with the clamp shut: as if the device had always been
+    /// there.
+    pub(crate) fn rest_here(&mut self) {
+        let x = self.servo.rest_here();
+        if let Some(injector) = &mut self.injector {
+            injector.rest_at(x);
+        }
+    }
+
     /// What the time between two updates may be.
     pub const fn pace(&self) -> Pace {
         self.pace
@@ -142,6 +158,19 @@ impl Pace {
     pub(crate) fn ticks(&self, time: f64) -> u32 {
         // The cast gives the nearest of what does not fit.
         ((time / self.period) as u32).clamp(1, Self::LONGEST)
+    }
+
+    /// The latest that a tick may begin, in periods after the beginning of its own, where torques are
+    /// latched: `periods` after a tick that began `before` periods late.
+    ///
+    /// Between the two counts are `periods + late - before`, from the first of them to its latch
+    /// `1 - before`, and the certificate allows the one to be a worst period over the period times the
+    /// other. Half a period is as late as a tick may be with the next one in time.
+    pub(crate) fn latest(&self, periods: u32, before: f32) -> f32 {
+        let in_time = 1.0 / IN_TIME as f32;
+        let before = if before <= in_time { 0.0 } else { before };
+        let allowed = self.stretch * (1.0 - before) + in_time + before - periods as f32;
+        allowed.clamp(0.0, 0.5)
     }
 
     /// Whether the encoder cannot have moved by `step` counts within a period.
@@ -160,6 +189,8 @@ impl Pace {
         transducers.largest_step(worst)?;
         let largest_step = transducers.largest_step(timing.period)?;
         // Below half the counter's range, so that twice that fits.
-        Ok(Self { period: timing.period, tolerated, largest_step, span: 2 * largest_step })
+        let stretch = (worst / timing.period) as f32;
+        let span = 2 * largest_step;
+        Ok(Self { period: timing.period, tolerated, stretch, largest_step, span })
     }
 }

@@ -130,9 +130,8 @@ pub fn apply<E: Values + Copy>(
 pub struct Prepared<E: Renderable<N>, N: Number, M> {
     /// The scene, which is judged and timed.
     pub scene: Scene<E>,
-    /// Damping in N m s/rad that its certificate leaves to spare; see [`Assessment::margin`].
-    ///
-    /// [`Assessment::margin`]: crate::certificate::Assessment::margin
+    /// Damping in N m s/rad that the device may lose with this set running; see
+    /// [`Timed::margin`](crate::certificate::Timed::margin).
     pub margin: Option<f64>,
     /// Its servo.
     pub rendering: Rendering<E, N, M>,
@@ -159,7 +158,7 @@ where
     let scene = apply(scene, changes)?;
     let timed = E::time(E::certify(scene)?)?;
     let rendering = Rendering::build(&timed, transducers, options)?;
-    Ok(Prepared { scene, margin: timed.assessment().margin(), rendering })
+    Ok(Prepared { scene, margin: Some(timed.margin()), rendering })
 }
 
 #[cfg(test)]

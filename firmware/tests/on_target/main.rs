@@ -104,7 +104,6 @@ fn turn() -> Result<(), Failure> {
 }
 
 /// A code appears at the update after the one that it was written behind, and not before.
-#[cfg(not(feature = "immediate"))]
 fn latch() -> Result<(), Failure> {
     let mut hardware = paced();
     for code in [1, 1024, 2047, 2048, 3072, 4095, 2048] {
@@ -180,7 +179,6 @@ mod tests {
     }
 
     #[test]
-    #[cfg(not(feature = "immediate"))]
     fn a_code_appears_at_the_next_update_and_not_before() -> Result<(), Failure> {
         super::latch()
     }

@@ -32,11 +32,7 @@ pub use start::{
 pub use sweep::{SweepPlace, measure};
 
 /// When a torque reaches the motor.
-#[cfg(not(feature = "immediate"))]
 pub type Mode = crate::servo::Latched;
-/// When a torque reaches the motor.
-#[cfg(feature = "immediate")]
-pub type Mode = crate::servo::Immediate<{ wiring::LATENCY }>;
 
 /// What a board gives besides its registers.
 pub struct Connected {

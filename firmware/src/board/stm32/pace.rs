@@ -15,6 +15,7 @@ use embassy_stm32::rcc;
 use super::registers::LONGEST_PERIOD;
 use super::wiring::CLOCK;
 use crate::board::StartError;
+use crate::cycle::{BEGAN_LATE, IN_TIME};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' converters can take.
@@ -85,6 +86,8 @@ const MOST: f64 = 65_536.0;
 pub struct Pace {
     /// Clock counts in a period.
     period: NonZeroU32,
+    /// Clock counts after its beginning in which a tick has to begin.
+    in_time: u32,
     /// The clock when the present period began.
     began: u32,
 }
@@ -105,7 +108,8 @@ impl Pace {
         CLOCK.psc().write_value(0);
         CLOCK.arr().write_value(u32::MAX);
         CLOCK.egr().write(|w| w.set_ug(true));
-        Self { period: period.clock_counts(), began: 0 }
+        let period = period.clock_counts();
+        Self { period, in_time: period.get() / IN_TIME, began: 0 }
     }
 
     /// Starts the clock and then the timer, so that a period never begins before the clock says so.
@@ -115,19 +119,21 @@ impl Pace {
         TIMER.cr1().modify(|w| w.set_cen(true));
     }
 
-    /// Acknowledges the tick; gives the periods that have begun since the last time: 1 in time.
+    /// Acknowledges the tick; gives the periods that have begun since the last time: see
+    /// [`Hardware::passed`](crate::cycle::Hardware::passed).
     #[inline(always)]
     pub fn passed(&mut self) -> u32 {
         TIMER.sr().write(|w| w.set_uif(false));
-        let since = now().wrapping_sub(self.began);
-        if since < 2 * self.period.get() {
-            self.began = self.began.wrapping_add(self.period.get());
+        let next = self.began.wrapping_add(self.period.get());
+        let late = now().wrapping_sub(next);
+        if late < self.in_time {
+            self.began = next;
             return 1;
         }
         cold_path();
-        let passed = since / self.period;
-        self.began = self.began.wrapping_add(passed * self.period.get());
-        passed
+        let missed = late / self.period;
+        self.began = next.wrapping_add(missed * self.period.get());
+        if missed == 0 { BEGAN_LATE } else { missed + 1 }
     }
 
     /// Clock counts since the present period began.

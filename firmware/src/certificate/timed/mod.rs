@@ -1,13 +1,14 @@
-//! From a [`Certified`] scene to a [`Timed`] one: the scene's delay and the board's are the same.
+//! From a [`Certified`] scene to a [`Timed`] one: the scene's delay and the board's are the same, and
+//! the scene stands the limits that a board puts on its torque.
 
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::model::Numbers;
-use super::rejection::Rejection;
+use super::margin;
+use super::model::{Numbers, nonlinear_bound, transfer};
 use super::rules::paper_limit;
-use super::{Assessment, Certified, Rule, Sentence, assess_in};
-use crate::environment::{Environment, Wall};
+use super::{Assessment, Certified, Rule, Sentence};
+use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, OutputTiming};
 
@@ -38,23 +39,29 @@ use crate::servo::{OutputMode, OutputTiming};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed<S, M> {
     certified: Certified<S>,
-    room: Option<f64>,
+    spare: Spare,
     mode: PhantomData<M>,
 }
 
 impl<S, M> Timed<S, M> {
-    pub(super) const fn new(certified: Certified<S>, room: Option<f64>) -> Self {
-        Self { certified, room, mode: PhantomData }
+    pub(super) const fn new(certified: Certified<S>, spare: Spare) -> Self {
+        Self { certified, spare, mode: PhantomData }
     }
 
     /// Damping in N m s/rad that may be switched on and off at will, one sample late, beside the
-    /// environment: any less keeps the certificate. `None`: there is no room for any.
+    /// environment: any less keeps the certificate.
     ///
     /// An arbitrarily switched damper `B` adds at most `B` to the index (theory, section 5, the
     /// nonlinear bound), and index and damper together have to meet conditions 17 and 18, the rule
     /// that does not ask for linearity.
-    pub const fn room(&self) -> Option<f64> {
-        self.room
+    pub const fn room(&self) -> f64 {
+        self.spare.room
+    }
+
+    /// Damping in N m s/rad that the device may lose with everything else as it runs on a board, where
+    /// the torque is limited; see [`Assessment::margin`], which for a linear scene leaves that out.
+    pub const fn margin(&self) -> f64 {
+        self.spare.margin
     }
 
     /// The scene.
@@ -68,20 +75,27 @@ impl<S, M> Timed<S, M> {
     }
 }
 
+/// What a timed scene has to spare, in N m s/rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spare {
+    room: f64,
+    margin: f64,
+}
+
 /// Why a certified scene cannot be rendered by a board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimingError {
     /// The torque takes a sample to the motor, and the environment allows none.
     NotLate,
-    /// The torque takes longer to the motor than a sample.
-    Latency {
-        /// The board's latency in s.
-        latency: f64,
-        /// The scene's period in s.
-        period: f64,
+    /// The scene is linear and would not pass with a torque limit, which every board has: that of its
+    /// converter, and while the torque is faded in and out a lower one.
+    Limited {
+        /// Bound on the index with a torque limit in N m s/rad; `None` where none is known.
+        bound: Option<f64>,
+        /// What it has to stay below; `None`: no limit is known behind a coupling that is stiffer than
+        /// the standard one, or rigid.
+        limit: Option<f64>,
     },
-    /// The torque comes up to a sample early, and so it would not pass.
-    Early(Rejection),
 }
 
 impl TimingError {
@@ -93,16 +107,28 @@ impl TimingError {
                 "the environment is not late by a whole sample, but on this board a torque takes \
                  one: give all of it a delay of at least 1",
             ),
-            Self::Latency { latency, period } => {
-                t.push("a torque takes up to ");
-                t.push_number(*latency);
-                t.push(" s to the motor, more than the period of ");
-                t.push_number(*period);
-                t.push(" s: lengthen the period, or latch the torque by the timer");
-            }
-            Self::Early(rejection) => {
-                t.push("this board writes a torque at once, up to a sample early, and then: ");
-                t.push(rejection.sentence().as_str());
+            Self::Limited { bound, limit } => {
+                t.push(
+                    "the scene passes only as long as its torque is never limited, and a board \
+                     limits it while it fades in and out and at the converter's full scale",
+                );
+                match (bound, limit) {
+                    (None, _) => t.push("; for a rational environment no bound is known then"),
+                    (_, None) => t.push(
+                        "; behind a coupling stiffer than the standard one, 2 delta/T, or a rigid \
+                         one, it is not known to be passive then: soften the coupling",
+                    ),
+                    (Some(bound), Some(limit)) => {
+                        t.push(": then the environment needs up to ");
+                        t.push_number(*bound);
+                        t.push(" N m s/rad of damping, not below the ");
+                        t.push_number(*limit);
+                        t.push(
+                            " N m s/rad that device and coupling allow; a softer environment, or \
+                             a coupling nearer to the standard one, passes",
+                        );
+                    }
+                }
             }
         }
         t
@@ -117,78 +143,53 @@ impl fmt::Display for TimingError {
 
 impl core::error::Error for TimingError {}
 
-/// Whether a scene with this assessment agrees with a mode; if so, its [`Timed::room`].
+/// Whether a scene with this assessment agrees with a mode; if so, what it has to spare.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
-) -> Result<Option<f64>, TimingError> {
-    let room = room(scene, assessment);
-    let latency = match M::TIMING {
-        OutputTiming::Simultaneous => return Ok(room),
-        OutputTiming::Latched => None,
-        OutputTiming::Immediate { latency } => Some(latency as f64 * 1e-9),
-    };
-    let Some(environment) = one_sample_earlier(&scene.environment) else {
+) -> Result<Spare, TimingError> {
+    if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
-    };
-    let Some(latency) = latency else { return Ok(room) };
-    let period = scene.timing.period;
-    if latency > period {
-        return Err(TimingError::Latency { latency, period });
     }
-    let earlier = Scene { environment, ..*scene };
-    let assessment = assess_in(&earlier, assessment.format);
-    if let Err(rejection) = assessment.outcome {
-        return Err(TimingError::Early(rejection));
-    }
-    Ok(match (room, self::room(&earlier, &assessment)) {
-        (Some(late), Some(early)) => Some(late.min(early)),
-        _ => None,
-    })
-}
-
-/// What conditions 17 and 18 leave over the index that does not ask for linearity.
-const fn room(scene: &Scene, assessment: &Assessment) -> Option<f64> {
-    let index = match assessment.rule {
-        Rule::Exact => assessment.alpha,
-        Rule::Nonlinear => assessment.bound,
-    };
-    let (Some(index), Some(limit)) = (index, paper_limit(&Numbers::of(scene, assessment.format)))
-    else {
-        return None;
-    };
-    let room = limit.sub(index).lo();
-    if room > 0.0 { Some(room) } else { None }
-}
-
-/// The environment one sample less late; `None` where some of it is not late at all.
-const fn one_sample_earlier(environment: &Environment) -> Option<Environment> {
-    match environment {
-        Environment::DelayedSpring(wall) => match wall_earlier(wall) {
-            Some(wall) => Some(Environment::DelayedSpring(wall)),
-            None => None,
-        },
-        Environment::DamperWall(wall) => match wall_earlier(wall) {
-            Some(wall) => Some(Environment::DamperWall(wall)),
-            None => None,
-        },
-        Environment::FreeMode { residual, delay: delay @ 1.. } => {
-            Some(Environment::FreeMode { residual: *residual, delay: *delay - 1 })
-        }
-        Environment::Rational(rational) if rational.delay > 0 => {
-            let mut earlier = *rational;
-            earlier.delay -= 1;
-            Some(Environment::Rational(earlier))
-        }
-        // The canceller in front of a wall is undelayed.
-        Environment::FreeMode { .. }
-        | Environment::FreeModeWall { .. }
-        | Environment::Rational(_) => None,
+    let n = Numbers::of(scene, assessment.format);
+    let limit = paper_limit(&n);
+    let bound = limited_bound(scene, assessment, &n);
+    match (bound, limit) {
+        (Some(bound), Some(limit)) if bound.is_below(limit) => Ok(Spare {
+            room: limit.sub(bound).lo(),
+            margin: margin::limited(scene, &n, bound),
+        }),
+        _ => Err(TimingError::Limited {
+            bound: match bound {
+                Some(bound) => Some(bound.hi()),
+                None => None,
+            },
+            limit: match limit {
+                Some(limit) => Some(limit.lo()),
+                None => None,
+            },
+        }),
     }
 }
 
-const fn wall_earlier(wall: &Wall) -> Option<Wall> {
-    if wall.delay == 0 { None } else { Some(Wall { delay: wall.delay - 1, ..*wall }) }
+/// The bound on the index of a certified scene whose torque is limited.
+///
+/// It holds for a limit that moves, too: the clip of a monotone law at any level is monotone and no
+/// steeper, and that of a damper or a canceller is a part of it that may change from tick to tick
+/// (theory, section 5). A level that falls takes energy away; one that rises puts in what the
+/// environment stores at its depth, once.
+pub(super) const fn limited_bound(
+    scene: &Scene,
+    assessment: &Assessment,
+    n: &Numbers,
+) -> Option<Interval> {
+    if matches!(assessment.rule, Rule::Nonlinear) {
+        return assessment.bound;
+    }
+    match transfer(&scene.environment, n) {
+        Ok(contact) => nonlinear_bound(&scene.environment, &contact, n),
+        Err(_) => None,
+    }
 }
 
 #[cfg(test)]

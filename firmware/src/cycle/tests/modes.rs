@@ -3,7 +3,7 @@
 use fixed::types::I8F24;
 
 use super::*;
-use crate::servo::{Immediate, Renders, Simultaneous};
+use crate::servo::{Renders, Simultaneous};
 use crate::tuning::Tunable;
 
 /// Counts of a hand that pushes in and lets go, again and again.
@@ -27,7 +27,6 @@ where
 #[test]
 fn a_code_is_written_a_tick_early_where_the_torque_takes_a_sample() {
     let latched = codes::<f32, Latched>();
-    assert_eq!(codes::<f32, Immediate<2500>>(), latched);
     // Once it fades no more.
     assert_eq!(codes::<f32, Simultaneous>()[300..], latched[299..latched.len() - 1]);
 }

@@ -1,0 +1,141 @@
+//! How much of its damping the device may lose while everything else goes on as it runs.
+//!
+//! The coupling that runs was made for the passivity that was declared; a device with less of it is
+//! not the one for which an index was compared with `delta`. So the margin is not `delta` less the
+//! index.
+
+use super::model::{Missed, Numbers, largest_gain};
+use super::posed::Posed;
+use super::rules::{Answer, Assessment, Rule, paper_limit};
+use crate::passivity::discrete::index;
+use crate::passivity::interval::Interval;
+use crate::passivity::poles::cancelled;
+use crate::passivity::transfer::Transfer;
+use crate::scene::{Device, Scene};
+
+impl Assessment {
+    /// Damping in N m s/rad that the device may certainly lose while coupling, environment and timing
+    /// stay what they are; at most `delta`.
+    ///
+    /// Of a linear scene that is rejected, what the device lacks, as a negative number. `None` where
+    /// there is no such number: for what is undecided, and for a one-sided or limited scene that is
+    /// rejected.
+    ///
+    /// `scene` is the one that was assessed.
+    pub const fn margin(&self, scene: &Scene) -> Option<f64> {
+        match (self.rule, &self.outcome, self.exact) {
+            (Rule::Nonlinear, Ok(()), _) => match self.bound {
+                Some(bound) => Some(limited(scene, &Numbers::of(scene, self.format), bound)),
+                None => None,
+            },
+            (Rule::Exact, Ok(()), _) => Some(match self.linear(scene) {
+                Some(margin) => margin.max(0.0).min(self.delta.lo()),
+                None => 0.0,
+            }),
+            (Rule::Exact, Err(_), Answer::Fail) => match self.linear(scene) {
+                Some(margin) if margin < 0.0 => Some(margin),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Of a linear scene: `delta` less the index at the port, which is that of the whole controller
+    /// one sample later (theory-lag, equation (1) for an ideal hold).
+    const fn linear(&self, scene: &Scene) -> Option<f64> {
+        let n = Numbers::of(scene, self.format);
+        if n.missed.is_some() {
+            return searched(scene, self);
+        }
+        let Ok(posed) = Posed::with(scene, n) else { return None };
+        let Ok(controller) = cancelled(posed.environment).behind(n.compliance) else {
+            return None;
+        };
+        let later = Transfer { shift: controller.shift - 1, ..controller };
+        match index(later, n.period, false) {
+            Ok(found) => Some(n.delta.sub(found.minimum).lo()),
+            Err(_) => None,
+        }
+    }
+}
+
+/// Halvings of a margin that is searched for.
+const HALVINGS: u32 = 24;
+
+/// The margin of a linear scene whose updates may be missed: the largest loss with which the same
+/// scene was found to be certified.
+const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
+    let declared = match scene.device.passivity {
+        Some(passivity) => passivity,
+        None => scene.device.damping,
+    };
+    let (mut passes, mut fails) = (0.0, declared);
+    let mut i = 0;
+    while i < HALVINGS {
+        let loss = 0.5 * (passes + fails);
+        let device = Device { passivity: Some(declared - loss), ..scene.device };
+        let certified = match Posed::in_format(&Scene { device, ..*scene }, assessment.format) {
+            Ok(posed) => posed.is_certified(),
+            Err(_) => false,
+        };
+        if certified {
+            passes = loss;
+        } else {
+            fails = loss;
+        }
+        i += 1;
+    }
+    if assessment.outcome.is_ok() { Some(passes) } else { None }
+}
+
+/// The margin of a one-sided or limited scene with this bound on its index, below the limit of
+/// [`paper_limit`]; not negative.
+///
+/// Down to `k = K_vc T / 2` conditions 17 and 18 go on to hold. For a device that has only
+/// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
+/// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less
+/// `(k - delta') sum d^2 / T`. With `d = e + V w` and a torque that changes by no more than
+/// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`.
+pub(super) const fn limited(scene: &Scene, n: &Numbers, bound: Interval) -> f64 {
+    let (Some(k), Some(limit), Some(gain)) =
+        (n.coupling_damping(), paper_limit(n), largest_gain(&scene.environment, n))
+    else {
+        return 0.0;
+    };
+    // V g, for V = T / (2 k).
+    let amplification = Interval::ONE.add(gain.div(k.double()));
+    let above = n.delta.sub(k).lo().max(0.0);
+    let below = n.delta.min(k).sub(bound).div(amplification.mul(amplification)).lo();
+    let margin = match &n.missed {
+        None => above + below,
+        Some(missed) if limit.sub(bound).is_positive() => {
+            where_latched(missed, k, bound, amplification).min(above + below)
+        }
+        Some(_) => 0.0,
+    };
+    // Each end was rounded, and then their sum.
+    (margin * (1.0 - f64::EPSILON)).max(0.0).min(n.delta.lo())
+}
+
+/// The same where torques are latched and updates missed. As long as the index is below `s k` the
+/// form of [`Missed::limit`] for `delta = k` leaves `(s k - alpha) e^2 / T`; of that a device with
+/// `delta' >= k / 2` takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`.
+const fn where_latched(
+    missed: &Missed,
+    k: Interval,
+    bound: Interval,
+    amplification: Interval,
+) -> f64 {
+    let s = Interval::ONE.div(missed.stretch);
+    let above = missed.declared.sub(k);
+    let left = s.mul(k).sub(bound);
+    if left.is_positive() {
+        let echo = amplification.sub(Interval::ONE);
+        let taken = s.mul(amplification).mul(amplification);
+        let taken = taken.add(Interval::ONE.sub(s).double().mul(echo).mul(echo));
+        return above.lo().max(0.0) + left.div(taken).lo().min(k.half().lo());
+    }
+    // Solved for the passivity at which the limit is the bound.
+    let needed = missed.stretch.sub(Interval::ONE).mul(bound).mul(k).div(k.sub(bound));
+    above.lo().min(missed.declared.sub(needed).lo())
+}
