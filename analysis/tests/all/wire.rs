@@ -135,7 +135,8 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     assert_eq!(said["parameters"]["stiffness"], 12.5);
     assert_eq!(said["parameters"]["damping"], 0.002);
     assert_eq!(said["parameters"]["coupling.stiffness"], 44.0);
-    let margin = with(12.5, 0.002).certify_in(Format::F32).unwrap().assessment().margin();
+    let scene = with(12.5, 0.002);
+    let margin = scene.certify_in(Format::F32).unwrap().assessment().margin(&scene.as_data());
     assert_eq!(said["margin"].as_f64(), margin);
     assert_eq!((&said["refused"], &said["sets"]), (&Value::Null, &Value::from(1)));
     assert_eq!(said["missed"], 0);

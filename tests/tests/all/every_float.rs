@@ -144,7 +144,9 @@ fn consistent(scene: &Scene, format: Format) -> Result<(), TestCaseError> {
     prop_assert_eq!(assessment.outcome.is_ok(), deciding == Answer::Pass);
     if assessment.outcome.is_ok() {
         prop_assert!(below(assessment.deciding_index()), "{assessment:?}");
-        prop_assert!(assessment.margin().is_some_and(|m| m >= 0.0), "{assessment:?}");
+        let margin = assessment.margin(scene);
+        let delta = assessment.delta.lo();
+        prop_assert!(margin.is_some_and(|m| m >= 0.0 && m <= delta), "{margin:?} {assessment:?}");
     }
     Ok(())
 }

@@ -14,6 +14,8 @@ mod failures;
 mod foreign;
 mod interval;
 mod live;
+mod margin;
+mod misses;
 mod random;
 mod reference;
 mod remedies;

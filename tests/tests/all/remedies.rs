@@ -6,7 +6,6 @@ use firmware::environment::Environment;
 use firmware::scene::{Coupling, Scene};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use tests::exact::of_f64;
 use tests::scenes;
 
 /// The scene with one number changed; `None` if it does not have that number.
@@ -64,19 +63,4 @@ fn remedies_help() {
     }
     println!("rejected={rejected} remedies={advised}");
     assert!(rejected > 200 && advised > rejected, "{advised} remedies for {rejected} rejections");
-}
-
-/// Theory, section 8: a longest period of `k T` leaves `delta / k` and changes nothing else.
-#[test]
-fn a_longer_worst_period_divides_delta() {
-    for seed in 0..300 {
-        let drawn = scenes::any(&mut ChaCha8Rng::seed_from_u64(seed));
-        let factor = [1.0, 2.0, 4.0][usize::try_from(seed % 3).unwrap()];
-        let mut slow = drawn.scene;
-        slow.timing.worst_period = Some(factor * slow.timing.period);
-        let mut exact = drawn.exact.clone();
-        exact.delta /= of_f64(factor).expect("finite");
-        tests::agreement::check(&assess(&slow), &exact)
-            .unwrap_or_else(|why| panic!("{seed}: {why}"));
-    }
 }

@@ -185,7 +185,7 @@ fn greets_with_what_its_numbers_mean() {
 fn a_certified_set_runs_whole() {
     let mut bench = Bench::new(None);
     assert_eq!(bench.running().sets, 0);
-    let margin = SCENE.certify_in(Format::F32).unwrap().assessment().margin();
+    let margin = SCENE.certify_in(Format::F32).unwrap().assessment().margin(&SCENE.as_data());
     assert_eq!(bench.running().margin, margin);
     let changes = [(Parameter::Stiffness, 12.0), (Parameter::Damping, 0.002)];
     assert_eq!(bench.set(1, &changes), Outcome::Done);
