@@ -16,10 +16,10 @@ use std::io;
 
 use firmware::boot;
 use firmware::cycle::Options;
-use firmware::environment::{Environment, Renderable};
+use firmware::environment::Renderable;
 use firmware::number::Number;
 use firmware::scene::Scene;
-use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Simultaneous, Transducers};
+use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Transducers};
 use serde::Serialize;
 
 use crate::controller::{Controller, controller};
@@ -43,7 +43,6 @@ pub struct Program {
     /// What its servo keeps from tick to tick, in a format.
     pub state: fn(NumberFormat) -> State,
     build: Build,
-    build_late: Build,
     listen: Listen,
 }
 
@@ -82,23 +81,6 @@ impl Program {
         (self.build)(format, transducers)
     }
 
-    /// Its scene as a board with a latched converter renders it: a sample late at the least.
-    pub fn late_scene(&self) -> Scene {
-        late(self.scene)
-    }
-
-    /// The servo of that scene on the host.
-    ///
-    /// # Errors
-    /// As of [`Self::controller`].
-    pub fn late_controller(
-        &self,
-        format: NumberFormat,
-        transducers: &Transducers,
-    ) -> Result<Box<dyn Controller>, BuildError> {
-        (self.build_late)(format, transducers)
-    }
-
     /// Its device at rest, in the hand that shows it.
     pub fn device(&self) -> SimulatedDevice {
         SimulatedDevice::new(
@@ -129,19 +111,8 @@ impl Program {
     }
 }
 
-/// A scene as late as the board's converter: the canceller of the host's is not late at all.
-const fn late(scene: Scene) -> Scene {
-    let environment = match scene.environment {
-        Environment::FreeMode { residual, delay: 0 } => {
-            Environment::FreeMode { residual, delay: 1 }
-        }
-        other => other,
-    };
-    Scene { environment, ..scene }
-}
-
 macro_rules! programs {
-    ($($module:ident, $script:path, $mode:ty;)*) => {
+    ($($module:ident, $script:path;)*) => {
         /// Names of all programs, in the order in which they are shown.
         pub const NAMES: &[&str] = &[$(stringify!($module)),*];
 
@@ -161,13 +132,6 @@ macro_rules! programs {
                     controller::<_, $module::Fixed>(&$module::CERTIFIED, transducers)
                 }
             },
-            build_late: |format, transducers| {
-                let scene = const { late($module::SCENE.as_data()).certified() };
-                match format {
-                    NumberFormat::F32 => controller::<_, f32>(&scene, transducers),
-                    NumberFormat::Fixed => controller::<_, $module::Fixed>(&scene, transducers),
-                }
-            },
             listen: |plant, address, clock| {
                 let program = boot::Program {
                     scene: $module::SCENE,
@@ -175,17 +139,16 @@ macro_rules! programs {
                     rendering: RenderingOptions::DEFAULT,
                     options: Options::DEFAULT,
                 };
-                Twin::start::<_, f32, $mode>(stringify!($module), program, plant, address, clock)
+                Twin::start::<_, f32, Latched>(stringify!($module), program, plant, address, clock)
             },
         }),*];
     };
 }
 
 programs! {
-    delayed_spring, Script::push_and_let_go, Latched;
-    damper_wall, Script::push_and_let_go, Latched;
-    // Its canceller has no delay, which only a simulation can give.
-    free_mode, Script::swing_and_let_go, Simultaneous;
+    delayed_spring, Script::push_and_let_go;
+    damper_wall, Script::push_and_let_go;
+    free_mode, Script::swing_and_let_go;
 }
 
 #[cfg(test)]
@@ -193,10 +156,10 @@ mod tests {
     use super::*;
 
     /// A stiffness and the sample that is late; for the wall a face, a damping and the last position,
-    /// too; for free mode the canceller's gain, its rate and its state.
+    /// too; for free mode the canceller's gain, its rate and its state, and the sample that is late.
     #[test]
     fn a_servo_keeps_what_its_environment_uses() {
-        for (name, numbers) in [("delayed_spring", 2), ("damper_wall", 5), ("free_mode", 3)] {
+        for (name, numbers) in [("delayed_spring", 2), ("damper_wall", 5), ("free_mode", 4)] {
             let state = (Program::find(name).unwrap().state)(NumberFormat::F32);
             assert_eq!(state.environment, numbers * size_of::<f32>(), "{name}");
             assert!(state.servo > state.environment);

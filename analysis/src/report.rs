@@ -136,6 +136,7 @@ fn numbers(report: &Report, scene: &Scene) -> Markup {
     if let Some(rest) = &report.rest {
         rows.push(("Torque of all steps at rest", format!("{} N m", significant(rest.hum, 4))));
     }
+    rows.extend(report.board.clone().map(|why| ("Not on a board", why)));
     rows.push(("Rule of the paper", answer(report.rules.paper).to_owned()));
     rows.push(("Exact rule", answer(report.rules.exact).to_owned()));
     html! {

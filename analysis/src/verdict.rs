@@ -8,6 +8,7 @@ use firmware::certificate::{
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
+use firmware::servo::Latched;
 use serde::Serialize;
 
 use crate::minimum::least;
@@ -81,14 +82,17 @@ pub struct AtRest {
     pub friction: Option<f64>,
     /// Whether that is enough; `None` where it cannot be said.
     pub comes_to_rest: Option<bool>,
+    /// Whether the steps do no more than that in any motion. Otherwise they do where it moves through
+    /// a face.
+    pub in_any_motion: bool,
 }
 
 impl AtRest {
     /// Of the certificate's bound.
     pub fn of(rest: &Rest) -> Self {
-        let Rest { encoder, numbers, converter, friction } = *rest;
+        let Rest { encoder, numbers, converter, friction, in_any_motion } = *rest;
         let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
-        Self { encoder, numbers, converter, hum, friction, comes_to_rest }
+        Self { encoder, numbers, converter, hum, friction, comes_to_rest, in_any_motion }
     }
 }
 
@@ -125,6 +129,9 @@ pub struct Report {
     /// What steps do at rest, where the scene is certified and they were stated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<AtRest>,
+    /// Why no board renders a scene that is certified; `None` where one does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub board: Option<String>,
     /// What the verdict rests on.
     pub assumptions: Vec<String>,
     /// Those of the assumptions that do not hold.
@@ -159,7 +166,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
     let assumptions = Assumptions::of(scene, &assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == Standing::Fails);
     let message = match rejection {
-        None => passed(delta, margin, assumptions.rest()),
+        None => passed(margin, assumptions.rest()),
         Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
     };
     Report {
@@ -175,6 +182,11 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
         theta: minimum_angle(scene, &assessment),
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),
+        board: assessment
+            .outcome
+            .ok()
+            .and_then(|()| assessment.renders_in::<Latched>(scene).err())
+            .map(|error| error.to_string()),
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
         message,
@@ -182,10 +194,10 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
     }
 }
 
-fn passed(delta: f64, margin: Option<f64>, rest: Option<&Rest>) -> String {
+fn passed(margin: Option<f64>, rest: Option<&Rest>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
-        format!("; of the device's {delta} N m s/rad of damping {margin} may be lost with all else as it is")
+        format!("; the device may lose {margin} N m s/rad of its damping with all else as it runs")
     });
     let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
     format!("certified: no passive hand can make it oscillate{to_spare}{rest}")

@@ -19,7 +19,7 @@ impl Subject {
             friction: friction.map(|torque| torque / units.torque),
         };
         let scene = units.scene(&self.scene);
-        let Rest { encoder, numbers, converter, .. } =
+        let Rest { encoder, numbers, converter, in_any_motion, .. } =
             Rest::of(&scene, arithmetic.format(), &steps)?;
         let in_newton_metres = |torque: f64| torque * units.torque;
         Some(Rest {
@@ -27,6 +27,7 @@ impl Subject {
             numbers: in_newton_metres(numbers),
             converter: converter.map(in_newton_metres),
             friction,
+            in_any_motion,
         })
     }
 }

@@ -63,6 +63,7 @@ pub fn text(report: &Report) -> String {
     rows.push(("rule of the paper", format!("{:?}", report.rules.paper).to_lowercase()));
     rows.push(("exact rule", format!("{:?}", report.rules.exact).to_lowercase()));
     rows.extend(report.format.clone().map(|format| ("rounded to", format)));
+    rows.extend(report.board.clone().map(|why| ("not on a board", why)));
     list(&mut rows, "remedies", &report.remedies);
     list(&mut rows, "WARNING", &report.warnings);
     let holding = report.assumptions.iter().filter(|one| !report.warnings.contains(one));

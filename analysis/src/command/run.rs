@@ -230,16 +230,10 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
     let format = arguments.format.into();
     Ok(Question {
         name: program.name.to_owned(),
-        scene: match arguments.target {
-            Target::Host | Target::Qemu => program.scene,
-            Target::Board(_) => program.late_scene(),
-        },
+        scene: program.scene,
         transducers,
         script: (program.script)(),
-        controller: match arguments.target {
-            Target::Host | Target::Qemu => program.controller(format, &transducers)?,
-            Target::Board(_) => program.late_controller(format, &transducers)?,
-        },
+        controller: program.controller(format, &transducers)?,
         program: Some(program),
     })
 }

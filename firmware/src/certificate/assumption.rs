@@ -6,8 +6,8 @@ use core::fmt;
 
 use super::model::{Loop, Numbers};
 use super::rest::{Rest, Steps};
-use super::timed::limited_bound;
 use super::rules::{Answer, Assessment, compare, is_nonlinear, paper_limit, wall_of};
+use super::timed::limited_bound;
 use crate::environment::Environment;
 use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
@@ -34,6 +34,8 @@ pub enum Assumption {
         longest: f64,
         /// What is left of the device's passivity, in N m s/rad.
         delta: f64,
+        /// Whether the scene passes with that.
+        passes: bool,
     },
     /// The delay is what the scene says.
     Delay {
@@ -99,8 +101,11 @@ impl Assumption {
             | Self::Delay { .. }
             | Self::CancelledDamping { .. }
             | Self::StepsUnbounded
+            | Self::WorstPeriod { passes: false, .. }
             | Self::Saturates { bound: None } => Standing::TakenForGranted,
-            Self::WorstPeriod { .. } | Self::Saturates { bound: Some(_) } => Standing::Holds,
+            Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_) } => {
+                Standing::Holds
+            }
             Self::OneSided { bound } if bound.is_some() => Standing::Holds,
             Self::Limited { full_scale: None, .. } | Self::StepsNotStated => Standing::NotStated,
             Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
@@ -136,10 +141,11 @@ impl fmt::Display for Assumption {
                     None => Ok(()),
                 }
             }
-            Self::WorstPeriod { longest, delta } => write!(
+            Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
-                "no two updates are more than {longest} s apart: judged with what that leaves of \
-                 delta, {} N m s/rad",
+                "no two counts are more than {longest} s apart, which the servo sees to; judged with \
+                 what that leaves of delta, {} N m s/rad, for torques that begin with their count and \
+                 for those that are latched",
                 Written(*delta)
             ),
             Self::Delay { samples } => {
@@ -152,13 +158,13 @@ impl fmt::Display for Assumption {
             Self::Limited { torque, full_scale } => write_limit(f, *torque, *full_scale),
             Self::Saturates { bound: Some(bound) } => write!(
                 f,
-                "the torque may reach the converter's full scale: with a torque limit it passes \
-                 too, by the nonlinear bound of {} N m s/rad",
+                "the torque may reach the converter's full scale, and be faded in and out: with a \
+                 torque limit it passes too, by the nonlinear bound of {} N m s/rad",
                 Written(*bound)
             ),
             Self::Saturates { bound: None } => f.write_str(
-                "the torque never reaches the limit of motor or converter: with a torque limit it \
-                 would not pass",
+                "the torque is never limited: with a torque limit it would not pass, so that no board \
+                 fades it in",
             ),
             Self::CancelledDamping { damping } => write!(
                 f,
@@ -247,6 +253,7 @@ impl Assumptions {
         list.push(worst.map(|longest| Assumption::WorstPeriod {
             longest,
             delta: assessment.delta.midpoint(),
+            passes: assessment.outcome.is_ok(),
         }));
         list.push(delay(&scene.environment));
         let one_sided = wall_of(&scene.environment).is_some_and(|wall| wall.one_sided);

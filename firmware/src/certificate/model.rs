@@ -80,7 +80,10 @@ impl Numbers {
             Some(worst) if worst != scene.timing.period => {
                 let worst = Interval::decimal(worst);
                 let missed = Missed { stretch: worst.div(period), declared: delta };
-                (delta.mul(period).div(worst), if scene.environment.is_late() { Some(missed) } else { None })
+                (
+                    delta.mul(period).div(worst),
+                    if scene.environment.is_late() { Some(missed) } else { None },
+                )
             }
             _ => (delta, None),
         };
@@ -341,7 +344,11 @@ pub(super) const fn nonlinear_bound(
 
 /// The larger of [`Numbers::solved`] out of contact and in contact, where that is known already;
 /// `None` where it cannot be had.
-const fn solved(environment: &Environment, contact: Option<Interval>, n: &Numbers) -> Option<Interval> {
+const fn solved(
+    environment: &Environment,
+    contact: Option<Interval>,
+    n: &Numbers,
+) -> Option<Interval> {
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }

@@ -5,11 +5,11 @@ use super::parameter::first_invalid;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
+use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::bernstein::Closeness;
 use crate::passivity::discrete::{RealPart, index_looked_at};
 use crate::passivity::interval::Interval;
-use crate::environment::Environment;
 use crate::passivity::poles::{Doubt, Obstacle, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
@@ -232,11 +232,7 @@ impl Posed {
     }
 
     /// Index of `E'` for a coupling with this much compliance over the standard one.
-    const fn behind(
-        &self,
-        excess: Interval,
-        closeness: &Closeness,
-    ) -> Result<RealPart, Obstacle> {
+    const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match cancelled(self.environment).behind(excess) {
             Ok(equivalent) => index_looked_at(equivalent, self.numbers.period, false, closeness),
             Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),

@@ -1,10 +1,16 @@
 //! Whether a device comes to rest: the torque of everything that is not linear, held against the
 //! friction that the device has (theory, sections 6, 8 and 9).
 //!
-//! The certificate is about a linear controller. Encoder, converter and the rounding of numbers
-//! make its torque another, by no more than some `e` for whatever motion. A dry friction of `e` or
-//! more takes from any motion what that error puts in, `f_c abs(v) >= e v`, so that the device is
-//! as passive as it was certified to be. With less it may hum at rest.
+//! The certificate is about a controller without steps. Encoder, converter and the rounding of
+//! numbers make its torque another, by no more than some `e`. A dry friction of `e` or more takes
+//! from a motion what that error puts in, `f_c abs(v) >= e v`, so that the device is as passive as it
+//! was certified to be. With less it may hum at rest.
+//!
+//! For a linear scene, and for a spring that is one-sided or limited, `e` holds whatever the motion.
+//! A damper behind a face does not have such an `e`: a count more or less moves the tick in which it
+//! is switched on or off, by which the torque then differs by damping times speed. Its `e` is that of
+//! motions on one side of the face, as at rest. The same goes for a limited scene whose response may
+//! grow with each change between limited and not.
 
 use core::f64::consts::TAU;
 use core::fmt;
@@ -59,18 +65,22 @@ pub struct Rest {
     pub converter: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
+    /// Whether this is all that the steps do, whatever the motion. Otherwise it is what they do at
+    /// rest, and on one side of a face.
+    pub in_any_motion: bool,
 }
 
 impl Rest {
     /// Of a scene that runs in a number format. `None` where the controller has no finite peak
     /// torque a position: where it is not stable, or so nearly that its response does not end.
     pub fn of(scene: &Scene, format: Format, steps: &Steps) -> Option<Self> {
-        let peak = peak(scene, format)?;
+        let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         Some(Self {
             encoder: steps.encoder.map(|step| 0.5 * step * peak),
             numbers: numbers(scene, format, steps, peak)?,
             converter: steps.converter().map(|step| 0.5 * step),
             friction: steps.friction,
+            in_any_motion,
         })
     }
 
@@ -102,41 +112,57 @@ impl fmt::Display for Rest {
                 write!(
                     f,
                     "it may hum by up to {hum} N m unless the device has {hum} N m of friction"
-                )
+                )?;
             }
             (Some(friction), None) => write!(
                 f,
                 "the device's friction of {friction} N m keeps it still, as far as the steps were \
                  stated"
-            ),
+            )?,
             (Some(friction), Some(true)) => {
-                write!(f, "the device's friction of {friction} N m keeps it still")
+                write!(f, "the device's friction of {friction} N m keeps it still")?;
             }
             (Some(friction), Some(false)) => write!(
                 f,
                 "it may hum by up to {hum} N m: the device's friction of {friction} N m is below \
                  that"
-            ),
+            )?,
         }
+        if self.in_any_motion {
+            return Ok(());
+        }
+        f.write_str("; while it moves through a face the steps do more, in proportion to its speed")
     }
 }
 
-/// Largest torque in N m for positions that are off by up to 1 rad each: the l1 norm of the
-/// controller's impulse response (theory, section 6).
+/// What positions that are off do to the torque.
+struct Peak {
+    /// Largest torque in N m for positions that are off by up to 1 rad each.
+    norm: f64,
+    /// Whether it is that whatever the motion.
+    in_any_motion: bool,
+}
+
+/// The l1 norm of the controller's impulse response (theory, section 6).
 ///
 /// A wall in and out of contact and a torque limit make the response vary. Then, for an
 /// environment of norm `e` behind a compliance `V`, no torque is more than `e + V e` times the last
 /// one, which for `V e < 1` adds up to `e / (1 - V e)`; where that is not so, the norm is the one
 /// in contact.
-fn peak(scene: &Scene, format: Format) -> Option<f64> {
+fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     let Loop { controller, environment, .. } = Loop::in_format(scene, format).ok()?;
     let linear = l1_norm(&controller)?;
     if !is_nonlinear(scene) {
-        return Some(linear);
+        return Some(Peak { norm: linear, in_any_motion: true });
     }
     let alone = l1_norm(&environment)?;
     let fed_back = alone * compliance(scene, format);
-    Some(if fed_back < 1.0 { linear.max(alone / (1.0 - fed_back)) } else { linear })
+    let switched = wall_of(&scene.environment).is_some_and(|w| w.one_sided && w.damping != 0.0);
+    Some(if fed_back < 1.0 {
+        Peak { norm: linear.max(alone / (1.0 - fed_back)), in_any_motion: !switched }
+    } else {
+        Peak { norm: linear, in_any_motion: false }
+    })
 }
 
 fn compliance(scene: &Scene, format: Format) -> f64 {

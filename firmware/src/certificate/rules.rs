@@ -1,8 +1,8 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
-use super::model::Numbers;
 #[cfg(doc)]
 use super::model::Missed;
+use super::model::Numbers;
 use super::parameter::first_invalid;
 use super::posed::Posed;
 use super::rejection::Rejection;
@@ -157,9 +157,7 @@ pub(super) const fn paper_limit(n: &Numbers) -> Option<Interval> {
     match (n.coupling_damping(), &n.missed) {
         (Some(damping), _) if n.delta.is_below(damping) => None,
         (Some(damping), None) => Some(n.delta.min(damping)),
-        (Some(damping), Some(missed)) => {
-            Some(n.delta.min(damping).min(missed.limit(damping)))
-        }
+        (Some(damping), Some(missed)) => Some(n.delta.min(damping).min(missed.limit(damping))),
         (None, _) => None,
     }
 }

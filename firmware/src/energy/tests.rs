@@ -9,9 +9,7 @@ use super::*;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DelayedSpring, Law, Renderable, Setting};
 use crate::scene::{Coupling, Device, Scene, Timing};
-use crate::servo::{
-    Latched, Rendering, RenderingOptions, Servo, Simultaneous, Transducers,
-};
+use crate::servo::{Latched, Rendering, RenderingOptions, Servo, Simultaneous, Transducers};
 
 const PERIOD: f64 = 1e-3;
 const TRANSDUCERS: Transducers = Transducers {

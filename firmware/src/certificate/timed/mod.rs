@@ -143,6 +143,20 @@ impl fmt::Display for TimingError {
 
 impl core::error::Error for TimingError {}
 
+impl Assessment {
+    /// Whether a board that puts its torques out in the mode `M` renders the scene that was assessed
+    /// and certified, as far as its numbers tell: what [`Certified::time`](Certified) answers.
+    ///
+    /// # Errors
+    /// Why it does not.
+    pub const fn renders_in<M: OutputMode>(&self, scene: &Scene) -> Result<(), TimingError> {
+        match agree::<M>(scene, self) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
 /// Whether a scene with this assessment agrees with a mode; if so, what it has to spare.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
@@ -155,10 +169,9 @@ pub(super) const fn agree<M: OutputMode>(
     let limit = paper_limit(&n);
     let bound = limited_bound(scene, assessment, &n);
     match (bound, limit) {
-        (Some(bound), Some(limit)) if bound.is_below(limit) => Ok(Spare {
-            room: limit.sub(bound).lo(),
-            margin: margin::limited(scene, &n, bound),
-        }),
+        (Some(bound), Some(limit)) if bound.is_below(limit) => {
+            Ok(Spare { room: limit.sub(bound).lo(), margin: margin::limited(scene, &n, bound) })
+        }
         _ => Err(TimingError::Limited {
             bound: match bound {
                 Some(bound) => Some(bound.hi()),

@@ -49,10 +49,10 @@ fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
         panic!("{:?}", certified.time::<Latched>())
     };
     assert!((bound - 0.0225).abs() < 1e-12 && (limit - 0.0165).abs() < 1e-12, "{bound} {limit}");
-    assert_eq!(certified.time::<Simultaneous>().map(|_| ()).unwrap_err(), TimingError::Limited {
-        bound: Some(bound),
-        limit: Some(limit)
-    });
+    assert_eq!(
+        certified.time::<Simultaneous>().map(|_| ()).unwrap_err(),
+        TimingError::Limited { bound: Some(bound), limit: Some(limit) }
+    );
     // A coupling that is stiffer than the standard one has no limit that is known to do.
     let stiff = scene(DelayedSpring::<1> { stiffness: 5.0 }, 60.0).certify().unwrap();
     let error = stiff.time::<Latched>().unwrap_err();

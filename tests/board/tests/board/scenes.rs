@@ -65,7 +65,7 @@ where
     let moved = samples.iter().filter(|sample| sample.code != samples[2].code).count();
     assert!(moved > 1000, "{}, {name}: no torque but in {moved} samples", chip.name);
     // And the converter's latch is the sample by which the scene is late.
-    let mut controller = program.late_controller(NumberFormat::F32, transducers).unwrap();
+    let mut controller = program.controller(NumberFormat::F32, transducers).unwrap();
     for (tick, sample) in samples[..SAMPLES as usize].iter().enumerate() {
         let code = controller.tick(sample.count).code;
         let opened = tick > OPEN;
