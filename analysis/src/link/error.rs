@@ -1,6 +1,7 @@
 //! Why a board cannot be talked to.
 
 use std::io;
+use std::path::Path;
 use std::time::Duration;
 
 use firmware::wire::PROTOCOL;
@@ -68,6 +69,10 @@ pub enum LinkError {
 fn ports(address: &Address) -> String {
     if !matches!(address, Address::Serial { .. }) {
         return String::new();
+    }
+    // The library panics where Linux lists no terminals, as in a container.
+    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").exists() {
+        return "; there is no serial port here".to_owned();
     }
     match serialport::available_ports() {
         Ok(ports) if !ports.is_empty() => {

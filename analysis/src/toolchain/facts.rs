@@ -16,7 +16,12 @@ pub fn observe(lists_are_fresh: bool) -> Facts {
         rustup: says("rustup", &["--version"]).is_some(),
         fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
         qemu: says(QEMU, &["--version"]).as_deref().and_then(Version::find),
-        native: Native { cmake: says("cmake", &["--version"]).is_some(), libclang: has_libclang() },
+        native: Native {
+            cmake: says("cmake", &["--version"]).is_some(),
+            make: says("make", &["--version"]).is_some(),
+            cxx: says("c++", &["--version"]).is_some(),
+            libclang: has_libclang(),
+        },
         debian: debian(lists_are_fresh),
         root: nix::unistd::geteuid().is_root(),
     }
@@ -33,18 +38,31 @@ fn rust() -> Option<Rust> {
 /// Whether the library is where the build of bindings looks for it: where it was told to, among the
 /// system's libraries, or in an LLVM's folder.
 fn has_libclang() -> bool {
+    let listed = |libraries: String| {
+        libraries.lines().filter_map(|line| line.split_whitespace().next()).any(is_libclang)
+    };
     std::env::var_os("LIBCLANG_PATH").is_some()
-        || says("ldconfig", &["-p"]).is_some_and(|libraries| libraries.contains("libclang"))
+        || says("ldconfig", &["-p"]).is_some_and(listed)
         || llvm_has_libclang()
+}
+
+/// Whether a file is the library, by its name: `libclang.so`, `libclang-14.so`, and these with a
+/// version behind them. `libclang-cpp.so.14` is another one.
+fn is_libclang(file: &str) -> bool {
+    let Some((name, version)) = file.split_once(".so") else { return false };
+    let numbered = |text: &str| text.chars().all(|c| c.is_ascii_digit() || c == '.');
+    let is_named = name == "libclang" || name.strip_prefix("libclang-").is_some_and(numbered);
+    is_named && (version.is_empty() || version.starts_with('.'))
 }
 
 /// Debian keeps each version of LLVM in a folder of its own.
 fn llvm_has_libclang() -> bool {
     let named = |entry: &DirEntry, start| entry.file_name().to_string_lossy().starts_with(start);
     let entries = |folder: &Path| folder.read_dir().into_iter().flatten().flatten();
-    entries(Path::new("/usr/lib"))
-        .filter(|entry| named(entry, "llvm-"))
-        .any(|llvm| entries(&llvm.path().join("lib")).any(|library| named(&library, "libclang")))
+    entries(Path::new("/usr/lib")).filter(|entry| named(entry, "llvm-")).any(|llvm| {
+        entries(&llvm.path().join("lib"))
+            .any(|library| is_libclang(&library.file_name().to_string_lossy()))
+    })
 }
 
 /// Whether a folder of libraries holds a compiled `core`.
@@ -85,4 +103,19 @@ fn says(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
         .output()
         .ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_libclang;
+
+    #[test]
+    fn a_library_with_a_longer_name_is_another_one() {
+        for file in ["libclang.so", "libclang-14.so", "libclang.so.1", "libclang-14.so.14.0.6"] {
+            assert!(is_libclang(file), "{file}");
+        }
+        for file in ["libclang-cpp.so.14", "libclang-cpp.so", "libclangFormat.a", "libclang.a"] {
+            assert!(!is_libclang(file), "{file}");
+        }
+    }
 }

@@ -55,6 +55,10 @@ pub struct Rust {
 pub struct Native {
     /// Whether there is cmake.
     pub cmake: bool,
+    /// Whether there is make.
+    pub make: bool,
+    /// Whether there is a C++ compiler, which cmake asks for.
+    pub cxx: bool,
     /// Whether there is libclang.
     pub libclang: bool,
 }
@@ -95,19 +99,25 @@ pub enum Package {
     Qemu,
     /// Builds the virtual board's processor.
     Cmake,
+    /// Runs what cmake writes.
+    Make,
+    /// The compiler that cmake asks for.
+    Cxx,
     /// Reads its header.
     Libclang,
 }
 
 impl Package {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Rustc,
         Self::Cargo,
         Self::RustSource,
         Self::Lld,
         Self::Qemu,
         Self::Cmake,
+        Self::Make,
+        Self::Cxx,
         Self::Libclang,
     ];
     /// Those that make a compiler for the target.
@@ -122,6 +132,8 @@ impl Package {
             Self::Lld => "lld",
             Self::Qemu => "qemu-system-arm",
             Self::Cmake => "cmake",
+            Self::Make => "make",
+            Self::Cxx => "g++",
             Self::Libclang => "libclang-dev",
         }
     }
@@ -131,7 +143,7 @@ impl Package {
         match self {
             Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),
             Self::Qemu => Some(Version::QEMU),
-            Self::Lld | Self::Cmake | Self::Libclang => None,
+            Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::Libclang => None,
         }
     }
 
@@ -254,8 +266,13 @@ fn emulator(facts: &Facts) -> Need {
 }
 
 fn native(facts: &Facts) -> Need {
-    let Native { cmake, libclang } = facts.native;
-    let missing = [(cmake, Package::Cmake), (libclang, Package::Libclang)];
+    let Native { cmake, make, cxx, libclang } = facts.native;
+    let missing = [
+        (cmake, Package::Cmake),
+        (make, Package::Make),
+        (cxx, Package::Cxx),
+        (libclang, Package::Libclang),
+    ];
     let packages: Vec<_> =
         missing.into_iter().filter(|(there, _)| !there).map(|(_, package)| package).collect();
     match packages.is_empty() {
@@ -354,14 +371,20 @@ impl fmt::Display for Request {
                 )
             }
             Self::Native(native) => {
-                let tools = [(native.cmake, "cmake"), (native.libclang, "libclang")];
+                let tools = [
+                    (native.cmake, "cmake"),
+                    (native.make, "make"),
+                    (native.cxx, "a C++ compiler"),
+                    (native.libclang, "libclang"),
+                ];
                 let missing: Vec<_> =
                     tools.iter().filter(|(there, _)| !there).map(|(_, name)| *name).collect();
                 write!(
                     f,
                     "install {}, with which the virtual board's processor is built: apt install \
-                     cmake libclang-dev (Debian, Ubuntu), dnf install cmake clang-devel (Fedora), \
-                     pacman -S cmake clang (Arch), brew install cmake llvm (macOS)",
+                     cmake make g++ libclang-dev (Debian, Ubuntu), dnf install cmake make gcc-c++ \
+                     clang-devel (Fedora), pacman -S cmake make gcc clang (Arch), brew install cmake \
+                     llvm (macOS)",
                     missing.join(" and ")
                 )
             }
