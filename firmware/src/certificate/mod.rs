@@ -28,6 +28,7 @@
 //! ```
 
 mod assumption;
+mod between;
 mod digits;
 mod model;
 mod parameter;
@@ -45,7 +46,7 @@ pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
-pub use remedy::{Relation, Remedies, Remedy};
+pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
 pub use rules::{Answer, Assessment, Rule, assess, assess_in, gamma};
 pub use timed::{Timed, TimingError};

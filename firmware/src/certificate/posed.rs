@@ -187,6 +187,32 @@ impl Posed {
         })
     }
 
+    /// About the passivity that this law asks of a device, scaled to the worst period; `None` where
+    /// it passes on none.
+    ///
+    /// By the exact rule that is the index of the whole controller, a sample late: `C` behind the
+    /// standard coupling is `delta + Re(T C / (z - 1)) > 0`. A one-sided or limited scene passes on
+    /// what its coupling stands for, if its own bound is less.
+    pub(super) const fn needed_passivity(&self) -> Option<f64> {
+        match self.rule {
+            Rule::Exact => match cancelled(self.environment).behind(self.numbers.compliance) {
+                Ok(mut late) => {
+                    late.shift -= 1;
+                    let closeness = Closeness::within(ROUGHLY);
+                    match index_looked_at(late, self.numbers.period, false, &closeness) {
+                        Ok(found) => Some(found.minimum.midpoint()),
+                        Err(_) => None,
+                    }
+                }
+                Err(_) => None,
+            },
+            Rule::Nonlinear => match (self.bound, self.numbers.coupling_damping()) {
+                (Some(bound), Some(coupling)) if bound.is_below(coupling) => Some(coupling.hi()),
+                _ => None,
+            },
+        }
+    }
+
     /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
     /// the environment itself. Where the compliance was rounded, the coupling is a little softer,
     /// and [`exact_limit`] is what the paper's rule asks for then (theory, section 6).
