@@ -17,6 +17,7 @@ mod live;
 mod random;
 mod reference;
 mod remedies;
+mod simulated;
 mod soundness;
 mod vectors;
 mod virtual_board;
