@@ -77,31 +77,89 @@ impl fmt::Display for Remedy {
 
 const CANDIDATES: usize = 6;
 
+/// The numbers that are looked at, in the order in which they are printed. What more of a device
+/// would help is the damping where its passivity is not declared.
+const ORDER: [Parameter; CANDIDATES] = [
+    Parameter::Stiffness,
+    Parameter::Damping,
+    Parameter::Residual,
+    Parameter::CouplingStiffness,
+    Parameter::Period,
+    Parameter::Passivity,
+];
+
+/// The values of one number, infinite where a [`Remedy`] has no end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    lowest: f64,
+    highest: f64,
+}
+
+impl Range {
+    const EMPTY: Self = Self { lowest: f64::INFINITY, highest: f64::NEG_INFINITY };
+}
+
 /// The remedies of a rejection, at most one a parameter.
+// As small as it gets: a rejection is handed up through the deepest stack of a small board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedies {
-    found: [Option<Remedy>; CANDIDATES],
+    ranges: [Range; CANDIDATES],
+    is_damping: bool,
 }
 
 impl Remedies {
     /// No remedy.
-    pub const NONE: Self = Self { found: [None; CANDIDATES] };
+    pub const NONE: Self = Self { ranges: [Range::EMPTY; CANDIDATES], is_damping: false };
 
     #[cfg(test)]
     pub(super) fn of(found: [Remedy; CANDIDATES]) -> Self {
-        Self { found: found.map(Some) }
+        let mut all = Self::NONE;
+        (0..CANDIDATES).for_each(|i| all.put(i, Some(found[i])));
+        all
     }
 
     /// The remedies in order.
-    pub fn iter(&self) -> impl Iterator<Item = &Remedy> {
-        self.found.iter().flatten()
+    pub fn iter(&self) -> impl Iterator<Item = Remedy> {
+        (0..CANDIDATES).filter_map(|i| self.get(i))
+    }
+
+    const fn get(&self, i: usize) -> Option<Remedy> {
+        let Range { lowest, highest } = self.ranges[i];
+        if lowest > highest {
+            return None;
+        }
+        Some(Remedy {
+            parameter: match ORDER[i] {
+                Parameter::Passivity if self.is_damping => Parameter::DeviceDamping,
+                parameter => parameter,
+            },
+            lowest: if lowest.is_finite() { Some(lowest) } else { None },
+            highest: if highest.is_finite() { Some(highest) } else { None },
+        })
+    }
+
+    const fn put(&mut self, i: usize, found: Option<Remedy>) {
+        let Some(Remedy { parameter, lowest, highest }) = found else { return };
+        self.ranges[i] = Range {
+            lowest: match lowest {
+                Some(lowest) => lowest,
+                None => f64::NEG_INFINITY,
+            },
+            highest: match highest {
+                Some(highest) => highest,
+                None => f64::INFINITY,
+            },
+        };
+        if matches!(parameter, Parameter::DeviceDamping) {
+            self.is_damping = true;
+        }
     }
 
     pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
         let mut written = 0;
         let mut i = 0;
         while i < CANDIDATES {
-            if let Some(remedy) = &self.found[i] {
+            if let Some(remedy) = self.get(i) {
                 t.push(if written == 0 { "; it would pass with " } else { ", or " });
                 remedy.write(t);
                 written += 1;
@@ -128,24 +186,17 @@ pub(super) const fn with_remedies(
 }
 
 const fn search(scene: &Scene, format: Format) -> Remedies {
-    const ORDER: [Parameter; CANDIDATES] = [
-        Parameter::Stiffness,
-        Parameter::Damping,
-        Parameter::Residual,
-        Parameter::CouplingStiffness,
-        Parameter::Period,
-        Parameter::Passivity,
-    ];
     let own = shortage(scene, format);
     let mut found = Remedies::NONE;
     let mut i = 0;
     while i < CANDIDATES {
         let varied = Varied { scene, format, parameter: ORDER[i] };
-        found.found[i] = match ORDER[i] {
+        let remedy = match ORDER[i] {
             Parameter::CouplingStiffness => standard_coupling(&varied),
             Parameter::Passivity => more_damping(scene, format),
             _ => varied.remedy(own),
         };
+        found.put(i, remedy);
         i += 1;
     }
     found
