@@ -190,7 +190,10 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
         message,
-        remedies: remedies.iter().flat_map(|found| found.iter()).map(ToString::to_string).collect(),
+        remedies: remedies
+            .iter()
+            .flat_map(|found| found.iter().map(|remedy| remedy.to_string()))
+            .collect(),
     }
 }
 

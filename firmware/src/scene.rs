@@ -30,10 +30,10 @@ pub struct Scene<E = Environment> {
 pub struct Device {
     /// Inertia `m` in kg m^2; used by simulation only, the certificate does not depend on it.
     pub inertia: f64,
-    /// Viscous damping `b` in N m s/rad; what a free-mode canceller takes away.
+    /// Viscous damping `b` to the ground in N m s/rad, all of it; what a free-mode canceller takes away.
     pub damping: f64,
     /// Output strict passivity `delta` in N m s/rad where it is not the damping: measured, or
-    /// computed for a device with internal modes.
+    /// computed for a device with internal modes. At most the damping.
     pub passivity: Option<f64>,
 }
 

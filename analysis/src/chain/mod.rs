@@ -145,11 +145,12 @@ impl Chain {
     }
 
     /// The rigid body that stands for the chain in a certificate: all inertia, all damping to the
-    /// ground, and the lower end of the chain's passivity where that is not the damping.
+    /// ground, and the lower end of the chain's passivity where that is not the damping. It never
+    /// exceeds the damping, of which the sum is rounded and may be below it by a last bit.
     pub fn as_rigid(&self) -> Result<Device, NoPassivity> {
         let passivity = match self.is_rigid() {
             true => None,
-            false => Some(self.excess_passivity()?.delta.lo()),
+            false => Some(self.excess_passivity()?.delta.lo().min(self.damping())),
         };
         Ok(Device { inertia: self.inertia(), damping: self.damping(), passivity })
     }

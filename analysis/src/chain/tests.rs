@@ -169,6 +169,19 @@ fn what_is_grounded_nowhere_else_leaves_the_damping_of_the_motor() {
     assert!(found.delta.contains(0.5) && found.delta.hi() < 0.5 + 1e-12, "{found:?}");
 }
 
+/// The passivity of a chain whose links hardly give way is its damping but for the last bits, and
+/// the sum of the dampers is rounded either way.
+#[test]
+fn the_rigid_stand_in_has_no_more_passivity_than_damping() {
+    for part in 1..100 {
+        let b = [0.001 * f64::from(part), 0.01 * f64::from(part).sqrt(), 0.1, 0.3];
+        let device = chain(&b.map(|b| (0.05, b)), &[(3.0, 1e30); 3]);
+        let rigid = device.as_rigid().unwrap();
+        assert!(rigid.passivity.unwrap() <= rigid.damping, "{rigid:?}");
+        assert!(rigid.passivity.unwrap() > (1.0 - 1e-12) * rigid.damping, "{rigid:?}");
+    }
+}
+
 #[test]
 fn without_a_damper_behind_it_the_motor_is_alone() {
     let device = chain(&[(0.05, 0.5), (0.02, 0.0), (0.01, 0.0)], &[(300.0, 0.0), (500.0, 0.0)]);

@@ -116,7 +116,7 @@ pub enum EmulatorError {
     #[error(
         "the emulated board has no program to measure this scene: it has one for a spring and a \
          damper wall at zero and a one-sided damper wall anywhere, each one sample late, and for \
-         free mode at once"
+         free mode one sample late"
     )]
     NoTrial,
     /// The log does not say what a report needs.

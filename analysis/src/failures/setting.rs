@@ -87,11 +87,14 @@ impl Trial {
         self
     }
 
-    /// The same told that the device is so many times as passive as it is, which is how a board can
-    /// be made to run what it would refuse.
+    /// The same told that the device has so many times the damping and passivity that it has, which
+    /// is how a board can be made to run what it would refuse. The device that moves is the true one,
+    /// and so is the torque: no law here but a canceller's, of which there is none, has the device's
+    /// damping in it.
     pub fn believing(mut self, times: f64) -> Self {
         let device = self.experiment.scene.device;
-        self.claimed = Some(times * device.passivity.unwrap_or(device.damping));
+        let passivity = device.passivity.map(|passivity| times * passivity);
+        self.claimed = Some(Device { damping: times * device.damping, passivity, ..device });
         self
     }
 }

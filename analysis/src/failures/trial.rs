@@ -48,9 +48,9 @@ pub struct Trial {
     pub transducers: Transducers,
     /// What the board computes in.
     pub arithmetic: Arithmetic,
-    /// Passivity in N m s/rad that the board is told the device had: more than it has, since no
-    /// board can be made to run what is refused in any other way.
-    pub claimed: Option<f64>,
+    /// The device that the board is told of, in place of the scene's: one with more damping and
+    /// passivity than it has, since no board can be made to run what is refused in any other way.
+    pub claimed: Option<Device>,
     /// What will become of it.
     pub expected: End,
 }
@@ -59,7 +59,7 @@ pub struct Trial {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Played {
-    /// It does not run it, whatever passivity is claimed.
+    /// It does not run it, whatever device is claimed.
     Refused,
     /// It ran it, all its codes being those of the same servo on the host.
     Ran(Fate),
@@ -126,8 +126,7 @@ impl Trial {
     /// The scene as the board is told it.
     pub fn told(&self) -> Scene {
         let scene = self.experiment.scene;
-        let passivity = self.claimed.or(scene.device.passivity);
-        Scene { device: Device { passivity, ..scene.device }, ..scene }
+        Scene { device: self.claimed.unwrap_or(scene.device), ..scene }
     }
 
     fn certified(&self) -> Result<Certified<Scene>, TrialError> {

@@ -162,7 +162,8 @@ fn placed(
 }
 
 /// The `passivity` of the rigid body that stands for the chain: the lower end of what the chain
-/// has, unless something smaller has been measured. A rigid body's is its damping.
+/// has, unless something smaller has been measured. A rigid body's is its damping. Either is at most
+/// the damping, whose sum over a chain is rounded.
 fn passivity(
     section: &Section<'_>,
     chain: &Chain,
@@ -171,6 +172,17 @@ fn passivity(
     declared: Option<Found<f64>>,
     is_rigid: bool,
 ) -> Result<Option<f64>, Fault> {
+    if let Some(Found { value, span }) = &declared
+        && is_rigid
+        && *value > chain.damping()
+    {
+        let (name, damping, unit) =
+            (key::DEVICE_DAMPING.path, chain.damping(), key::DEVICE_DAMPING.unit);
+        let reason = format!(
+            "is more than `{name}` = {damping} {unit}, and no device has more passivity than damping"
+        );
+        return Err(section.conflict(&key::PASSIVITY, span.clone(), reason));
+    }
     let found = match chain.excess_passivity() {
         Ok(found) => found.delta,
         Err(_) if purpose == Purpose::Simulate => return Ok(Some(f64::NAN)),
@@ -178,12 +190,12 @@ fn passivity(
     };
     match declared {
         None if is_rigid => Ok(None),
-        None => Ok(Some(found.lo())),
+        None => Ok(Some(found.lo().min(chain.damping()))),
         Some(Found { value, span }) if !is_rigid && value > found.hi() => {
             let reason = format!("is more than the {} N m s/rad that the chain has", found.hi());
             Err(section.conflict(&key::PASSIVITY, span, reason))
         }
-        Some(Found { value, .. }) => Ok(Some(value)),
+        Some(Found { value, .. }) => Ok(Some(value.min(chain.damping()))),
     }
 }
 

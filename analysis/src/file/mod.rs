@@ -8,7 +8,7 @@
 //! [device]
 //! inertia = 2.2e-5              # kg m^2, for simulation
 //! damping = 0.022               # N m s/rad
-//! # passivity = 0.021           # optional: delta, where it is not the damping
+//! # passivity = 0.021           # optional: delta, where it is less than the damping
 //! # friction = 0.003            # optional: N m, dry friction at the motor
 //! [servo]
 //! period = 0.001                # s

@@ -62,7 +62,7 @@ impl Facts {
 fn certificate(model: Model, file: &SceneFile) -> Option<Report> {
     let mut device = model.chain(file).as_rigid().ok()?;
     if let Some(declared) = declared(file) {
-        device.passivity = Some(device.passivity.map_or(declared, |own| own.min(declared)));
+        device.passivity = Some(device.passivity.unwrap_or(device.damping).min(declared));
     }
     Some(verdict::judge(&file.name, &Scene { device, ..file.scene }))
 }

@@ -18,8 +18,9 @@ use crate::response::Response;
 /// a number is out of range.
 pub fn transfers(scene: &Scene) -> Result<Loop, Unbuildable> {
     /// So large that the standard coupling, which the equivalent environment stands behind, is as
-    /// good as rigid: whatever has a controller then has an equivalent.
-    const ANY: f64 = 1e200;
+    /// good as rigid: whatever has a controller then has an equivalent. Below 0, since no device
+    /// has more passivity than damping.
+    const ANY: f64 = -1e200;
     let mut scene = *scene;
     scene.device.passivity = Some(ANY);
     Loop::of(&scene)

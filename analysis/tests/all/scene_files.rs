@@ -1,7 +1,7 @@
 //! Scene files: what is read, what is refused and with which words, and that nothing panics.
 
 use crate::common::WALL;
-use analysis::file::{self, FileError, Format, SceneFile};
+use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Coupling;
 use proptest::prelude::*;
@@ -112,6 +112,29 @@ fn a_bad_number_is_named_with_its_line_value_and_bound() {
         "7:16",
         &["shorter", "0.001"],
     );
+    refused(
+        "damping = 0.022",
+        "damping = 0.022\npassivity = 0.22",
+        "5:13",
+        &["`device.passivity` = 0.22", "more than `device.damping` = 0.022 N m s/rad"],
+    );
+}
+
+/// Not even with a lagging motor, of which a file that is only looked at has no passivity.
+#[test]
+fn no_device_has_more_passivity_than_damping() {
+    for purpose in [Purpose::Certify, Purpose::Simulate] {
+        for (lag, passivity, is_read) in [
+            ("", "0.022", true),
+            ("", "0.02200000000000001", false),
+            ("actuator_lag = 1e-4\n", "0.23", false),
+        ] {
+            let device = format!("damping = 0.022\n{lag}passivity = {passivity}");
+            let text = WALL.replacen("damping = 0.022", &device, 1);
+            let read = parse_for(purpose, "scene.toml", Format::Toml, &text);
+            assert_eq!(read.is_ok(), is_read, "{device}: {read:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,11 +1,30 @@
-//! Numbers of three significant digits: what a remedy says.
+//! Numbers of few significant digits: what a remedy says.
 
-use super::remedy::Relation;
+/// How far off a digit a number may be, as a part of it, to count as having no more: what scaling it
+/// by tens rounds.
+const ROUNDED: f64 = 1e-12;
+/// The largest power of ten that is a double: a whole number times it, or over it, is rounded once.
+const LARGEST_POWER: f64 = 1e22;
 
-/// How far off a digit a number may be to count as having no more: what scaling it by tens rounds.
-const ROUNDED: f64 = 1e-9;
+/// On which side of a value a scene passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// It passes with less.
+    Below,
+    /// It passes with more.
+    Above,
+}
 
-/// A positive number of three digits.
+impl Side {
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Below => Self::Above,
+            Self::Above => Self::Below,
+        }
+    }
+}
+
+/// A positive number of a few digits: three, unless it was asked for more.
 #[derive(Clone, Copy)]
 pub(super) struct Digits {
     whole: u64,
@@ -14,22 +33,31 @@ pub(super) struct Digits {
 }
 
 impl Digits {
-    /// Those of a value, rounded away from the values that fail; of what is not positive or not
-    /// finite, those of the nearest number that is.
-    pub const fn of(value: f64, relation: Relation) -> Self {
+    /// The most that [`Text`](crate::text::Text) writes so that they read back as the same number.
+    pub const MOST: u32 = 9;
+
+    /// Three of a value, rounded to the side that passes; of what is not positive or not finite,
+    /// those of the nearest number that is.
+    pub const fn of(value: f64, side: Side) -> Self {
+        Self::so_many(3, value, side)
+    }
+
+    /// So many of a value, rounded likewise.
+    pub const fn so_many(count: u32, value: f64, side: Side) -> Self {
+        let end = 10_u64.pow(count) as f64;
         let (mut power, mut scaled) = (1.0, value.max(f64::MIN_POSITIVE).min(f64::MAX));
-        while scaled < 100.0 {
+        while scaled < end / 10.0 {
             scaled *= 10.0;
             power *= 10.0;
         }
         let mut divisor = 1.0;
-        while scaled >= 1000.0 {
+        while scaled >= end {
             scaled /= 10.0;
             divisor *= 10.0;
         }
-        let whole = match relation {
-            Relation::AtMost => (scaled + ROUNDED) as u64,
-            _ => (scaled - ROUNDED) as u64 + 1,
+        let whole = match side {
+            Side::Below => (scaled + scaled * ROUNDED) as u64,
+            Side::Above => (scaled - scaled * ROUNDED) as u64 + 1,
         };
         Self { whole, power, divisor }
     }
@@ -39,19 +67,22 @@ impl Digits {
         self.whole as f64 / self.power * self.divisor
     }
 
+    /// Whether the number is the double nearest to the digits, so that a text of them is read as
+    /// it: true of all but the largest and smallest.
+    pub const fn are_read_back(self) -> bool {
+        self.power <= LARGEST_POWER && self.divisor <= LARGEST_POWER
+    }
+
     /// The next one on the side of the values that fail.
-    pub const fn nearer(self, relation: Relation) -> Self {
-        self.further(match relation {
-            Relation::AtMost => Relation::AtLeast,
-            _ => Relation::AtMost,
-        })
+    pub const fn nearer(self, side: Side) -> Self {
+        self.further(side.other())
     }
 
     /// The next one on the other side.
-    pub const fn further(self, relation: Relation) -> Self {
-        let whole = match relation {
-            Relation::AtMost => self.whole - 1,
-            _ => self.whole + 1,
+    pub const fn further(self, side: Side) -> Self {
+        let whole = match side {
+            Side::Below => self.whole - 1,
+            Side::Above => self.whole + 1,
         };
         Self { whole, ..self }
     }
@@ -60,14 +91,19 @@ impl Digits {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::Text;
+
+    const BOTH: [Side; 2] = [Side::Below, Side::Above];
 
     #[test]
-    fn three_digits_are_rounded_away_from_what_fails() {
-        let both = [Relation::AtMost, Relation::AtLeast];
-        assert_eq!(both.map(|relation| Digits::of(23.96, relation).value()), [23.9, 24.0]);
-        assert_eq!(both.map(|relation| Digits::of(2e5, relation).value()), [2e5, 2e5]);
-        assert_eq!(Digits::of(23.9, Relation::AtMost).further(Relation::AtMost).value(), 23.8);
-        assert_eq!(Digits::of(23.9, Relation::AtMost).nearer(Relation::AtMost).value(), 24.0);
+    fn digits_are_rounded_away_from_what_fails() {
+        assert_eq!(BOTH.map(|side| Digits::of(23.96, side).value()), [23.9, 24.0]);
+        assert_eq!(BOTH.map(|side| Digits::of(2e5, side).value()), [2e5, 2e5]);
+        assert_eq!(Digits::of(23.9, Side::Below).further(Side::Below).value(), 23.8);
+        assert_eq!(Digits::of(23.9, Side::Below).nearer(Side::Below).value(), 24.0);
+        let more = |count| Digits::so_many(count, 0.123_456_789_7, Side::Below).value();
+        assert_eq!([4, 6, 9].map(more), [0.1234, 0.123456, 0.123456789]);
+        assert_eq!(Digits::so_many(9, 44.0, Side::Below).value(), 44.0);
     }
 
     /// What has no digits is not searched for them without end.
@@ -75,10 +111,29 @@ mod tests {
     fn every_double_has_some() {
         let extremes = [0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, 5e-324];
         for value in extremes {
-            for relation in [Relation::AtMost, Relation::AtLeast] {
-                let whole = Digits::of(value, relation).whole;
+            for side in BOTH {
+                let whole = Digits::of(value, side).whole;
                 assert!((99..=1000).contains(&whole), "{value}: {whole}");
             }
         }
+    }
+
+    #[test]
+    fn digits_are_read_as_the_number_that_they_are() {
+        let mut seen = 0;
+        for step in 0..40_000 {
+            let value = 10.0_f64.powf(-30.0 + 0.0015 * f64::from(step));
+            for count in [3, 5, Digits::MOST] {
+                for side in BOTH {
+                    let digits = Digits::so_many(count, value, side);
+                    let mut text = Text::<24>::new();
+                    text.push_number(digits.value());
+                    let is_same = text.as_str().parse() == Ok(digits.value());
+                    assert!(is_same || !digits.are_read_back(), "{} {value}", text.as_str());
+                    seen += u32::from(digits.are_read_back());
+                }
+            }
+        }
+        assert!(seen > 100_000, "{seen}");
     }
 }

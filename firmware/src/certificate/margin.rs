@@ -7,10 +7,8 @@
 use super::model::{Missed, Numbers, largest_gain};
 use super::posed::Posed;
 use super::rules::{Answer, Assessment, Rule, paper_limit};
-use crate::passivity::discrete::index;
+use crate::passivity::bernstein::Closeness;
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::cancelled;
-use crate::passivity::transfer::Transfer;
 use crate::scene::{Device, Scene};
 
 impl Assessment {
@@ -40,19 +38,14 @@ impl Assessment {
         }
     }
 
-    /// Of a linear scene: `delta` less the index at the port, which is that of the whole controller
-    /// one sample later (theory-lag, equation (1) for an ideal hold).
+    /// Of a linear scene: `delta` less the index at the port.
     const fn linear(&self, scene: &Scene) -> Option<f64> {
         let n = Numbers::of(scene, self.format);
         if n.missed.is_some() {
             return searched(scene, self);
         }
         let Ok(posed) = Posed::with(scene, n) else { return None };
-        let Ok(controller) = cancelled(posed.environment).behind(n.compliance) else {
-            return None;
-        };
-        let later = Transfer { shift: controller.shift - 1, ..controller };
-        match index(later, n.period, false) {
+        match posed.at_port(&Closeness::TIGHT) {
             Ok(found) => Some(n.delta.sub(found.minimum).lo()),
             Err(_) => None,
         }

@@ -28,6 +28,7 @@
 //! ```
 
 mod assumption;
+mod between;
 mod digits;
 mod margin;
 mod model;
@@ -46,7 +47,7 @@ pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
-pub use remedy::{Relation, Remedies, Remedy};
+pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
 pub use rules::{Answer, Assessment, Rule, assess, assess_in, gamma};
 pub use timed::{Timed, TimingError};

@@ -200,8 +200,9 @@ const fn wall(w: &Wall, n: &Numbers) -> Transfer {
     let Washout { gain: b, pole: a } = damper(w, n);
     let denominator = Polynomial::ascending(&[a.neg().mul(n.period), n.period]);
     let shift = -(w.delay as i32);
-    if w.stiffness == 0.0 {
-        // A pure damper keeps its exact zero at z = 1.
+    if k.is_zero() {
+        // A pure damper keeps its exact zero at z = 1, and so does one whose stiffness is rounded to
+        // nothing.
         let numerator = Polynomial::ascending(&[b]);
         return Transfer { shift, ones: 1, ..Transfer::new(numerator, denominator) };
     }

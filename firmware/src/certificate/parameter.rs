@@ -75,6 +75,8 @@ pub struct InvalidParameter {
     pub value: f64,
     /// What it has to be.
     pub bound: &'static str,
+    /// The number of the scene that `bound` ends in, in the same unit; `None` where it says all.
+    pub limit: Option<f64>,
 }
 
 impl InvalidParameter {
@@ -91,12 +93,21 @@ impl InvalidParameter {
         }
         text.push(", and must be ");
         text.push(self.bound);
+        if let Some(limit) = self.limit {
+            text.push(" ");
+            text.push_number(limit);
+            text.push(" ");
+            text.push(unit);
+        }
     }
 }
 
 const POSITIVE: &str = "finite and greater than 0";
 const NOT_NEGATIVE: &str = "finite and not below 0";
 const FINITE: &str = "finite";
+/// In a free hand, the slower the device moves, the nearer `Re(1/J)` comes to its damping.
+const NO_MORE_THAN_DAMPING: &str =
+    "finite and at most the device damping, which no device's passivity exceeds:";
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
@@ -106,6 +117,7 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     check.not_negative(Parameter::DeviceDamping, device.damping);
     if let Some(passivity) = device.passivity {
         check.finite(Parameter::Passivity, passivity);
+        check.at_most(Parameter::Passivity, passivity, device.damping, NO_MORE_THAN_DAMPING);
     }
     check.positive(Parameter::Period, scene.timing.period);
     if let Some(worst) = scene.timing.worst_period {
@@ -129,7 +141,14 @@ struct Check {
 impl Check {
     const fn that(&mut self, fits: bool, parameter: Parameter, value: f64, bound: &'static str) {
         if !fits && self.found.is_none() {
-            self.found = Some(InvalidParameter { parameter, value, bound });
+            self.found = Some(InvalidParameter { parameter, value, bound, limit: None });
+        }
+    }
+
+    /// `bound` ends in the limit.
+    const fn at_most(&mut self, parameter: Parameter, value: f64, limit: f64, bound: &'static str) {
+        if value > limit && self.found.is_none() {
+            self.found = Some(InvalidParameter { parameter, value, bound, limit: Some(limit) });
         }
     }
 
@@ -188,5 +207,53 @@ impl Check {
             self.finite(parameter, values[i]);
             i += 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::{Rejection, certify};
+    use crate::environment::Environment;
+    use crate::scene::{Device, Timing};
+
+    fn with_passivity(passivity: f64) -> Result<(), Rejection> {
+        let wall = Wall {
+            stiffness: 21.0,
+            damping: 0.0,
+            delay: 1,
+            filter: None,
+            face: 0.0,
+            one_sided: false,
+        };
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(passivity) },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment: Environment::DelayedSpring(wall),
+            torque_limit: None,
+        };
+        certify(&scene).map(|_| ())
+    }
+
+    #[test]
+    fn no_device_has_more_passivity_than_damping() {
+        assert_eq!(with_passivity(0.022), Ok(()));
+        for passivity in [0.022_f64.next_up(), 0.22, f64::MAX] {
+            let refused = with_passivity(passivity).unwrap_err();
+            assert!(matches!(refused, Rejection::Invalid(_)), "{refused:?}");
+        }
+        assert_eq!(
+            with_passivity(0.22).unwrap_err().sentence().as_str(),
+            "rejected: the device passivity is 0.22 N m s/rad, and must be finite and at most the \
+             device damping, which no device's passivity exceeds: 0.022 N m s/rad"
+        );
+        // What is no passivity at all keeps the reason that it had.
+        for passivity in [0.0, -1.0] {
+            let refused = with_passivity(passivity).unwrap_err();
+            assert!(matches!(refused, Rejection::NoPassivity { .. }), "{refused:?}");
+        }
+        let infinite = with_passivity(f64::INFINITY).unwrap_err().sentence();
+        assert!(infinite.as_str().ends_with("must be finite"), "{}", infinite.as_str());
     }
 }

@@ -193,6 +193,37 @@ impl Posed {
         })
     }
 
+    /// About the passivity that this law asks of a device, scaled to the worst period; `None` where
+    /// it passes on none.
+    ///
+    /// By the exact rule that is [`Posed::at_port`]. A one-sided or limited scene passes on
+    /// what its coupling stands for, if its own bound is less.
+    pub(super) const fn needed_passivity(&self) -> Option<f64> {
+        match self.rule {
+            Rule::Exact => match self.at_port(&Closeness::within(ROUGHLY)) {
+                Ok(found) => Some(found.minimum.midpoint()),
+                Err(_) => None,
+            },
+            Rule::Nonlinear => match (self.bound, self.numbers.coupling_damping()) {
+                (Some(bound), Some(coupling)) if bound.is_below(coupling) => Some(coupling.hi()),
+                _ => None,
+            },
+        }
+    }
+
+    /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
+    /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (theory-lag,
+    /// equation (1), for an ideal hold).
+    pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+        match cancelled(self.environment).behind(self.numbers.compliance) {
+            Ok(mut late) => {
+                late.shift -= 1;
+                index_looked_at(late, self.numbers.period, false, closeness)
+            }
+            Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        }
+    }
+
     /// Whether the coupling is the standard one to the digits that were written, so that `E'` is
     /// the environment itself. Where the compliance was rounded, the coupling is a little softer,
     /// and [`exact_limit`] is what the paper's rule asks for then (theory, section 6).

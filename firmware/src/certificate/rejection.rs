@@ -274,3 +274,48 @@ impl fmt::Display for Rejection {
 }
 
 impl core::error::Error for Rejection {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::{Parameter, Remedy};
+
+    /// What does not fit is cut off, which no sentence may be.
+    #[test]
+    fn the_longest_sentence_fits() {
+        const LONG: f64 = -1.797_693_134e-300;
+        /// Remedies have numbers of nine digits at most, and of three if there are two of them.
+        const RANGE: (Option<f64>, Option<f64>) = (Some(1.23e-22), Some(1.24e-22));
+        let exactly = (Some(1.234_567_89e-15), Some(1.234_567_89e-15));
+        let least = (Some(1.23e-22), None);
+        let all = [
+            (Parameter::Stiffness, RANGE),
+            (Parameter::Damping, RANGE),
+            (Parameter::Residual, RANGE),
+            (Parameter::CouplingStiffness, exactly),
+            (Parameter::Period, RANGE),
+            (Parameter::Passivity, least),
+        ];
+        let all = all.map(|(parameter, (lowest, highest))| Remedy { parameter, lowest, highest });
+        let remedies = Remedies::of(all);
+        let long = Interval::exact(LONG);
+        let coupling = Rejection::Coupling {
+            alpha: Some(long),
+            alpha_coupled: Some(long),
+            delta: long,
+            stiffness: Some(long),
+            standard: long,
+            remedies,
+        };
+        let shortage = Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
+        let doubt = Doubt::ResidueSign;
+        let (index, limit) = (Some(long), Some(long));
+        let undecided = Rejection::Undecided { doubt, index, limit, remedies };
+        for rejection in [coupling, shortage, undecided] {
+            let sentence = rejection.sentence_in(Format::Fixed { fraction_bits: 16 });
+            let sentence = sentence.as_str();
+            assert!(sentence.len() < Sentence::CAPACITY, "{}: {sentence}", sentence.len());
+            assert!(sentence.ends_with("device passivity >= 1.23e-22 N m s/rad"), "{sentence}");
+        }
+    }
+}

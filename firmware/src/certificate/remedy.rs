@@ -2,47 +2,66 @@
 
 use core::fmt;
 
+use super::between::passes_upwards;
+use super::digits::{Digits, Side};
 use super::model::Numbers;
 use super::parameter::Parameter;
 use super::posed::Posed;
 use super::rejection::Rejection;
-use super::varied::Varied;
+use super::varied::{FARTHEST, Varied};
+use crate::environment::Environment;
 use crate::number::Format;
 use crate::scene::Scene;
 use crate::text::Text;
 
-/// On which side of its value a remedy holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Relation {
-    /// `<=`
-    AtMost,
-    /// `>=`
-    AtLeast,
-    /// `=`
-    Exactly,
-}
-
-/// One number that, changed to `value`, makes the scene pass.
+/// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
+///
+/// The ends are certified as they are written, and what is between them is proved to pass with
+/// them. Where it is not, both are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedy {
     /// Which number.
     pub parameter: Parameter,
-    /// On which side of the value.
-    pub relation: Relation,
-    /// Three significant digits (all of them for [`Relation::Exactly`]), certified with this value.
-    pub value: f64,
+    /// The least value. `None`: the scene passes down to 0, for a period with all that are longer
+    /// than 0.
+    pub lowest: Option<f64>,
+    /// The greatest value. `None`: the scene passes with whatever is more, up to the device's
+    /// damping where that bounds it: no device has more passivity, and a residual above it is
+    /// damping added.
+    pub highest: Option<f64>,
 }
 
 impl Remedy {
+    const fn exactly(parameter: Parameter, value: f64) -> Self {
+        Self { parameter, lowest: Some(value), highest: Some(value) }
+    }
+
+    const fn at_least(parameter: Parameter, value: f64) -> Self {
+        Self { parameter, lowest: Some(value), highest: None }
+    }
+
     const fn write<const N: usize>(&self, t: &mut Text<N>) {
         let (name, unit) = self.parameter.name_and_unit();
+        let is_one_value = matches!((self.lowest, self.highest), (Some(a), Some(b)) if a == b);
+        match self.lowest {
+            Some(lowest) if self.highest.is_some() && !is_one_value => {
+                t.push_number(lowest);
+                t.push(" <= ");
+            }
+            _ => {}
+        }
         t.push(name);
-        t.push(match self.relation {
-            Relation::AtMost => " <= ",
-            Relation::AtLeast => " >= ",
-            Relation::Exactly => " = ",
-        });
-        t.push_number(self.value);
+        match (self.lowest, self.highest) {
+            (_, Some(highest)) => {
+                t.push(if is_one_value { " = " } else { " <= " });
+                t.push_number(highest);
+            }
+            (Some(lowest), None) => {
+                t.push(" >= ");
+                t.push_number(lowest);
+            }
+            (None, None) => {}
+        }
         t.push(" ");
         t.push(unit);
     }
@@ -58,26 +77,89 @@ impl fmt::Display for Remedy {
 
 const CANDIDATES: usize = 6;
 
+/// The numbers that are looked at, in the order in which they are printed. What more of a device
+/// would help is the damping where its passivity is not declared.
+const ORDER: [Parameter; CANDIDATES] = [
+    Parameter::Stiffness,
+    Parameter::Damping,
+    Parameter::Residual,
+    Parameter::CouplingStiffness,
+    Parameter::Period,
+    Parameter::Passivity,
+];
+
+/// The values of one number, infinite where a [`Remedy`] has no end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Range {
+    lowest: f64,
+    highest: f64,
+}
+
+impl Range {
+    const EMPTY: Self = Self { lowest: f64::INFINITY, highest: f64::NEG_INFINITY };
+}
+
 /// The remedies of a rejection, at most one a parameter.
+// As small as it gets: a rejection is handed up through the deepest stack of a small board.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedies {
-    found: [Option<Remedy>; CANDIDATES],
+    ranges: [Range; CANDIDATES],
+    is_damping: bool,
 }
 
 impl Remedies {
     /// No remedy.
-    pub const NONE: Self = Self { found: [None; CANDIDATES] };
+    pub const NONE: Self = Self { ranges: [Range::EMPTY; CANDIDATES], is_damping: false };
+
+    #[cfg(test)]
+    pub(super) fn of(found: [Remedy; CANDIDATES]) -> Self {
+        let mut all = Self::NONE;
+        (0..CANDIDATES).for_each(|i| all.put(i, Some(found[i])));
+        all
+    }
 
     /// The remedies in order.
-    pub fn iter(&self) -> impl Iterator<Item = &Remedy> {
-        self.found.iter().flatten()
+    pub fn iter(&self) -> impl Iterator<Item = Remedy> {
+        (0..CANDIDATES).filter_map(|i| self.get(i))
+    }
+
+    const fn get(&self, i: usize) -> Option<Remedy> {
+        let Range { lowest, highest } = self.ranges[i];
+        if lowest > highest {
+            return None;
+        }
+        Some(Remedy {
+            parameter: match ORDER[i] {
+                Parameter::Passivity if self.is_damping => Parameter::DeviceDamping,
+                parameter => parameter,
+            },
+            lowest: if lowest.is_finite() { Some(lowest) } else { None },
+            highest: if highest.is_finite() { Some(highest) } else { None },
+        })
+    }
+
+    const fn put(&mut self, i: usize, found: Option<Remedy>) {
+        let Some(Remedy { parameter, lowest, highest }) = found else { return };
+        self.ranges[i] = Range {
+            lowest: match lowest {
+                Some(lowest) => lowest,
+                None => f64::NEG_INFINITY,
+            },
+            highest: match highest {
+                Some(highest) => highest,
+                None => f64::INFINITY,
+            },
+        };
+        if matches!(parameter, Parameter::DeviceDamping) {
+            self.is_damping = true;
+        }
     }
 
     pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
         let mut written = 0;
         let mut i = 0;
         while i < CANDIDATES {
-            if let Some(remedy) = &self.found[i] {
+            if let Some(remedy) = self.get(i) {
                 t.push(if written == 0 { "; it would pass with " } else { ", or " });
                 remedy.write(t);
                 written += 1;
@@ -104,27 +186,17 @@ pub(super) const fn with_remedies(
 }
 
 const fn search(scene: &Scene, format: Format) -> Remedies {
-    const ORDER: [(Parameter, Relation); CANDIDATES] = [
-        (Parameter::Stiffness, Relation::AtMost),
-        (Parameter::Damping, Relation::AtMost),
-        (Parameter::Residual, Relation::AtLeast),
-        (Parameter::CouplingStiffness, Relation::Exactly),
-        (Parameter::Period, Relation::AtMost),
-        (Parameter::Passivity, Relation::AtLeast),
-    ];
     let own = shortage(scene, format);
     let mut found = Remedies::NONE;
     let mut i = 0;
     while i < CANDIDATES {
-        let (parameter, relation) = ORDER[i];
-        let varied = Varied { scene, format, parameter, relation };
-        let value = match relation {
-            Relation::Exactly => standard_coupling(&varied),
-            _ => varied.nearest(own),
+        let varied = Varied { scene, format, parameter: ORDER[i] };
+        let remedy = match ORDER[i] {
+            Parameter::CouplingStiffness => standard_coupling(&varied),
+            Parameter::Passivity => more_damping(scene, format),
+            _ => varied.remedy(own),
         };
-        if let Some(value) = value {
-            found.found[i] = Some(Remedy { parameter, relation, value });
-        }
+        found.put(i, remedy);
         i += 1;
     }
     found
@@ -139,12 +211,68 @@ const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
     }
 }
 
-/// The standard coupling, `2 delta / T`, if that passes and is not what the scene has.
-const fn standard_coupling(varied: &Varied) -> Option<f64> {
+/// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
+/// digits as pass, on the soft side.
+const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
     let numbers = Numbers::of(varied.scene, varied.format);
     if numbers.is_standard {
         return None;
     }
     let value = numbers.delta.double().div(numbers.period).midpoint();
-    if varied.is_certified(value) { Some(value) } else { None }
+    let mut digits = Digits::of(value, Side::Below);
+    if digits.value() != value && !varied.is_certified(value) {
+        return None;
+    }
+    let mut count = 3;
+    loop {
+        if digits.are_read_back() && varied.is_certified(digits.value()) {
+            return Some(Remedy::exactly(varied.parameter, digits.value()));
+        }
+        if count == Digits::MOST || digits.value() == value {
+            return None;
+        }
+        count += 1;
+        digits = Digits::so_many(count, value, Side::Below);
+    }
+}
+
+/// A device with more damping; where its passivity was declared, with more of that, up to the
+/// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
+const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
+    let cancels = matches!(
+        scene.environment,
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
+    );
+    let parameter = match scene.device.passivity {
+        Some(_) => Parameter::Passivity,
+        None if !cancels => Parameter::DeviceDamping,
+        None => return None,
+    };
+    let numbers = Numbers::of(scene, format);
+    let Some(needed) = needed_passivity(scene, format) else { return None };
+    // A device gives only so much of its passivity as its longest period leaves.
+    let scale = match scene.timing.worst_period {
+        Some(worst) => worst / scene.timing.period,
+        None => 1.0,
+    };
+    if needed > FARTHEST * numbers.delta.hi() {
+        return None;
+    }
+    let varied = Varied { scene, format, parameter };
+    match varied.certified(Digits::of(needed * scale, Side::Above), Side::Above) {
+        Some(value) if passes_upwards(scene, &numbers, value / scale) => {
+            Some(Remedy::at_least(parameter, value))
+        }
+        Some(value) => Some(Remedy::exactly(parameter, value)),
+        None => None,
+    }
+}
+
+/// In a frame of its own, as what it calls.
+#[inline(never)]
+const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
+    match Posed::in_format(scene, format) {
+        Ok(posed) => posed.needed_passivity(),
+        Err(_) => None,
+    }
 }

@@ -1,7 +1,6 @@
 //! The search for the zero of what a scene lacks, between a value that fails and one that passes.
 
-use super::digits::Digits;
-use super::remedy::Relation;
+use super::digits::{Digits, Side};
 
 /// Looks inside of a bracket. A secant takes two or three; halving, as where there is no index to
 /// draw one by, takes ten to the three digits that are reported.
@@ -77,7 +76,7 @@ impl Bracket {
 /// meets zero next to where it is. Where two looks have not halved the bracket, it is halved from
 /// then on.
 pub(super) struct Search {
-    relation: Relation,
+    side: Side,
     bracket: Bracket,
     last: Look,
     previous: Look,
@@ -92,12 +91,12 @@ pub(super) struct Search {
 }
 
 impl Search {
-    pub const fn new(bracket: Bracket, relation: Relation) -> Self {
+    pub const fn new(bracket: Bracket, side: Side) -> Self {
         Self {
-            relation,
+            side,
             last: bracket.passes,
             previous: bracket.fails,
-            nearest: Digits::of(bracket.passes.value, relation),
+            nearest: Digits::of(bracket.passes.value, side),
             has_digits: false,
             bisects: false,
             width: bracket.width(),
@@ -117,7 +116,7 @@ impl Search {
             return None;
         }
         let guess = self.guess();
-        let beside = guess.further(self.relation);
+        let beside = guess.further(self.side);
         let inside = if self.bracket.contains(guess.value()) {
             guess
         } else if self.bracket.contains(beside.value()) {
@@ -125,7 +124,7 @@ impl Search {
         } else if self.has_digits && self.is_near() {
             return None;
         } else {
-            self.nearest.nearer(self.relation)
+            self.nearest.nearer(self.side)
         };
         if self.bracket.contains(inside.value()) { Some(inside) } else { None }
     }
@@ -138,10 +137,10 @@ impl Search {
             self.bracket.zero_of_secant(&self.previous, &self.last)
         };
         match zero {
-            Some(zero) if self.bracket.is_behind(zero) => self.nearest.nearer(self.relation),
-            Some(zero) if self.bracket.contains(zero) => Digits::of(zero, self.relation),
-            Some(_) => Digits::of(self.bracket.fails.value, self.relation),
-            None => Digits::of(self.bracket.middle(), self.relation),
+            Some(zero) if self.bracket.is_behind(zero) => self.nearest.nearer(self.side),
+            Some(zero) if self.bracket.contains(zero) => Digits::of(zero, self.side),
+            Some(_) => Digits::of(self.bracket.fails.value, self.side),
+            None => Digits::of(self.bracket.middle(), self.side),
         }
     }
 
@@ -175,9 +174,9 @@ mod tests {
     #[test]
     fn a_search_among_the_largest_numbers_ends() {
         let look = |value, shortage| Look { value, shortage };
-        for relation in [Relation::AtMost, Relation::AtLeast] {
+        for side in [Side::Below, Side::Above] {
             let (fails, passes) = (look(f64::MAX, None), look(f64::MAX / 1.5, Some(-1.0)));
-            let mut search = Search::new(Bracket { fails, passes }, relation);
+            let mut search = Search::new(Bracket { fails, passes }, side);
             let mut looks = 0;
             while let Some(value) = search.next() {
                 assert!(search.bracket.contains(value.value()));

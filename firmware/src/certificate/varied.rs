@@ -1,15 +1,17 @@
-//! The scenes that differ in one number, and the nearest of them that passes.
+//! The scenes that differ in one number, and those of them that pass.
 
+use super::between::{Between, between};
+use super::digits::{Digits, Side};
 use super::parameter::Parameter;
 use super::posed::Posed;
-use super::remedy::Relation;
+use super::remedy::Remedy;
 use super::secant::{Bracket, Look, Search};
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::scene::{Coupling, Scene};
 
 /// The factor by which a number is moved at most in the search for a value that passes.
-const FARTHEST: f64 = 64.0;
+pub(super) const FARTHEST: f64 = 64.0;
 /// How much farther than in proportion to what a scene lacks the first step goes: what it lacks is
 /// about in proportion to its numbers, and a step past zero is worth more than one before it.
 const FIRST_STEP: f64 = 1.25;
@@ -24,27 +26,87 @@ pub(super) struct Varied<'a> {
     pub scene: &'a Scene,
     pub format: Format,
     pub parameter: Parameter,
-    /// On which side of a value the scene may pass.
-    pub relation: Relation,
 }
 
 impl Varied<'_> {
-    /// The nearest value that passes, to three digits on the side that passes, and certified.
+    /// The values that pass, from the nearest on: to three digits on the side that passes, and
+    /// certified.
     ///
     /// `own` is what the scene lacks as it is.
-    pub const fn nearest(&self, own: Option<f64>) -> Option<f64> {
-        let Some(bracket) = self.bracket(own) else { return None };
-        let mut search = Search::new(bracket, self.relation);
-        while let Some(value) = search.next() {
-            search.learn(value, self.shortage(value.value()));
-        }
-        let mut digits = search.nearest();
-        let mut i = 0;
-        while i < CANDIDATES {
+    pub const fn remedy(&self, own: Option<f64>) -> Option<Remedy> {
+        let parameter = self.parameter;
+        let side = match parameter {
+            Parameter::Residual => Side::Above,
+            _ => Side::Below,
+        };
+        let Some(bracket) = self.bracket(own, side) else { return None };
+        let Some(nearest) = self.searched(bracket, side) else { return None };
+        let other = self.other_end(nearest);
+        Some(match side {
+            Side::Below => Remedy { parameter, lowest: other, highest: Some(nearest) },
+            Side::Above => Remedy { parameter, lowest: Some(nearest), highest: other },
+        })
+    }
+
+    /// The other end of what is proved to pass with the nearest value; `None` where that goes as
+    /// far as it makes sense, and the same value where nothing else is proved.
+    const fn other_end(&self, nearest: f64) -> Option<f64> {
+        let last = match (between(self.scene, self.format, self.parameter, nearest), self.parameter)
+        {
+            (Between::Unknown, _) => return Some(nearest),
+            (Between::PassesDownToZero, _) => return None,
+            (Between::PassesDownToZeroWithoutStiffness, _) => {
+                let soft = Varied { parameter: Parameter::Stiffness, ..*self };
+                if soft.is_certified(0.0) {
+                    return None;
+                }
+                nearest / FARTHEST
+            }
+            (Between::Passes, Parameter::Period) => nearest / FARTHEST,
+            // More than the device's damping is damping added, which is another thing.
+            (Between::Passes, Parameter::Residual) if nearest >= self.scene.device.damping => {
+                return Some(nearest);
+            }
+            (Between::Passes, Parameter::Residual) => self.scene.device.damping,
+            (Between::Passes, _) => 0.0,
+        };
+        if matches!(self.parameter, Parameter::Period) {
+            let digits = Digits::of(last, Side::Above);
             if self.is_certified(digits.value()) {
                 return Some(digits.value());
             }
-            digits = digits.further(self.relation);
+        } else if self.is_certified(last) {
+            return None;
+        }
+        let (fails, passes) = (self.look(last), self.look(nearest));
+        if fails.passes() || !passes.passes() {
+            return Some(nearest);
+        }
+        let side = if last < nearest { Side::Above } else { Side::Below };
+        match self.searched(Bracket { fails, passes }, side) {
+            Some(end) if (end < nearest) == (last < nearest) => Some(end),
+            _ => Some(nearest),
+        }
+    }
+
+    /// The value in a bracket next to those that fail, to three digits and certified.
+    const fn searched(&self, bracket: Bracket, side: Side) -> Option<f64> {
+        let mut search = Search::new(bracket, side);
+        while let Some(value) = search.next() {
+            search.learn(value, self.shortage(value.value()));
+        }
+        self.certified(search.nearest(), side)
+    }
+
+    /// The first of these digits and those further on with which the scene is certified.
+    pub const fn certified(&self, digits: Digits, side: Side) -> Option<f64> {
+        let mut digits = digits;
+        let mut i = 0;
+        while i < CANDIDATES && digits.are_read_back() {
+            if self.is_certified(digits.value()) {
+                return Some(digits.value());
+            }
+            digits = digits.further(side);
             i += 1;
         }
         None
@@ -52,7 +114,7 @@ impl Varied<'_> {
 
     /// Moves the number by a step, then by octaves, until the scene passes. Both ends are the same
     /// where the first value passes, as that of a residual does that was none before.
-    const fn bracket(&self, own: Option<f64>) -> Option<Bracket> {
+    const fn bracket(&self, own: Option<f64>, side: Side) -> Option<Bracket> {
         let mut passes = match (get(self.scene, self.parameter), self.parameter) {
             (Some(value), _) if value > 0.0 => Look { value, shortage: own },
             (Some(_), Parameter::Residual) => self.look(self.scene.device.damping / 1024.0),
@@ -69,9 +131,9 @@ impl Varied<'_> {
             if factor > FARTHEST || factor > first && passes.is_as_good_as(&fails) {
                 return None;
             }
-            let value = match self.relation {
-                Relation::AtMost => start.value / factor,
-                _ => start.value * factor,
+            let value = match side {
+                Side::Below => start.value / factor,
+                Side::Above => start.value * factor,
             };
             // The smallest numbers are divided to zero, which has no digits to round to.
             if value == 0.0 {
@@ -135,10 +197,6 @@ const fn get(scene: &Scene, parameter: Parameter) -> Option<f64> {
             None => Some(scene.timing.period),
             Some(_) => None,
         },
-        (Parameter::Passivity, _) => match scene.device.passivity {
-            Some(passivity) => Some(passivity),
-            None => Some(scene.device.damping),
-        },
         _ => None,
     }
 }
@@ -165,6 +223,7 @@ const fn with(scene: &Scene, parameter: Parameter, value: f64) -> Option<Scene> 
         }
         (Parameter::Period, _) => changed.timing.period = value,
         (Parameter::Passivity, _) => changed.device.passivity = Some(value),
+        (Parameter::DeviceDamping, _) => changed.device.damping = value,
         _ => return None,
     }
     Some(changed)

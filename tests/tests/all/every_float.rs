@@ -59,8 +59,15 @@ fn environment() -> impl Strategy<Value = Environment> {
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
-    let device = (positive(), positive(), prop::option::of(positive()))
-        .prop_map(|(inertia, damping, passivity)| Device { inertia, damping, passivity });
+    // Mostly no more passivity than damping, which alone is judged.
+    let device = (positive(), positive(), prop::option::of(positive()), prop::bool::weighted(0.9))
+        .prop_map(|(inertia, damping, passivity, in_order)| match passivity {
+            Some(other) if in_order => {
+                let (damping, passivity) = (damping.max(other), Some(damping.min(other)));
+                Device { inertia, damping, passivity }
+            }
+            _ => Device { inertia, damping, passivity },
+        });
     let timing = (positive(), prop::option::weighted(0.2, positive()))
         .prop_map(|(period, worst_period)| Timing { period, worst_period });
     let coupling = prop_oneof![

@@ -19,6 +19,7 @@ mod misses;
 mod random;
 mod reference;
 mod remedies;
+mod simulated;
 mod soundness;
 mod vectors;
 mod virtual_board;

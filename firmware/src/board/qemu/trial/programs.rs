@@ -25,8 +25,8 @@ impl Kinds for OfPrograms {
                 let Wall { stiffness, damping, .. } = wall;
                 job.of::<_, N>(DamperWall::<1> { stiffness, damping })
             }
-            Environment::FreeMode { residual, delay: 0 } => {
-                job.of::<_, N>(FreeMode::<0> { residual })
+            Environment::FreeMode { residual, delay: 1 } => {
+                job.of::<_, N>(FreeMode::<1> { residual })
             }
             _ => job.refuse(),
         }

@@ -1,0 +1,143 @@
+//! Where all that lies between two certified values of a number passes as well.
+//!
+//! A remedy that names a range is proved at its ends, and in between because what passes is convex
+//! there. Anywhere else a remedy names one value.
+//!
+//! **Exact rule** (theory, section 4.1). It asks that `p = delta + T C / (z - 1)` be positive real,
+//! with the whole controller `C = E / (1 + V E)`. Sums of positive real functions are, so what
+//! passes is convex in `T C`, and a greater `delta` takes nothing away. In `E` it is convex
+//!
+//! - behind a rigid coupling, where `C = E`;
+//! - behind the standard coupling, where the rule is `delta + Re L > 0`, affine in `E`;
+//! - behind a stiffer one. With `k = 2 delta V / T` in `[0, 1]`, `w = k + (1 - k) / z` and
+//!   `e = T z E / (2 delta (z - 1))` the rule is `e = D / (1 - D w)` with `abs(D) < 1`. Since
+//!   `abs(w) <= 1`, the values of `e` that pass at a point of the circle are a disk; and what is in
+//!   these disks all along it has `Re(1 + w e) > 1/2` there and so outside, where `D = e / (1 + w e)`
+//!   then has no pole.
+//!
+//! Behind a softer coupling those that pass are the outside of a disk, which is not convex.
+//!
+//! Where updates may be missed a linear scene has to pass two such rules at once, of which one is of
+//! a softer coupling: nothing is claimed there.
+//!
+//! **Nonlinear rule** (theory, section 5): an index exists, the loop within a tick has a gain
+//! above 0, `bound < K_vc T / 2 <= delta` and `bound < delta`. The first is convex in `E`, the gain is
+//! affine, and the bound is affine in stiffness and damping of the wall and convex in what is
+//! cancelled: `be`, and `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them
+//! are convex in `T`, too, where nothing is added.
+//!
+//! **Coefficients that are rounded.** Rounding does not turn the order around: of a number between
+//! two others the coefficient is between theirs, and a law that is affine in the coefficient passes
+//! there as well. That is so of a wall that is late, where the gain that solves a tick does not
+//! change with it. Anywhere else coefficients that are rounded each by itself can leave a hole.
+
+use super::model::Numbers;
+use super::parameter::Parameter;
+use super::rules::{is_nonlinear, wall_of};
+use crate::environment::Environment;
+use crate::number::Format;
+use crate::scene::Scene;
+
+/// What is known of the values between two that pass.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Between {
+    /// Nothing.
+    Unknown,
+    /// They pass.
+    Passes,
+    /// They pass, and all that are smaller and positive.
+    PassesDownToZero,
+    /// They pass, and all that are smaller and positive if a stiffness of zero does.
+    PassesDownToZeroWithoutStiffness,
+}
+
+/// What is known of a number that the search looks for, stiffness to period, next to `value`.
+pub(super) const fn between(
+    scene: &Scene,
+    format: Format,
+    parameter: Parameter,
+    value: f64,
+) -> Between {
+    let n = Numbers::of(scene, format);
+    let passes = match parameter {
+        Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
+        Parameter::Residual => is_affine_in_residual(scene, &n),
+        Parameter::Period => return between_periods(scene, &n, value),
+        _ => false,
+    };
+    if passes { Between::Passes } else { Between::Unknown }
+}
+
+const fn is_affine_in_wall(scene: &Scene, n: &Numbers) -> bool {
+    let is_late = matches!(wall_of(&scene.environment), Some(wall) if wall.delay > 0);
+    let is_soft = n.missed.is_some() || !n.is_standard && n.excess_compliance().hi() > 0.0;
+    (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
+}
+
+/// An undelayed free mode alone has `T C = -be (z - 1) / z` whatever its coupling.
+const fn is_affine_in_residual(scene: &Scene, n: &Numbers) -> bool {
+    let is_undelayed_alone = matches!(scene.environment, Environment::FreeMode { delay: 0, .. });
+    let is_affine = n.missed.is_none() && (n.coupling.is_none() || is_undelayed_alone);
+    matches!(n.format, Format::F64) && (is_nonlinear(scene) || is_affine)
+}
+
+/// - A law without damper and canceller does not change with the period. The exact rule is then
+///   affine in `T` and holds at 0; of the nonlinear rule, `bound < K_vc T / 2` is homogeneous.
+/// - Behind a rigid coupling `T C` is affine in `T`, and at 0 that of the same scene without
+///   stiffness.
+/// - In the nonlinear rule, an undelayed damper without a filter adds nothing to the bound.
+const fn between_periods(scene: &Scene, n: &Numbers, longest: f64) -> Between {
+    let wall = wall_of(&scene.environment);
+    let cancels = !n.cancelled.is_zero();
+    let damping = match wall {
+        Some(wall) => wall.damping,
+        None => 0.0,
+    };
+    let is_f64 = matches!(n.format, Format::F64);
+    if damping == 0.0 && !cancels {
+        return if is_f64 || is_nonlinear(scene) || is_never_standard(n, longest) {
+            Between::PassesDownToZero
+        } else {
+            Between::Unknown
+        };
+    }
+    if !is_f64 {
+        return Between::Unknown;
+    }
+    if !is_nonlinear(scene) {
+        return match n.coupling {
+            None => Between::PassesDownToZeroWithoutStiffness,
+            Some(_) => Between::Unknown,
+        };
+    }
+    let is_late = matches!(wall, Some(wall) if wall.delay > 0);
+    let is_passive = matches!(wall, Some(wall) if wall.filter.is_none());
+    if n.cancelled.is_negative() || damping < 0.0 {
+        Between::Unknown
+    } else if is_late || !is_passive || cancels {
+        Between::Passes
+    } else {
+        Between::PassesDownToZero
+    }
+}
+
+/// Whether the coupling, rounded, is stiffer than the standard one up to this period. At the
+/// standard one it is judged as if it were exactly that, which costs a little of what it passes.
+const fn is_never_standard(n: &Numbers, longest: f64) -> bool {
+    match n.coupling {
+        None => true,
+        Some(stiffness) => longest * stiffness.hi() < 1.99 * n.delta.lo(),
+    }
+}
+
+/// Whether every passivity from this one on passes if it does. With coefficients that are rounded
+/// the exact rule is a little stricter at the standard coupling than beside it.
+pub(super) const fn passes_upwards(scene: &Scene, n: &Numbers, passivity: f64) -> bool {
+    if n.missed.is_some() && !is_nonlinear(scene) {
+        return false;
+    }
+    match (n.format, n.coupling_damping()) {
+        (Format::F64, _) | (_, None) => true,
+        (_, Some(damping)) => is_nonlinear(scene) || damping.hi() < 0.99 * passivity,
+    }
+}
