@@ -1,0 +1,56 @@
+//! Searches among some scenes only: `hunt name=value ...`, each of
+//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `taken`, `full`.
+
+use adversary::scenes::{Choice, Kind};
+use adversary::search::{Effort, Search};
+
+fn main() {
+    let mut search = Search {
+        seed: 1,
+        scenes: 1000,
+        time: None,
+        choice: Choice::ANY,
+        output: None,
+        enough: 5,
+        effort: Effort::USUAL,
+    };
+    let mut full = true;
+    for argument in std::env::args().skip(1) {
+        let (name, value) = argument.split_once('=').expect("name=value");
+        let number = || value.parse::<u64>().expect("a whole number");
+        let yes = || Some(value.parse::<bool>().expect("true or false"));
+        match name {
+            "seed" => search.seed = number(),
+            "scenes" => search.scenes = number(),
+            "enough" => search.enough = usize::try_from(number()).expect("a small number"),
+            "kind" => {
+                let kind = Kind::ALL.into_iter().find(|kind| kind.to_string() == value);
+                search.choice.kind = Some(kind.expect("a kind"));
+            }
+            "worst_period" => search.choice.worst_period = yes(),
+            "limited" => search.choice.limited = yes(),
+            "latched" => search.choice.latched = yes(),
+            "taken" => search.choice.taken = value.parse().expect("a number"),
+            "full" => full = value.parse().expect("true or false"),
+            _ => panic!("no such setting: {name}"),
+        }
+    }
+    let began = std::time::Instant::now();
+    let found = search.run();
+    let seconds = began.elapsed().as_secs_f64();
+    println!("{found}");
+    println!(
+        "{:.1} s, {:.2} million ticks/s, {:.2} ms of a core a scene",
+        seconds,
+        found.ticks as f64 / seconds / 1e6,
+        2e3 * seconds / found.scenes as f64
+    );
+    for counterexample in &found.counterexamples {
+        let text = counterexample.to_string();
+        if full {
+            println!("{text}\n");
+        } else {
+            text.lines().take(2).for_each(|line| println!("{line}"));
+        }
+    }
+}

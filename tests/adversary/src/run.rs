@@ -1,0 +1,389 @@
+//! One run: the cycle on a simulated board, against device and hand, and the account of energy.
+//!
+//! With `W` the work of the motor and `b` the damping of the device, the energy `H` of device and
+//! hand and what the hand's dampers took, `D`, are together `H(0) + W - b * integral v^2`. The
+//! certificate claims that this is never above `H(0)` plus an allowance:
+//!
+//! - Each opening of the clamp may put in what the environment stores at its depth: the clamp's
+//!   level times the environment's distance from its face.
+//! - A torque that is off by `e` puts in at most `e` times the travel; encoder and numbers act
+//!   where the environment is, whose travel is at most the device's and the coupling's.
+//! - A servo that is stopped for missed updates held its torque `u` for longer than the certificate
+//!   says, and that puts in at most `u^2 / 4 b` a period.
+
+use std::marker::PhantomData;
+
+use firmware::cycle::{Cycle, Mailbox, State as Doing};
+use firmware::environment::{Environment, Renderable};
+use firmware::number::Number;
+use firmware::servo::{OutputMode, OutputTiming, Rendering, Renders};
+use firmware::tuning::Tunable;
+
+use crate::device::{Audit, Held, State, Step, TORQUE};
+use crate::hardware::{Board, Last};
+use crate::plan::{Pattern, Plan, Request, Tick};
+use crate::subject::Subject;
+
+/// When a code reaches the motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Output {
+    /// At the beginning of the next period.
+    Latched,
+    /// At its own count.
+    Simultaneous,
+    /// This part of a period after its count: not what any scene is certified for.
+    Early(f64),
+}
+
+impl Output {
+    /// That of a mode.
+    pub const fn of<M: OutputMode>() -> Self {
+        match M::TIMING {
+            OutputTiming::Simultaneous => Self::Simultaneous,
+            _ => Self::Latched,
+        }
+    }
+}
+
+/// What became of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Outcome {
+    /// The largest energy above what was allowed, over what was allowed: above zero the certificate
+    /// is wrong.
+    pub score: f64,
+    /// Period of that.
+    pub period: u32,
+    /// The same in the loop's units: energy gained, and the allowance without the energy at the
+    /// start.
+    pub gained: f64,
+    /// See there.
+    pub allowed: f64,
+    /// Energy at the start.
+    pub start: f64,
+    /// The most that was gained, over what device and allowance took, in any quarter of the run:
+    /// above zero the loop feeds somebody.
+    pub rate: f64,
+    /// Periods that were run.
+    pub periods: u32,
+    /// Openings of the clamp.
+    pub openings: u32,
+    /// Times that the servo was stopped.
+    pub faults: u32,
+    /// Energy that the simulation itself made or lost, where that was looked at.
+    pub residual: f64,
+    /// The servo went on although more updates were missed in a row than the certificate tolerates.
+    pub went_on: bool,
+    /// The largest energy of device and hand.
+    pub largest: f64,
+}
+
+impl Outcome {
+    /// What a climb goes up: what was gained if that is above zero, else the rate.
+    pub fn height(&self) -> f64 {
+        if self.score > 0.0 { 1.0 + self.score.min(1e6) } else { self.rate.min(0.99) }
+    }
+
+    /// Whether this refutes the certificate.
+    pub fn is_violation(&self) -> bool {
+        self.went_on || self.score > 0.0
+    }
+}
+
+/// A booted servo and the sets that may be swapped in.
+pub struct Machine<N: Number, M> {
+    /// The servo as it booted.
+    pub cycle: Cycle<Environment, N, M>,
+    /// The sets: its own and the other one.
+    pub sets: Vec<Rendering<Environment, N, M>>,
+    /// When its codes reach the motor.
+    pub output: Output,
+    mode: PhantomData<M>,
+}
+
+/// How device and hand are moved on.
+enum Motion {
+    /// Only as far as the account needs it.
+    Plain(Step),
+    /// With all energies, as a check.
+    Audited(Audit),
+}
+
+impl Motion {
+    #[inline]
+    fn advance(&self, x: &mut State, hand: &mut f64) -> f64 {
+        match self {
+            Self::Plain(step) => step.advance(x),
+            Self::Audited(audit) => {
+                let (motion, taken) = audit.advance(x);
+                *hand += taken;
+                motion
+            }
+        }
+    }
+}
+
+/// What was put in and taken since the start.
+#[derive(Clone, Copy, Debug, Default)]
+struct Account {
+    /// Work of the motor less what the device dissipated.
+    gained: f64,
+    /// What the device dissipated.
+    dissipated: f64,
+    /// Travel of the device in rad, or more.
+    travel: f64,
+    /// Sum of all changes of the torque.
+    changes: f64,
+    /// Farthest angle from the board's zero in rad.
+    farthest: f64,
+    openings: u32,
+    /// What stops for missed updates allow.
+    stops: f64,
+}
+
+impl Account {
+    /// What torques that are off allow.
+    fn errors(&self, subject: &Subject) -> f64 {
+        let turns = (self.farthest / std::f64::consts::TAU).max(1.0);
+        let error = subject.error + subject.numbers * turns;
+        error * (2.0 * self.travel + subject.compliance * self.changes)
+    }
+
+    fn allowed(&self, subject: &Subject) -> f64 {
+        let Subject { bound, compliance, face, .. } = *subject;
+        let opening = bound * (self.farthest + face + compliance * bound);
+        f64::from(self.openings) * opening + self.errors(subject) + self.stops
+    }
+}
+
+/// Periods between two looks at the account.
+const LOOK: u32 = 32;
+
+/// Numbers by chance, a step at a time.
+fn next(seed: &mut u64) -> u64 {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    seed.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32
+}
+
+/// What happens to the ticks, one after the other.
+struct Ticks {
+    pattern: Pattern,
+    at: usize,
+    in_a_row: u32,
+}
+
+impl Ticks {
+    #[inline]
+    fn next(&mut self) -> Tick {
+        match &mut self.pattern {
+            Pattern::InTime => Tick::InTime,
+            Pattern::Periodic(ticks, length) => {
+                let tick = ticks[self.at];
+                self.at = (self.at + 1) % *length;
+                tick
+            }
+            Pattern::Random { seed, missed, late, most } => {
+                let number = next(seed);
+                let tick = if number & 0xff < u64::from(*missed) {
+                    Tick::Missed
+                } else if number >> 8 & 0xff < u64::from(*late) {
+                    Tick::Late
+                } else {
+                    Tick::InTime
+                };
+                self.in_a_row = if tick == Tick::InTime { 0 } else { self.in_a_row + 1 };
+                if self.in_a_row > *most {
+                    self.in_a_row = 0;
+                    return Tick::InTime;
+                }
+                tick
+            }
+        }
+    }
+}
+
+impl<N: Number, M: OutputMode> Machine<N, M>
+where
+    Environment: Tunable<N> + Renders<M>,
+    <Environment as Renderable<N>>::Law: Clone,
+{
+    /// A booted servo and its sets.
+    pub fn new(
+        cycle: Cycle<Environment, N, M>,
+        sets: Vec<Rendering<Environment, N, M>>,
+        output: Output,
+    ) -> Self {
+        Self { cycle, sets, output, mode: PhantomData }
+    }
+
+    /// Runs a plan. `audited`: with the energy of device and hand beside the account.
+    pub fn run(&self, subject: &Subject, plan: &Plan, audited: bool) -> Outcome {
+        let held = Held::new(&plan.hand, subject.damping);
+        let motion = |part: f64| {
+            if audited { Motion::Audited(held.audit(part)) } else { Motion::Plain(held.step(part)) }
+        };
+        let parts = match self.output {
+            Output::Early(part) => [Some(motion(part)), Some(motion(1.0 - part))],
+            _ => [None, Some(motion(1.0))],
+        };
+        self.play(subject, plan, &held, &parts)
+    }
+
+    fn play(
+        &self,
+        subject: &Subject,
+        plan: &Plan,
+        held: &Held,
+        parts: &[Option<Motion>; 2],
+    ) -> Outcome {
+        let mut mailbox = Mailbox::new();
+        let (mut requests, mut inbox) = mailbox.split();
+        let mut cycle = self.cycle.clone();
+        let mut board = Board::new(subject.counts_per_radian, !plan.armed_by_boot);
+        // As booting does it, with the device at the board's zero.
+        board.angle = plan.zero;
+        firmware::boot::Startup::zero(&mut board);
+        if plan.armed_by_boot {
+            requests.arm();
+        }
+        let mut x = plan.start;
+        let mut account = Account::default();
+        let mut outcome =
+            Outcome { score: -1.0, start: held.energy(&x), rate: -1.0, ..Outcome::default() };
+        let mut last = Last::default();
+        let mut before = Account::default();
+        let window = (plan.periods / 4).max(LOOK);
+        let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
+        // Codes above mid-scale: what the motor has, and what waits for the next period.
+        let (mut motor, mut waiting) = (0_i16, 0_i16);
+        let mut overdue = None;
+        let (mut skipped, mut in_a_row, mut since) = (0_u32, 0_u32, 0_u32);
+        let (mut strongest, mut taken) = (0.0_f64, 0.0_f64);
+        let latched = self.output == Output::Latched;
+        let mut powered = false;
+        let first = plan.requests.iter().flatten().map(|(period, _)| *period).min();
+        let mut next_request = first.unwrap_or(u32::MAX);
+        for period in 0..plan.periods {
+            motor = if latched { waiting } else { motor };
+            if let Some((code, on)) = overdue.take() {
+                waiting = code;
+                powered = on;
+                motor = if latched { motor } else { waiting };
+            }
+            if period >= next_request {
+                next_request = u32::MAX;
+                for (at, request) in plan.requests.iter().flatten() {
+                    if *at == period {
+                        match *request {
+                            Request::Arm => requests.arm(),
+                            Request::Disarm => requests.disarm(),
+                            Request::Submit(set) => {
+                                if let Some(set) = self.sets.get(set) {
+                                    let _ = requests.submit(set.clone());
+                                }
+                            }
+                        }
+                    } else if *at > period {
+                        next_request = next_request.min(*at);
+                    }
+                }
+            }
+            since += 1;
+            let tick = ticks.next();
+            let mut switched = false;
+            if tick == Tick::Missed {
+                skipped += 1;
+                in_a_row += 1;
+            } else {
+                let was = last.state;
+                board.angle = x[0];
+                board.passed = skipped + 1;
+                board.late = tick == Tick::Late;
+                skipped = 0;
+                cycle.run(&mut board, &mut inbox, &mut last);
+                if board.late {
+                    in_a_row += 1;
+                    overdue = Some((board.offset, board.amplifier));
+                } else {
+                    waiting = board.offset;
+                    powered = board.amplifier;
+                    switched = true;
+                }
+                if last.state != was {
+                    match last.state {
+                        Doing::FadingIn => account.openings += 1,
+                        Doing::Faulted => {
+                            outcome.faults += 1;
+                            let damping = held.damping().max(f64::MIN_POSITIVE);
+                            let longest = f64::from(since.max(1) + 1);
+                            account.stops += longest * strongest * strongest / (4.0 * damping);
+                        }
+                        _ => {}
+                    }
+                    // Notices would otherwise be kept for a reader.
+                    while requests.notice().is_some() {}
+                }
+                if in_a_row > subject.tolerated && last.state.is_armed() && was.is_armed() {
+                    outcome.went_on = true;
+                }
+                if !board.late {
+                    in_a_row = 0;
+                    since = 0;
+                    strongest = 0.0;
+                }
+                if plan.again && last.state == Doing::Faulted && period % 16 == 0 {
+                    requests.arm();
+                }
+            }
+            for (i, part) in parts.iter().enumerate() {
+                let Some(part) = part else { continue };
+                if i == 1 && !latched && switched {
+                    motor = waiting;
+                }
+                let torque = if powered { f64::from(motor) * subject.torque_per_code } else { 0.0 };
+                strongest = strongest.max(torque.abs());
+                account.changes += (torque - x[TORQUE]).abs();
+                x[TORQUE] = torque;
+                let start = x[0];
+                let squared = part.advance(&mut x, &mut taken);
+                let loss = squared * held.damping();
+                account.gained += torque * (x[0] - start) - loss;
+                account.dissipated += loss;
+                account.travel += squared.max(0.0).sqrt();
+            }
+            account.farthest = account.farthest.max((x[0] - plan.zero).abs());
+            if period % LOOK == LOOK - 1 {
+                let allowed = account.allowed(subject);
+                let all = outcome.start + allowed;
+                let score = (account.gained - allowed) / all.max(f64::MIN_POSITIVE);
+                if score > outcome.score || score.is_nan() {
+                    (outcome.score, outcome.period) = (score, period);
+                    (outcome.gained, outcome.allowed) = (account.gained, allowed);
+                }
+                let largest = outcome.start + account.gained;
+                outcome.largest = outcome.largest.max(largest);
+                outcome.openings = account.openings;
+                if let Motion::Audited(_) = parts[1].as_ref().unwrap_or_else(|| unreachable!()) {
+                    let residual = held.energy(&x) + taken - largest;
+                    outcome.residual = outcome.residual.max(residual.abs());
+                }
+                if period % window >= window - LOOK {
+                    let errors = account.errors(subject) - before.errors(subject);
+                    let took = account.dissipated - before.dissipated + errors;
+                    let rate = (account.gained - before.gained - errors)
+                        / (took + 1e-12 * outcome.start).max(f64::MIN_POSITIVE);
+                    outcome.rate = outcome.rate.max(rate);
+                    before = account;
+                }
+                let speed = x[1].abs();
+                outcome.periods = period + 1;
+                // What the transducers exclude, and what grows beyond all numbers.
+                if speed > subject.fastest || !(outcome.largest <= 1e12 * all) {
+                    break;
+                }
+            }
+        }
+        outcome
+    }
+}

@@ -1,0 +1,146 @@
+//! What a search needs to know about an accepted scene, in the loop's units, and what its
+//! certificate allows.
+
+use firmware::certificate::{Assessment, Rest, Steps};
+use firmware::environment::{Environment, Wall};
+use firmware::number::Format;
+use firmware::scene::{Coupling, Scene};
+use rand::Rng;
+
+use crate::scenes::Drawn;
+
+/// An accepted scene as numbers, in the loop's units: see [`crate::device`].
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// Damping of the simulated device.
+    pub damping: f64,
+    /// Updates that may be missed in a row.
+    pub tolerated: u32,
+    /// Torque of one code of the converter.
+    pub torque_per_code: f64,
+    /// The largest torque of any of its sets.
+    pub bound: f64,
+    /// The largest compliance of any of its couplings.
+    pub compliance: f64,
+    /// The farthest face of any of its walls, in rad.
+    pub face: f64,
+    /// The most that encoder and converter move the torque.
+    pub error: f64,
+    /// The most that the numbers move the torque, within a turn of zero.
+    pub numbers: f64,
+    /// Encoder counts in a radian.
+    pub counts_per_radian: f64,
+    /// The fastest that the device may turn, in rad a period.
+    pub fastest: f64,
+    /// Angles, in rad, at which the runs are large.
+    pub size: f64,
+    /// The farthest place to arm at, in rad.
+    pub reach: f64,
+    /// Angles a sample at which the loop is likely at its worst.
+    pub angles: [f64; 4],
+    /// Sets that may be swapped in.
+    pub sets: usize,
+}
+
+/// Damping in N m s/rad that a device may lose, everything else as it runs, before the certificate
+/// is void.
+pub fn margin(assessment: &Assessment, _scene: &Scene) -> f64 {
+    assessment.margin().unwrap_or(0.0)
+}
+
+/// The wall of an environment.
+pub const fn wall(environment: &Environment) -> Option<&Wall> {
+    match environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => Some(wall),
+        Environment::FreeMode { .. } | Environment::Rational(_) => None,
+    }
+}
+
+/// The passivity that a scene declares.
+pub fn declared(scene: &Scene) -> f64 {
+    scene.device.passivity.unwrap_or(scene.device.damping)
+}
+
+/// Torque in N m by which positions that are off by 1 rad each move an environment's torque,
+/// whatever switches or clips it: the norm of its impulse response. `None`: not one that is known.
+fn norm(scene: &Scene) -> Option<f64> {
+    let period = scene.timing.period;
+    let of = |w: &Wall| w.stiffness.abs() + 2.0 * w.damping.abs() / period;
+    let cancelled = |residual: f64| 2.0 * (scene.device.damping - residual).abs() / period;
+    match &scene.environment {
+        Environment::DelayedSpring(w) => Some(w.stiffness.abs()),
+        Environment::DamperWall(w) => Some(of(w)),
+        Environment::FreeMode { residual, .. } => Some(cancelled(*residual)),
+        Environment::FreeModeWall { residual, wall } => Some(cancelled(*residual) + of(wall)),
+        Environment::Rational(_) => None,
+    }
+}
+
+impl Subject {
+    /// Of a drawn scene and its other one, which were both accepted. `None` where no bound is
+    /// known on what encoder, numbers and converter do to the torque.
+    pub fn of(drawn: &Drawn, assessments: &[Assessment], format: Format) -> Option<Self> {
+        let Drawn { scene, transducers, .. } = drawn;
+        let declared = declared(scene);
+        let unit = declared / scene.timing.period;
+        let steps = Steps::of(transducers, None);
+        let step = std::f64::consts::TAU / transducers.counts_per_turn;
+        // A rigid device has no more passivity than damping, whatever was declared.
+        let has = declared.min(scene.device.damping);
+        let (mut bound, mut compliance, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut error, mut numbers, mut damping) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let scenes = std::iter::once((scene, drawn.judged_as.as_ref()))
+            .chain(drawn.other.iter().map(|other| (other, None)));
+        let mut sets = 0;
+        for ((scene, judged_as), assessment) in scenes.zip(assessments) {
+            sets += 1;
+            let rest = Rest::of(judged_as.unwrap_or(scene), format, &steps)?;
+            let injected = drawn.rendering.injection.unwrap_or(0.0) / scene.timing.period;
+            let encoder = rest.encoder.unwrap_or(0.0).max(0.5 * step * norm(scene).unwrap_or(0.0));
+            let this = encoder + rest.converter.unwrap_or(0.0) + injected * step;
+            error = error.max(this);
+            numbers = numbers.max(rest.numbers);
+            bound = bound.max(scene.torque_limit.unwrap_or(transducers.full_scale_torque));
+            if let Coupling::Spring { stiffness } = scene.coupling {
+                compliance = compliance.max(1.0 / stiffness);
+            }
+            face = face.max(wall(&scene.environment).map_or(0.0, |wall| wall.face.abs()));
+            damping = damping.max(has - drawn.taken * margin(assessment, scene));
+        }
+        let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
+        let periods = worst / scene.timing.period;
+        let cos = |c: f64| c.clamp(-1.0, 1.0).acos();
+        let theta = assessments.first().and_then(|a| a.cos_theta);
+        let theta = theta.map_or(1.0, |c| cos(c.midpoint())).clamp(0.02, 3.14);
+        Some(Self {
+            damping: (damping / declared).max(0.0),
+            tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
+            torque_per_code: transducers.full_scale_torque
+                / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE)
+                / unit,
+            bound: bound / unit,
+            compliance: compliance * unit,
+            face,
+            error: error / unit,
+            numbers: numbers / unit,
+            counts_per_radian: transducers.counts_per_turn / std::f64::consts::TAU,
+            fastest: transducers.largest_speed * scene.timing.period,
+            size: drawn.size,
+            reach: drawn.reach,
+            angles: [theta, theta, theta / periods, std::f64::consts::PI / periods],
+            sets,
+        })
+    }
+
+    /// A place for the board's zero, in rad.
+    pub fn place(&self, rng: &mut impl Rng) -> f64 {
+        match rng.random_range(0..4) {
+            0 => 0.0,
+            1 => self.size * rng.random_range(-1.0..1.0),
+            2 => self.reach * rng.random_range(-1.0..1.0),
+            _ => -self.face,
+        }
+    }
+}
