@@ -1,5 +1,6 @@
 //! Searches among some scenes only: `hunt name=value ...`, each of
-//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `taken`, `full`.
+//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `saturates`, `taken`,
+//! `weakened`, `full`.
 
 use adversary::scenes::{Choice, Kind};
 use adversary::search::{Effort, Search};
@@ -31,6 +32,8 @@ fn main() {
             "limited" => search.choice.limited = yes(),
             "latched" => search.choice.latched = yes(),
             "taken" => search.choice.taken = value.parse().expect("a number"),
+            "weakened" => search.choice.weakened = Some(value.parse().expect("a number")),
+            "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
             _ => panic!("no such setting: {name}"),
         }

@@ -4,10 +4,13 @@
 //! Units are those of the loop: time in periods, angles in rad, damping in units of the declared
 //! passivity `delta`. A torque is then in `delta / T`, an inertia in `delta T`.
 
+use std::ops::Range;
+
 use tests::hands::Hand;
 
 /// Places in a state: position and velocity of the device and of up to two masses of the hand, and
-/// the torque. The last is not used; eight are what a processor likes.
+/// the torque. The last is not used; eight are what a processor likes. A mass's position is that
+/// against the mass before it, so that nothing cancels where a hand is far from zero.
 pub const N: usize = 8;
 
 /// Where the torque is in a state.
@@ -62,39 +65,55 @@ impl Held {
     /// A device of this damping in a hand, whose inertia is that of both.
     pub fn new(hand: &Hand, damping: f64) -> Self {
         let mut mass = [hand.inertia, 1.0, 1.0];
-        // Stiffness and damping between the masses; both symmetric.
-        let (mut stiffness, mut damper) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
-        stiffness[0][0] = hand.stiffness;
-        damper[0][0] = hand.damping;
+        let (mut link, mut ground) = ([(0.0, 0.0); 3], [(hand.stiffness, hand.damping); 3]);
         for (i, segment) in hand.segments.iter().take(SEGMENTS).enumerate() {
-            let (up, here) = (i, i + 1);
-            mass[here] = segment.inertia;
-            for (matrix, link, ground) in [
-                (&mut stiffness, segment.link_stiffness, segment.stiffness),
-                (&mut damper, segment.link_damping, segment.damping),
-            ] {
-                matrix[up][up] += link;
-                matrix[here][here] += link + ground;
-                matrix[up][here] -= link;
-                matrix[here][up] -= link;
-            }
+            mass[i + 1] = segment.inertia;
+            link[i + 1] = (segment.link_stiffness, segment.link_damping);
+            ground[i + 1] = (segment.stiffness, segment.damping);
         }
         let used = 1 + hand.segments.len().min(SEGMENTS);
         let mut held = Self { rates: ZERO, energy: ZERO, hand: ZERO, damping };
         for i in 0..used {
-            let (x, v) = (2 * i, 2 * i + 1);
-            held.rates[x][v] = 1.0;
-            held.energy[v][v] = 0.5 * mass[i];
-            for j in 0..used {
-                held.rates[v][2 * j] -= stiffness[i][j] / mass[i];
-                held.rates[v][2 * j + 1] -= damper[i][j] / mass[i];
-                held.energy[x][2 * j] = 0.5 * stiffness[i][j];
-                held.hand[v][2 * j + 1] = damper[i][j];
+            held.energy[2 * i + 1][2 * i + 1] = 0.5 * mass[i];
+            held.rates[2 * i][2 * i + 1] = 1.0;
+            // What stretches this mass's ground, and its link to the mass before.
+            held.connect(&mass, ground[i], i..i + 1, |j| f64::from(u8::from(j <= i)));
+            if i > 0 {
+                held.rates[2 * i][2 * i - 1] = -1.0;
+                held.connect(&mass, link[i], i - 1..i + 1, |j| f64::from(u8::from(j == i)));
             }
         }
         held.rates[1][1] -= damping / mass[0];
         held.rates[1][TORQUE] = 1.0 / mass[0];
         held
+    }
+
+    /// A spring and a damper between two masses, or between one and the ground. `stretch`: what
+    /// each of the positions up to the last of them adds to the spring's.
+    fn connect(
+        &mut self,
+        mass: &[f64; 3],
+        (stiffness, damping): (f64, f64),
+        masses: Range<usize>,
+        stretch: impl Fn(usize) -> f64,
+    ) {
+        let last = masses.end - 1;
+        let sign = |i: usize| if i == last { 1.0 } else { -1.0 };
+        for j in 0..=last {
+            for i in masses.clone() {
+                self.rates[2 * i + 1][2 * j] -= sign(i) * stiffness * stretch(j) / mass[i];
+            }
+            for i in 0..=last {
+                self.energy[2 * i][2 * j] += 0.5 * stiffness * stretch(i) * stretch(j);
+            }
+        }
+        for i in masses.clone() {
+            for j in masses.clone() {
+                let (row, column) = (2 * i + 1, 2 * j + 1);
+                self.rates[row][column] -= sign(i) * sign(j) * damping / mass[i];
+                self.hand[row][column] += sign(i) * sign(j) * damping;
+            }
+        }
     }
 
     /// Kinetic and potential energy.

@@ -10,6 +10,8 @@ pub mod device;
 #[cfg(not(target_os = "none"))]
 pub mod hardware;
 #[cfg(not(target_os = "none"))]
+pub mod norm;
+#[cfg(not(target_os = "none"))]
 pub mod plan;
 #[cfg(not(target_os = "none"))]
 pub mod report;
@@ -19,5 +21,7 @@ pub mod run;
 pub mod scenes;
 #[cfg(not(target_os = "none"))]
 pub mod search;
+#[cfg(not(target_os = "none"))]
+pub mod shaking;
 #[cfg(not(target_os = "none"))]
 pub mod subject;

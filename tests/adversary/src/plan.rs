@@ -138,10 +138,6 @@ impl Plan {
         }
         let armed_by_boot = rng.random_bool(0.5);
         let zero = if armed_by_boot { start[0] } else { subject.place(rng) };
-        for i in 0..=hand.segments.len() {
-            // The hand's springs are at rest where it starts from.
-            start[2 * i] += 0.0;
-        }
         let most = match rng.random_range(0..10) {
             0 => subject.tolerated + rng.random_range(1..=3),
             _ => subject.tolerated,
@@ -161,10 +157,14 @@ impl Plan {
     }
 
     fn hand(rng: &mut impl Rng, subject: &Subject) -> Hand {
-        match rng.random_range(0..4) {
+        match rng.random_range(0..8) {
             0 => Hand::draw(rng),
-            1 => {
+            1..=2 => {
                 let theta = rng.random_range(0.02..3.14);
+                Hand::tuned(rng, theta)
+            }
+            3 => {
+                let theta = log_uniform(rng, 5e-3, 3.14);
                 Hand::tuned(rng, theta)
             }
             _ => {

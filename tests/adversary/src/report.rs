@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use firmware::torque::LimitReason;
+
 use crate::plan::Plan;
 use crate::run::{Outcome, Output};
 use crate::scenes::Drawn;
@@ -46,7 +48,11 @@ impl fmt::Display for Counterexample {
             outcome.periods,
             outcome.residual,
         )?;
-        writeln!(f, "  openings {}, stops {}", outcome.openings, outcome.faults)?;
+        write!(f, "  openings {}, stops {}, ticks by limit", outcome.openings, outcome.faults)?;
+        for (reason, ticks) in LimitReason::ALL.into_iter().zip(outcome.limits) {
+            write!(f, " {reason} {ticks}")?;
+        }
+        writeln!(f)?;
         writeln!(f, "  {:?} {output:?} {:?}", drawn.format, drawn.scene)?;
         if let Some(other) = &drawn.other {
             writeln!(f, "  other set: {other:?}")?;

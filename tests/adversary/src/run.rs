@@ -60,8 +60,9 @@ pub struct Outcome {
     pub allowed: f64,
     /// Energy at the start.
     pub start: f64,
-    /// The most that was gained, over what device and allowance took, in any quarter of the run:
-    /// above zero the loop feeds somebody.
+    /// What was gained over what device and allowance took, in the third or the last quarter of the
+    /// run, whichever is less: above zero the loop feeds somebody, and goes on doing so after what
+    /// the clamp's opening put in.
     pub rate: f64,
     /// Periods that were run.
     pub periods: u32,
@@ -73,6 +74,8 @@ pub struct Outcome {
     pub residual: f64,
     /// The servo went on although more updates were missed in a row than the certificate tolerates.
     pub went_on: bool,
+    /// Ticks whose torque was limited, by reason.
+    pub limits: [u32; 6],
     /// The largest energy of device and hand.
     pub largest: f64,
 }
@@ -129,6 +132,8 @@ struct Account {
     gained: f64,
     /// What the device dissipated.
     dissipated: f64,
+    /// What went through the motor, whichever way.
+    moved: f64,
     /// Travel of the device in rad, or more.
     travel: f64,
     /// Sum of all changes of the torque.
@@ -154,6 +159,9 @@ impl Account {
         f64::from(self.openings) * opening + self.errors(subject) + self.stops
     }
 }
+
+/// Share of an energy below which a climb sees nothing; a verdict does without.
+const ROUNDING: f64 = 1e-10;
 
 /// Periods between two looks at the account.
 const LOOK: u32 = 32;
@@ -252,7 +260,7 @@ where
         let mut outcome =
             Outcome { score: -1.0, start: held.energy(&x), rate: -1.0, ..Outcome::default() };
         let mut last = Last::default();
-        let mut before = Account::default();
+        let (mut before, mut last_rate) = (Account::default(), -1.0_f64);
         let window = (plan.periods / 4).max(LOOK);
         let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
         // Codes above mid-scale: what the motor has, and what waits for the next period.
@@ -348,7 +356,9 @@ where
                 let start = x[0];
                 let squared = part.advance(&mut x, &mut taken);
                 let loss = squared * held.damping();
-                account.gained += torque * (x[0] - start) - loss;
+                let work = torque * (x[0] - start);
+                account.gained += work - loss;
+                account.moved += work.abs();
                 account.dissipated += loss;
                 account.travel += squared.max(0.0).sqrt();
             }
@@ -364,24 +374,31 @@ where
                 let largest = outcome.start + account.gained;
                 outcome.largest = outcome.largest.max(largest);
                 outcome.openings = account.openings;
+                outcome.limits = last.limits;
                 if let Motion::Audited(_) = parts[1].as_ref().unwrap_or_else(|| unreachable!()) {
                     let residual = held.energy(&x) + taken - largest;
                     outcome.residual = outcome.residual.max(residual.abs());
                 }
                 if period % window >= window - LOOK {
                     let errors = account.errors(subject) - before.errors(subject);
-                    let took = account.dissipated - before.dissipated + errors;
-                    let rate = (account.gained - before.gained - errors)
-                        / (took + 1e-12 * outcome.start).max(f64::MIN_POSITIVE);
-                    outcome.rate = outcome.rate.max(rate);
+                    // With what rounds away, so that rest is no gain.
+                    let rounded = ROUNDING * (account.moved + account.dissipated + outcome.start);
+                    let took = account.dissipated - before.dissipated + errors + rounded;
+                    let rate = (account.gained - before.gained - errors - rounded)
+                        / took.max(f64::MIN_POSITIVE);
+                    outcome.rate = last_rate.min(rate);
+                    last_rate = rate;
                     before = account;
                 }
-                let speed = x[1].abs();
                 outcome.periods = period + 1;
-                // What the transducers exclude, and what grows beyond all numbers.
-                if speed > subject.fastest || !(outcome.largest <= 1e12 * all) {
+                // Beyond all numbers.
+                if !(outcome.largest <= 1e12 * all) {
                     break;
                 }
+            }
+            // The transducers exclude that; in a fraction of it the counter cannot wrap unseen.
+            if x[1].abs() > subject.fastest {
+                break;
             }
         }
         outcome

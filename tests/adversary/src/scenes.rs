@@ -94,14 +94,26 @@ pub struct Choice {
     pub limited: Option<bool>,
     /// The same of being latched.
     pub latched: Option<bool>,
+    /// Whether the converter may reach its full scale where a scene has no torque limit.
+    pub saturates: bool,
     /// Share of the margin that the device loses.
     pub taken: f64,
+    /// The damping of the device, over the least with which the scene's controller as it is would
+    /// be certified; only linear scenes are drawn then.
+    pub weakened: Option<f64>,
 }
 
 impl Choice {
     /// Anything.
-    pub const ANY: Self =
-        Self { kind: None, worst_period: None, limited: None, latched: None, taken: 0.9 };
+    pub const ANY: Self = Self {
+        kind: None,
+        worst_period: None,
+        limited: None,
+        latched: None,
+        saturates: true,
+        taken: 0.9,
+        weakened: None,
+    };
 }
 
 /// The number of a scene that is taken to the line.
@@ -138,6 +150,54 @@ pub struct Drawn {
     pub reach: f64,
     /// Share of the margin that the device loses.
     pub taken: f64,
+    /// The damping of the device in N m s/rad where it is another.
+    pub damping: Option<f64>,
+    /// Injected damping over the room that there is for it.
+    pub injected: Option<f64>,
+}
+
+impl Drawn {
+    /// A scene with sensor and motor so fine that they hardly matter, at angles of about `size` rad.
+    pub fn of(kind: Kind, scene: Scene, format: Numbers, latched: bool, size: f64) -> Self {
+        let unit = scene.device.damping / scene.timing.period;
+        let transducers = Transducers {
+            counts_per_turn: f64::from(1_u32 << 22),
+            counter: CounterWidth::Bits32,
+            full_scale_torque: scene.torque_limit.unwrap_or(0.0).max(4.0 * unit * size),
+            largest_speed: 100.0,
+        };
+        Self {
+            kind,
+            scene,
+            other: None,
+            judged_as: None,
+            transducers,
+            rendering: RenderingOptions { fade: 50.0 * scene.timing.period, injection: None },
+            format,
+            latched,
+            size,
+            reach: size,
+            taken: 0.9,
+            damping: None,
+            injected: None,
+        }
+    }
+}
+
+/// The least damping in N m s/rad with which a scene is certified, everything else as it runs;
+/// `None` where it is not certified as it is.
+pub fn least_damping(scene: &Scene, format: Format) -> Option<f64> {
+    let with =
+        |delta: f64| Scene { device: Device { passivity: Some(delta), ..scene.device }, ..*scene };
+    let (mut fails, mut passing) = (0.0, scene.device.passivity.unwrap_or(scene.device.damping));
+    if !passes(&with(passing), format) {
+        return None;
+    }
+    while passing - fails > 1e-7 * passing {
+        let middle = 0.5 * (fails + passing);
+        *(if passes(&with(middle), format) { &mut passing } else { &mut fails }) = middle;
+    }
+    Some(passing)
 }
 
 fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool {
@@ -182,6 +242,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     let full_scale = (unit * size * log_uniform(rng, 0.1, 10.0)).min(100.0);
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
     let limited = sometimes(rng, choice.limited, if rational { 0.1 } else { 0.5 });
+    let full_scale = if limited || choice.saturates { full_scale } else { full_scale * 30.0 };
     let passivity = match kind {
         Kind::Overstated => Some(delta),
         _ => rng.random_bool(0.1).then_some(delta),
@@ -241,49 +302,65 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
             let (hidden, plain) = hidden(rng, unit, least);
             scene.environment = hidden;
             judged_as = Some(plain);
-            Knob::Gain
+            // Any other gain would not leave the factors exactly in common.
+            Knob::Coupling
         }
     };
     let knob = match scene.coupling {
         Coupling::Spring { .. } if rng.random_bool(0.15) => Knob::Coupling,
         _ => knob,
     };
+    if kind == Kind::Unstable && matches!(scene.coupling, Coupling::Spring { .. }) {
+        // Only a soft coupling makes a stable controller of it.
+        let stiffness = standard * log_uniform(rng, 0.01, 0.7);
+        scene.coupling = Coupling::Spring { stiffness };
+    }
     let exponent = rng.random_range(16..=22);
     let exponent = if rng.random_bool(0.1) { rng.random_range(12..=22) } else { exponent };
-    let counts_per_turn = f64::from(1_u32 << exponent);
-    let (counter, half) = if rng.random_bool(0.25) {
-        (CounterWidth::Bits16, f64::from(1_u32 << 15))
+    let (counter, half, exponent) = if rng.random_bool(0.25) {
+        (CounterWidth::Bits16, f64::from(1_u32 << 15), exponent.min(17))
     } else {
-        (CounterWidth::Bits32, f64::from(1_u32 << 31))
+        (CounterWidth::Bits32, f64::from(1_u32 << 31), exponent)
     };
+    let counts_per_turn = f64::from(1_u32 << exponent);
     // So that the counter does not wrap unseen in the longest gap that a run has.
     let largest_speed = 0.9 * half * TAU / counts_per_turn / (8.0 * period);
     let transducers =
         Transducers { counts_per_turn, counter, full_scale_torque: full_scale, largest_speed };
     let fade = period * log_uniform(rng, 1.0, 200.0);
+    if choice.weakened.is_some() {
+        scene.torque_limit = None;
+        if let Environment::DelayedSpring(w)
+        | Environment::DamperWall(w)
+        | Environment::FreeModeWall { wall: w, .. } = &mut scene.environment
+        {
+            w.one_sided = false;
+        }
+    }
     let scale = taken_to_the_line(&scene, knob, format.format())?;
     let scene = scaled(&scene, knob, scale);
-    let judged_as = judged_as.map(|environment| {
-        scaled(
-            &Scene { environment, ..scene },
-            Knob::Gain,
-            if knob == Knob::Gain { scale } else { 1.0 },
-        )
-    });
+    let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
-    let injection = None;
+    let damping = match choice.weakened {
+        Some(share) => Some(share * least_damping(&scene, format.format())?),
+        None => None,
+    };
+    // The room is known only once the scene is certified.
+    let injected = rng.random_bool(0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
     Some(Drawn {
         kind,
         scene,
         other,
         judged_as,
         transducers,
-        rendering: RenderingOptions { fade, injection },
+        rendering: RenderingOptions { fade, injection: None },
         format,
         latched,
         size,
         reach: reach.max(face.abs()),
         taken: choice.taken,
+        damping,
+        injected,
     })
 }
 
@@ -340,7 +417,10 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
     let zeros = rng.random_range(0..=count);
     let mut numerator: Vec<f64> = (0..=zeros).map(|_| rng.random_range(-1.0..1.0)).collect();
     let sum = |c: &[f64]| c.iter().sum::<f64>();
-    if sum(&numerator) * sum(&denominator) < 0.0 {
+    if unstable {
+        numerator = (0..=count).map(|_| 0.3 * rng.random_range(-1.0..1.0)).collect();
+        numerator[0] = 1.0;
+    } else if sum(&numerator) * sum(&denominator) < 0.0 {
         numerator.iter_mut().for_each(|c| *c = -*c);
     }
     let size = numerator.iter().map(|c| c.abs()).sum::<f64>();
@@ -353,9 +433,15 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
     })
 }
 
+/// About this number, in so few bits that its products with small whole numbers are exact.
+fn exactly(x: f64) -> f64 {
+    let scale = 2.0_f64.powi(2 - x.log2().floor() as i32);
+    (x * scale).round() / scale
+}
+
 /// A delayed spring with factors on the circle above and below, and the spring alone.
 fn hidden(rng: &mut impl Rng, unit: f64, delay: usize) -> (Environment, Environment) {
-    let gain = unit * log_uniform(rng, 0.05, 1.0);
+    let gain = exactly(unit * log_uniform(rng, 0.05, 1.0));
     let mut factor = vec![1.0];
     let quadratic: [f64; 3] =
         [[1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0]][rng.random_range(0..3)];
@@ -434,6 +520,12 @@ fn taken_to_the_line(scene: &Scene, knob: Knob, format: Format) -> Option<f64> {
             if outside > 300.0 {
                 return Some(inside);
             }
+        }
+    } else if let Some(by) = [2.0, 4.0, 8.0, 16.0, 32.0].into_iter().find(|by| passes(*by)) {
+        // It passes from somewhere on: a spring that pulls an unstable environment along.
+        (inside, outside) = (by, 2.0 * by);
+        while passes(outside) && outside < 300.0 {
+            (inside, outside) = (outside, 2.0 * outside);
         }
     } else {
         (inside, outside) = (0.25, 1.0);

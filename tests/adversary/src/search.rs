@@ -57,7 +57,7 @@ pub struct Effort {
 
 impl Effort {
     /// Some milliseconds a scene.
-    pub const USUAL: Self = Self { drawn: 8, climbed: 8, periods: 512, long: 8192 };
+    pub const USUAL: Self = Self { drawn: 10, climbed: 20, periods: 512, long: 8192 };
 }
 
 /// What a search found.
@@ -140,19 +140,24 @@ fn with<N: Number, M: OutputMode, T: Task>(
 where
     Environment: Tunable<N> + Renders<M>,
 {
+    let mut drawn = drawn.clone();
+    // Refused scenes are looked at for remedies, which takes a while.
+    certify_quickly(&drawn.scene, drawn.format)?;
+    if let Some(share) = drawn.injected {
+        let timed = drawn.scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
+        drawn.rendering.injection = timed.room().map(|room| room * share);
+    }
     let set = |scene: &Scene| {
         let timed = scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
         let assessment = *timed.assessment();
         let set = Rendering::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
         Some((set, assessment))
     };
-    // Refused scenes are looked at for remedies, which takes a while.
-    certify_quickly(&drawn.scene, drawn.format)?;
     let (own, assessment) = set(&drawn.scene)?;
     let mut sets = vec![own];
     let mut assessments: Vec<Assessment> = vec![assessment];
-    let mut drawn = drawn.clone();
-    match drawn.other.as_ref().and_then(set) {
+    let other = drawn.other.as_ref().and_then(set);
+    match other {
         Some((other, assessment)) => {
             sets.push(other);
             assessments.push(assessment);
@@ -218,6 +223,9 @@ impl Task for Climb<'_> {
         let consider = |found: &mut Found, plan: Plan, best: &mut Option<(Plan, Outcome)>| {
             let mut plan = plan;
             let mut outcome = run(found, &plan, false);
+            if outcome.rate > 1e3 {
+                eprintln!("RATE {outcome:?} {plan:?} {subject:?}");
+            }
             // A gain that does not show yet shows after a while, if it is one.
             if !outcome.is_violation() && outcome.rate > 0.0 {
                 let short = plan.periods;
@@ -294,14 +302,15 @@ impl Search {
         let Some(drawn) = scenes::draw(&mut rng, &self.choice) else {
             return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
         };
-        let climb = Climb { search: self, number, drawn: &drawn, rng };
-        let mut found = booted(&drawn, self.output, climb).unwrap_or(Found {
-            largest: -1.0,
-            rate: -1.0,
-            ..Found::default()
-        });
-        found.scenes = 1;
-        found
+        self.climb(number, &drawn, rng)
+    }
+
+    /// Searches through the runs of a scene.
+    pub fn climb(&self, number: u64, drawn: &Drawn, rng: ChaCha8Rng) -> Found {
+        let climb = Climb { search: self, number, drawn, rng };
+        let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
+        let found = booted(drawn, self.output, climb).unwrap_or(nothing);
+        Found { scenes: 1, ..found }
     }
 
     /// The whole search, on two threads.

@@ -1,12 +1,16 @@
 //! What a search needs to know about an accepted scene, in the loop's units, and what its
 //! certificate allows.
 
+use std::f64::consts::{PI, TAU};
+
 use firmware::certificate::{Assessment, Rest, Steps};
+use firmware::dac::DacCode;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
 use rand::Rng;
 
+use crate::norm::Errors;
 use crate::scenes::Drawn;
 
 /// An accepted scene as numbers, in the loop's units: see [`crate::device`].
@@ -86,7 +90,7 @@ impl Subject {
         let declared = declared(scene);
         let unit = declared / scene.timing.period;
         let steps = Steps::of(transducers, None);
-        let step = std::f64::consts::TAU / transducers.counts_per_turn;
+        let step = TAU / transducers.counts_per_turn;
         // A rigid device has no more passivity than damping, whatever was declared.
         let has = declared.min(scene.device.damping);
         let (mut bound, mut compliance, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
@@ -96,18 +100,28 @@ impl Subject {
         let mut sets = 0;
         for ((scene, judged_as), assessment) in scenes.zip(assessments) {
             sets += 1;
-            let rest = Rest::of(judged_as.unwrap_or(scene), format, &steps)?;
+            let judged = judged_as.unwrap_or(scene);
+            let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
+            let (encoder, of_numbers) = match Rest::of(judged, format, &steps) {
+                Some(rest) => (rest.encoder.unwrap_or(0.0), rest.numbers),
+                None => {
+                    let errors = Errors::of(judged, format, largest)?;
+                    (0.5 * step * errors.position, errors.numbers)
+                }
+            };
+            let converter =
+                0.5 * transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
             let injected = drawn.rendering.injection.unwrap_or(0.0) / scene.timing.period;
-            let encoder = rest.encoder.unwrap_or(0.0).max(0.5 * step * norm(scene).unwrap_or(0.0));
-            let this = encoder + rest.converter.unwrap_or(0.0) + injected * step;
-            error = error.max(this);
-            numbers = numbers.max(rest.numbers);
-            bound = bound.max(scene.torque_limit.unwrap_or(transducers.full_scale_torque));
+            let encoder = encoder.max(0.5 * step * norm(scene).unwrap_or(0.0));
+            error = error.max(encoder + converter + injected * step);
+            numbers = numbers.max(of_numbers);
+            bound = bound.max(largest);
             if let Coupling::Spring { stiffness } = scene.coupling {
                 compliance = compliance.max(1.0 / stiffness);
             }
             face = face.max(wall(&scene.environment).map_or(0.0, |wall| wall.face.abs()));
-            damping = damping.max(has - drawn.taken * margin(assessment, scene));
+            let lost = drawn.taken * margin(assessment, scene);
+            damping = damping.max(drawn.damping.unwrap_or(has - lost));
         }
         let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
         let periods = worst / scene.timing.period;
@@ -118,18 +132,18 @@ impl Subject {
             damping: (damping / declared).max(0.0),
             tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
             torque_per_code: transducers.full_scale_torque
-                / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE)
+                / f64::from(DacCode::CODES_TO_FULL_SCALE)
                 / unit,
             bound: bound / unit,
             compliance: compliance * unit,
             face,
             error: error / unit,
             numbers: numbers / unit,
-            counts_per_radian: transducers.counts_per_turn / std::f64::consts::TAU,
+            counts_per_radian: transducers.counts_per_turn / TAU,
             fastest: transducers.largest_speed * scene.timing.period,
             size: drawn.size,
             reach: drawn.reach,
-            angles: [theta, theta, theta / periods, std::f64::consts::PI / periods],
+            angles: [theta, theta / periods, PI / periods, 2.0 * PI / (periods + 1.0)],
             sets,
         })
     }
