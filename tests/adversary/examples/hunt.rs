@@ -1,6 +1,7 @@
 //! Searches among some scenes only: `hunt name=value ...`, each of
 //! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `saturates`, `taken`,
-//! `weakened`, `full`.
+//! `weakened`, `drawn`, `climbed`, `periods`, `long`,
+//! `full`.
 
 use adversary::scenes::{Choice, Kind};
 use adversary::search::{Effort, Search};
@@ -33,6 +34,10 @@ fn main() {
             "latched" => search.choice.latched = yes(),
             "taken" => search.choice.taken = value.parse().expect("a number"),
             "weakened" => search.choice.weakened = Some(value.parse().expect("a number")),
+            "drawn" => search.effort.drawn = number() as u32,
+            "climbed" => search.effort.climbed = number() as u32,
+            "periods" => search.effort.periods = number() as u32,
+            "long" => search.effort.long = number() as u32,
             "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
             _ => panic!("no such setting: {name}"),

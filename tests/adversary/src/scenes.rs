@@ -164,7 +164,7 @@ impl Drawn {
             counts_per_turn: f64::from(1_u32 << 22),
             counter: CounterWidth::Bits32,
             full_scale_torque: scene.torque_limit.unwrap_or(0.0).max(4.0 * unit * size),
-            largest_speed: 100.0,
+            largest_speed: 100.0 * size / scene.timing.period,
         };
         Self {
             kind,
@@ -318,7 +318,9 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     let exponent = rng.random_range(16..=22);
     let exponent = if rng.random_bool(0.1) { rng.random_range(12..=22) } else { exponent };
     let (counter, half, exponent) = if rng.random_bool(0.25) {
-        (CounterWidth::Bits16, f64::from(1_u32 << 15), exponent.min(17))
+        // Coarse enough to be followed by so few bits.
+        let most = (16.0 / size).log2().max(10.0) as u32;
+        (CounterWidth::Bits16, f64::from(1_u32 << 15), exponent.min(most))
     } else {
         (CounterWidth::Bits32, f64::from(1_u32 << 31), exponent)
     };

@@ -57,7 +57,7 @@ pub struct Effort {
 
 impl Effort {
     /// Some milliseconds a scene.
-    pub const USUAL: Self = Self { drawn: 10, climbed: 20, periods: 512, long: 8192 };
+    pub const USUAL: Self = Self { drawn: 24, climbed: 24, periods: 512, long: 8192 };
 }
 
 /// What a search found.
@@ -67,6 +67,8 @@ pub struct Found {
     pub scenes: u64,
     /// Those that boards accept.
     pub accepted: u64,
+    /// Those of which no bound on the effect of their steps is known, so that nothing was run.
+    pub unbounded: u64,
     /// Runs.
     pub runs: u64,
     /// Periods of all of them.
@@ -83,6 +85,7 @@ impl Found {
     fn add(&mut self, other: Self) {
         self.scenes += other.scenes;
         self.accepted += other.accepted;
+        self.unbounded += other.unbounded;
         self.runs += other.runs;
         self.ticks += other.ticks;
         self.largest = self.largest.max(other.largest);
@@ -93,10 +96,10 @@ impl Found {
 
 impl std::fmt::Display for Found {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { scenes, accepted, runs, ticks, largest, rate, .. } = self;
+        let Self { scenes, accepted, unbounded, runs, ticks, largest, rate, .. } = self;
         write!(
             f,
-            "scenes={scenes} accepted={accepted} runs={runs} ticks={ticks} \
+            "scenes={scenes} accepted={accepted} unbounded={unbounded} runs={runs} ticks={ticks} \
              largest_score={largest:.3e} largest_rate={rate:.3e}"
         )
     }
@@ -117,9 +120,24 @@ pub trait Task {
         Environment: Tunable<N> + Renders<M>;
 }
 
-/// Boots a drawn scene as a board does, and does something with it; `None` where a board refuses
-/// it, or what its steps do to the torque is not bounded.
-pub fn booted<T: Task>(drawn: &Drawn, output: Option<Output>, task: T) -> Option<T::Result> {
+/// Why there is nothing to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unjudged {
+    /// A board refuses the scene.
+    Refused,
+    /// What encoder, numbers and converter do to the torque has no bound that is known.
+    Unbounded,
+}
+
+/// Boots a drawn scene as a board does, and does something with it.
+///
+/// # Errors
+/// Why not.
+pub fn booted<T: Task>(
+    drawn: &Drawn,
+    output: Option<Output>,
+    task: T,
+) -> Result<T::Result, Unjudged> {
     match (drawn.format, drawn.latched) {
         (Numbers::F32, true) => with::<f32, Latched, T>(drawn, output, task),
         (Numbers::F32, false) => with::<f32, Simultaneous, T>(drawn, output, task),
@@ -136,16 +154,16 @@ fn with<N: Number, M: OutputMode, T: Task>(
     drawn: &Drawn,
     output: Option<Output>,
     task: T,
-) -> Option<T::Result>
+) -> Result<T::Result, Unjudged>
 where
     Environment: Tunable<N> + Renders<M>,
 {
     let mut drawn = drawn.clone();
     // Refused scenes are looked at for remedies, which takes a while.
-    certify_quickly(&drawn.scene, drawn.format)?;
+    certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
     if let Some(share) = drawn.injected {
-        let timed = drawn.scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
-        drawn.rendering.injection = timed.room().map(|room| room * share);
+        let timed = drawn.scene.certify_in(N::FORMAT).ok().and_then(|scene| scene.time::<M>().ok());
+        drawn.rendering.injection = timed.and_then(|timed| timed.room()).map(|room| room * share);
     }
     let set = |scene: &Scene| {
         let timed = scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
@@ -153,7 +171,7 @@ where
         let set = Rendering::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
         Some((set, assessment))
     };
-    let (own, assessment) = set(&drawn.scene)?;
+    let (own, assessment) = set(&drawn.scene).ok_or(Unjudged::Refused)?;
     let mut sets = vec![own];
     let mut assessments: Vec<Assessment> = vec![assessment];
     let other = drawn.other.as_ref().and_then(set);
@@ -165,7 +183,7 @@ where
         None => drawn.other = None,
     }
     let drawn = &drawn;
-    let subject = Subject::of(drawn, &assessments, N::FORMAT)?;
+    let subject = Subject::of(drawn, &assessments, N::FORMAT).ok_or(Unjudged::Unbounded)?;
     let program = Program {
         scene: drawn.scene,
         transducers: drawn.transducers,
@@ -175,9 +193,10 @@ where
     let mut board = Board::new(subject.counts_per_radian, true);
     let mut mailbox = Mailbox::new();
     let (requests, _inbox) = mailbox.split();
-    let Booted { cycle, .. } = boot::<_, N, M>(&program, &mut board, &requests).ok()?;
+    let Booted { cycle, .. } =
+        boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
     let machine = Machine::new(cycle, sets, output.unwrap_or(Output::of::<M>()));
-    Some(task.with(machine, subject, &program))
+    Ok(task.with(machine, subject, &program))
 }
 
 fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
@@ -189,6 +208,9 @@ fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
 pub fn refusal(scene: &Scene, format: Numbers) -> Option<String> {
     certify_in(scene, format.format()).err().map(|rejection| rejection.to_string())
 }
+
+/// A rate from which a run is worth to be gone on with.
+const SURE: f64 = 1e-5;
 
 /// A search through the runs of one scene.
 struct Climb<'a> {
@@ -223,18 +245,12 @@ impl Task for Climb<'_> {
         let consider = |found: &mut Found, plan: Plan, best: &mut Option<(Plan, Outcome)>| {
             let mut plan = plan;
             let mut outcome = run(found, &plan, false);
-            if outcome.rate > 1e3 {
-                eprintln!("RATE {outcome:?} {plan:?} {subject:?}");
-            }
-            // A gain that does not show yet shows after a while, if it is one.
-            if !outcome.is_violation() && outcome.rate > 0.0 {
-                let short = plan.periods;
-                plan.periods = effort.long;
-                let long = run(found, &plan, false);
-                plan.periods = short;
-                if long.height() > outcome.height() || long.is_violation() {
-                    outcome = long;
-                    plan.periods = effort.long;
+            // A gain that does not show yet shows after a while, if it is one and not what the
+            // clamp's opening put in.
+            for periods in [effort.long, 8 * effort.long] {
+                if !outcome.is_violation() && outcome.rate > SURE {
+                    plan.periods = periods;
+                    outcome = run(found, &plan, false);
                 }
             }
             let better = best.as_ref().is_none_or(|(_, b)| outcome.height() > b.height());
@@ -309,8 +325,11 @@ impl Search {
     pub fn climb(&self, number: u64, drawn: &Drawn, rng: ChaCha8Rng) -> Found {
         let climb = Climb { search: self, number, drawn, rng };
         let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
-        let found = booted(drawn, self.output, climb).unwrap_or(nothing);
-        Found { scenes: 1, ..found }
+        match booted(drawn, self.output, climb) {
+            Ok(found) => Found { scenes: 1, ..found },
+            Err(Unjudged::Refused) => Found { scenes: 1, ..nothing },
+            Err(Unjudged::Unbounded) => Found { scenes: 1, unbounded: 1, ..nothing },
+        }
     }
 
     /// The whole search, on two threads.

@@ -11,6 +11,8 @@ pub struct Shaking {
     pub name: &'static str,
     /// The scene.
     pub scene: Scene,
+    /// What it is to a certificate that cancels what its numerator and denominator have in common.
+    pub judged_as: Option<Scene>,
 }
 
 /// The device of the paper in a scene.
@@ -42,14 +44,19 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> Environment {
 /// All of them.
 pub fn all() -> Vec<Shaking> {
     let damper = |k, b, n| Environment::DamperWall(wall(k, b, n));
-    let shaking = |name, scene| Shaking { name, scene };
+    let shaking = |name, scene| Shaking { name, scene, judged_as: None };
+    let hidden = |name, numerator: &[f64], denominator: &[f64]| Shaking {
+        name,
+        scene: scene(44.0, rational(numerator, denominator)),
+        judged_as: Some(scene(44.0, rational(&[3.0], &[1.0]))),
+    };
     let eight = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
     let four = [1.0, 4.0, 6.0, 4.0, 1.0];
     let twice = Timing { period: 0.001, worst_period: Some(0.002) };
     let stiff = scene(440.0, damper(220.0, 0.1, 1));
     vec![
-        shaking("hidden (z + 1)^8", scene(44.0, rational(&eight.map(|c| 3.0 * c), &eight))),
-        shaking("hidden (z + 1)^4", scene(44.0, rational(&four.map(|c| 3.0 * c), &four))),
+        hidden("hidden (z + 1)^8", &eight.map(|c| 3.0 * c), &eight),
+        hidden("hidden (z + 1)^4", &four.map(|c| 3.0 * c), &four),
         shaking(
             "missed updates on a latched board",
             Scene { timing: twice, torque_limit: Some(10.0), ..scene(22.0, damper(17.6, 0.0, 1)) },

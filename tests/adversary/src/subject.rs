@@ -82,6 +82,9 @@ fn norm(scene: &Scene) -> Option<f64> {
     }
 }
 
+/// An angle a sample below which nothing happens in the time that there is.
+const SLOWEST: f64 = 0.1;
+
 impl Subject {
     /// Of a drawn scene and its other one, which were both accepted. `None` where no bound is
     /// known on what encoder, numbers and converter do to the torque.
@@ -143,7 +146,14 @@ impl Subject {
             fastest: transducers.largest_speed * scene.timing.period,
             size: drawn.size,
             reach: drawn.reach,
-            angles: [theta, theta / periods, PI / periods, 2.0 * PI / (periods + 1.0)],
+            angles: if theta < SLOWEST {
+                // As bad nearly up to there, and many times as fast.
+                [0.1, 0.2, 0.35, 0.6]
+            } else if periods > 1.0 {
+                [theta, theta / periods, PI / periods, 2.0 * PI / (periods + 1.0)]
+            } else {
+                [theta; 4]
+            },
             sets,
         })
     }
