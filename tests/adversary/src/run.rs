@@ -383,7 +383,7 @@ where
                     let errors = account.errors(subject) - before.errors(subject);
                     // With what rounds away, so that rest is no gain.
                     let rounded = ROUNDING * (account.moved + account.dissipated + outcome.start);
-                    let took = account.dissipated - before.dissipated + errors + rounded;
+                    let took = (account.dissipated - before.dissipated).max(0.0) + errors + rounded;
                     let rate = (account.gained - before.gained - errors - rounded)
                         / took.max(f64::MIN_POSITIVE);
                     outcome.rate = last_rate.min(rate);

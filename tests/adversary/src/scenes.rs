@@ -242,7 +242,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     let full_scale = (unit * size * log_uniform(rng, 0.1, 10.0)).min(100.0);
     let rational = matches!(kind, Kind::Rational | Kind::Unstable | Kind::Hidden);
     let limited = sometimes(rng, choice.limited, if rational { 0.1 } else { 0.5 });
-    let full_scale = if limited || choice.saturates { full_scale } else { full_scale * 30.0 };
+    let full_scale = if limited || choice.saturates { full_scale } else { 10.0 * unit * size };
     let passivity = match kind {
         Kind::Overstated => Some(delta),
         _ => rng.random_bool(0.1).then_some(delta),

@@ -289,7 +289,8 @@ impl Task for Climb<'_> {
             plan.periods = effort.periods;
             is_refuted = consider(&mut found, plan, &mut best);
             let after = best.as_ref().map_or(before, |(_, o)| o.height());
-            spread = if after > before { spread * 1.3 } else { spread * 0.8 };
+            spread =
+                if after > before { (spread * 1.3).min(1.0) } else { (spread * 0.85).max(1e-3) };
         }
         if let Some((plan, outcome)) = best {
             found.largest = outcome.score;
