@@ -45,20 +45,14 @@ pub struct Held {
 }
 
 /// What happens in some part of a period.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Step {
     /// By columns, which are added up.
     transition: Matrix,
     /// Integral of the device's velocity squared.
     motion: Matrix,
-}
-
-/// What happens in some part of a period, and where all of its energy goes.
-#[derive(Clone, Copy, Debug)]
-pub struct Audit {
-    step: Step,
-    /// What the dampers of the hand take.
-    hand: Matrix,
+    /// What the dampers of the hand take, where that is wanted.
+    hand: Option<Box<Matrix>>,
 }
 
 impl Held {
@@ -128,18 +122,22 @@ impl Held {
 
     /// A part of a period, exactly.
     pub fn step(&self, part: f64) -> Step {
-        let mut device = ZERO;
-        device[1][1] = 1.0;
-        let (transition, [motion]) = integrate(&self.rates, [device], part);
-        Step { transition: transposed(&transition), motion }
+        let (transition, [motion]) = integrate(&self.rates, [Self::device()], part);
+        Step { transition: transposed(&transition), motion, hand: None }
     }
 
     /// A part of a period with what the hand takes.
-    pub fn audit(&self, part: f64) -> Audit {
-        let mut device = ZERO;
-        device[1][1] = 1.0;
-        let (transition, [motion, hand]) = integrate(&self.rates, [device, self.hand], part);
-        Audit { step: Step { transition: transposed(&transition), motion }, hand }
+    pub fn audited(&self, part: f64) -> Step {
+        let both = [Self::device(), self.hand];
+        let (transition, [motion, hand]) = integrate(&self.rates, both, part);
+        Step { transition: transposed(&transition), motion, hand: Some(Box::new(hand)) }
+    }
+
+    /// The device's velocity squared.
+    fn device() -> Matrix {
+        let mut squared = ZERO;
+        squared[1][1] = 1.0;
+        squared
     }
 }
 
@@ -151,14 +149,11 @@ impl Step {
         *x = times(&self.transition, x);
         motion
     }
-}
 
-impl Audit {
-    /// Moves the state on; gives the integral of the device's velocity squared, and what the
-    /// dampers of the hand took.
-    pub fn advance(&self, x: &mut State) -> (f64, f64) {
-        let hand = form(&self.hand, x);
-        (self.step.advance(x), hand)
+    /// What the dampers of the hand take from this state on, where that was wanted.
+    #[inline]
+    pub fn taken(&self, x: &State) -> f64 {
+        self.hand.as_ref().map_or(0.0, |hand| form(hand, x))
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a run does: the hand and where it starts, when updates are missed, and what is asked of the
 //! servo.
 
+use std::f64::consts::PI;
+
 use rand::Rng;
 use tests::hands::Hand;
 use tests::scenes::log_uniform;
@@ -43,20 +45,21 @@ impl Pattern {
     /// Longest periodic pattern.
     pub const LONGEST: usize = 6;
 
-    /// One that misses at most `most` updates in a row, if that is not zero.
-    pub fn draw(rng: &mut impl Rng, most: u32) -> Self {
+    /// One that misses at most `most` updates in a row, if that is not zero; with late codes where
+    /// they are latched.
+    pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
         if most == 0 || rng.random_bool(0.15) {
             return Self::InTime;
         }
         if rng.random_bool(0.3) {
             let missed = rng.random_range(0..=200);
-            let late = rng.random_range(0..=200);
+            let late = if latched { rng.random_range(0..=200) } else { 0 };
             return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
         }
         let length = rng.random_range(2..=Self::LONGEST);
         let mut ticks = [Tick::InTime; Self::LONGEST];
         let mut in_a_row = 0;
-        let kind = rng.random_range(0..3);
+        let kind = if latched { rng.random_range(0..3) } else { 0 };
         for tick in ticks.iter_mut().take(length - 1) {
             if in_a_row < most && rng.random_bool(0.6) {
                 in_a_row += 1;
@@ -147,7 +150,7 @@ impl Plan {
             zero,
             start,
             armed_by_boot,
-            pattern: Pattern::draw(rng, most),
+            pattern: Pattern::draw(rng, most, subject.latched),
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
             periods,
@@ -160,11 +163,11 @@ impl Plan {
         match rng.random_range(0..8) {
             0 => Hand::draw(rng),
             1..=2 => {
-                let theta = rng.random_range(0.02..3.14);
+                let theta = rng.random_range(0.02..PI);
                 Hand::tuned(rng, theta)
             }
             3 => {
-                let theta = log_uniform(rng, 5e-3, 3.14);
+                let theta = log_uniform(rng, 5e-3, PI);
                 Hand::tuned(rng, theta)
             }
             _ => {
@@ -228,7 +231,7 @@ impl Plan {
             }
         }
         if pattern && subject.tolerated > 0 {
-            plan.pattern = Pattern::draw(rng, subject.tolerated);
+            plan.pattern = Pattern::draw(rng, subject.tolerated, subject.latched);
         }
         if requests {
             plan.draw_requests(rng, subject);

@@ -19,7 +19,7 @@ use firmware::number::Number;
 use firmware::servo::{OutputMode, OutputTiming, Rendering, Renders};
 use firmware::tuning::Tunable;
 
-use crate::device::{Audit, Held, State, Step, TORQUE};
+use crate::device::{Held, Step, TORQUE};
 use crate::hardware::{Board, Last};
 use crate::plan::{Pattern, Plan, Request, Tick};
 use crate::subject::Subject;
@@ -101,28 +101,6 @@ pub struct Machine<N: Number, M> {
     /// When its codes reach the motor.
     pub output: Output,
     mode: PhantomData<M>,
-}
-
-/// How device and hand are moved on.
-enum Motion {
-    /// Only as far as the account needs it.
-    Plain(Step),
-    /// With all energies, as a check.
-    Audited(Audit),
-}
-
-impl Motion {
-    #[inline]
-    fn advance(&self, x: &mut State, hand: &mut f64) -> f64 {
-        match self {
-            Self::Plain(step) => step.advance(x),
-            Self::Audited(audit) => {
-                let (motion, taken) = audit.advance(x);
-                *hand += taken;
-                motion
-            }
-        }
-    }
 }
 
 /// What was put in and taken since the start.
@@ -228,14 +206,12 @@ where
     /// Runs a plan. `audited`: with the energy of device and hand beside the account.
     pub fn run(&self, subject: &Subject, plan: &Plan, audited: bool) -> Outcome {
         let held = Held::new(&plan.hand, subject.damping);
-        let motion = |part: f64| {
-            if audited { Motion::Audited(held.audit(part)) } else { Motion::Plain(held.step(part)) }
-        };
+        let step = |part: f64| if audited { held.audited(part) } else { held.step(part) };
         let parts = match self.output {
-            Output::Early(part) => [Some(motion(part)), Some(motion(1.0 - part))],
-            _ => [None, Some(motion(1.0))],
+            Output::Early(part) => [Some(step(part)), Some(step(1.0 - part))],
+            _ => [None, Some(step(1.0))],
         };
-        self.play(subject, plan, &held, &parts)
+        self.play(subject, plan, &held, &parts, audited)
     }
 
     fn play(
@@ -243,7 +219,8 @@ where
         subject: &Subject,
         plan: &Plan,
         held: &Held,
-        parts: &[Option<Motion>; 2],
+        parts: &[Option<Step>; 2],
+        audited: bool,
     ) -> Outcome {
         let mut mailbox = Mailbox::new();
         let (mut requests, mut inbox) = mailbox.split();
@@ -354,7 +331,8 @@ where
                 account.changes += (torque - x[TORQUE]).abs();
                 x[TORQUE] = torque;
                 let start = x[0];
-                let squared = part.advance(&mut x, &mut taken);
+                taken += part.taken(&x);
+                let squared = part.advance(&mut x);
                 let loss = squared * held.damping();
                 let work = torque * (x[0] - start);
                 account.gained += work - loss;
@@ -375,7 +353,7 @@ where
                 outcome.largest = outcome.largest.max(largest);
                 outcome.openings = account.openings;
                 outcome.limits = last.limits;
-                if let Motion::Audited(_) = parts[1].as_ref().unwrap_or_else(|| unreachable!()) {
+                if audited {
                     let residual = held.energy(&x) + taken - largest;
                     outcome.residual = outcome.residual.max(residual.abs());
                 }
@@ -392,7 +370,7 @@ where
                 }
                 outcome.periods = period + 1;
                 // Beyond all numbers.
-                if !(outcome.largest <= 1e12 * all) {
+                if outcome.largest > 1e12 * all || outcome.largest.is_nan() {
                     break;
                 }
             }

@@ -1,6 +1,6 @@
 //! Random scenes of every kind, each taken to just inside acceptance.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use firmware::certificate::Posed;
 use firmware::encoder::CounterWidth;
@@ -35,12 +35,12 @@ impl Numbers {
         }
     }
 
-    /// Largest angle in rad.
+    /// Largest angle in rad, or one that is far for it.
     const fn reach(self) -> f64 {
         match self {
             Self::F32 | Self::F64 => 1e3,
-            Self::Q24 => 127.0,
-            Self::Q20 => 500.0,
+            Self::Q24 => 128.0,
+            Self::Q20 => 2048.0,
         }
     }
 }
@@ -317,16 +317,20 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     }
     let exponent = rng.random_range(16..=22);
     let exponent = if rng.random_bool(0.1) { rng.random_range(12..=22) } else { exponent };
-    let (counter, half, exponent) = if rng.random_bool(0.25) {
-        // Coarse enough to be followed by so few bits.
-        let most = (16.0 / size).log2().max(10.0) as u32;
+    let (counter, half, exponent) = if reach <= 5.0 * size && rng.random_bool(0.25) {
+        // Coarse enough for so few bits to follow it.
+        let most = (4e3 / size).log2().max(10.0) as u32;
         (CounterWidth::Bits16, f64::from(1_u32 << 15), exponent.min(most))
     } else {
         (CounterWidth::Bits32, f64::from(1_u32 << 31), exponent)
     };
     let counts_per_turn = f64::from(1_u32 << exponent);
-    // So that the counter does not wrap unseen in the longest gap that a run has.
-    let largest_speed = 0.9 * half * TAU / counts_per_turn / (8.0 * period);
+    // A device that its program takes for slower than it is stops for what it takes for a jump.
+    let largest_speed = if rng.random_bool(0.1) {
+        size / period * log_uniform(rng, 0.1, 3.0)
+    } else {
+        0.9 * half * TAU / counts_per_turn / (8.0 * period)
+    };
     let transducers =
         Transducers { counts_per_turn, counter, full_scale_torque: full_scale, largest_speed };
     let fade = period * log_uniform(rng, 1.0, 200.0);
@@ -377,7 +381,12 @@ fn wall(rng: &mut impl Rng, unit: f64, delta: f64, delay: usize, reach: f64) -> 
         0 => 1.0 - log_uniform(rng, 1e-3, 0.1),
         _ => rng.random_range(0.0..0.95),
     });
-    let face = if rng.random_bool(0.5) { 0.0 } else { reach * rng.random_range(-1.0..1.0) };
+    // The wall of a device that is far away is there, on the side that its number format has left.
+    let face = match rng.random_range(0..3) {
+        0 => 0.0,
+        1 => 0.99 * reach * rng.random_range(-1.0..1.0),
+        _ => 0.995 * reach.copysign(rng.random_range(-1.0..1.0)),
+    };
     let one_sided = rng.random_bool(0.4);
     let face = if one_sided || rng.random_bool(0.5) { face } else { 0.0 };
     Wall { stiffness, damping, filter, delay, face, one_sided }
@@ -409,7 +418,7 @@ fn rational_with(rng: &mut impl Rng, unit: f64, delay: usize, unstable: bool) ->
         };
         let pair = denominator.len() < count && rng.random_bool(0.6);
         let factor = if pair {
-            vec![1.0, -2.0 * radius * rng.random_range(0.0..3.14_f64).cos(), radius * radius]
+            vec![1.0, -2.0 * radius * rng.random_range(0.0..PI).cos(), radius * radius]
         } else {
             vec![1.0, if rng.random_bool(0.3) { radius } else { -radius }]
         };
@@ -549,17 +558,31 @@ fn taken_to_the_line(scene: &Scene, knob: Knob, format: Format) -> Option<f64> {
 /// Another set of a scene's parameters that passes, too.
 fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Option<Scene> {
     let mut other = *scene;
+    if let Some(limit) = &mut other.torque_limit
+        && rng.random_bool(0.3)
+    {
+        *limit *= log_uniform(rng, 0.1, 1.0);
+    }
+    if rng.random_bool(0.3) {
+        other = scaled(&other, Knob::Coupling, log_uniform(rng, 0.5, 1.0));
+    }
     match &mut other.environment {
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => {
             wall.stiffness *= log_uniform(rng, 0.1, 1.0);
+            wall.damping *= log_uniform(rng, 0.3, 1.0);
+            if let Some(pole) = &mut wall.filter {
+                *pole *= rng.random_range(0.9..1.0);
+            }
             if rng.random_bool(0.5) {
                 wall.face += size * rng.random_range(-1.0..1.0);
             }
         }
-        Environment::FreeMode { .. } => other = scaled(scene, Knob::Residual, 0.7),
-        Environment::Rational(_) => other = scaled(scene, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
+        Environment::FreeMode { .. } => {
+            other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
+        }
+        Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
     }
     passes(&other, format.format()).then_some(other)
 }

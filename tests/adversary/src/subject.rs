@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use firmware::certificate::{Answer, Assessment, Rest, Steps};
 use firmware::dac::DacCode;
+use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
@@ -20,6 +21,9 @@ pub struct Subject {
     pub damping: f64,
     /// Updates that may be missed in a row.
     pub tolerated: u32,
+    /// Whether codes are latched: only then can one be late. A simultaneous one is there at its
+    /// count, however long it took.
+    pub latched: bool,
     /// Torque of one code of the converter.
     pub torque_per_code: f64,
     /// The largest torque of any of its sets.
@@ -115,14 +119,19 @@ impl Subject {
             let lost = drawn.taken * margin(assessment, scene);
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
         }
+        let half = match transducers.counter {
+            CounterWidth::Bits16 => f64::from(1_u32 << 15),
+            CounterWidth::Bits32 => f64::from(1_u32 << 31),
+        };
         let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
         let periods = worst / scene.timing.period;
         let cos = |c: f64| c.clamp(-1.0, 1.0).acos();
         let theta = assessments.first().and_then(|a| a.cos_theta);
-        let theta = theta.map_or(1.0, |c| cos(c.midpoint())).clamp(0.02, 3.14);
+        let theta = theta.map_or(1.0, |c| cos(c.midpoint())).clamp(0.02, PI);
         Some(Self {
             damping: (damping / declared).max(0.0),
             tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
+            latched: drawn.latched,
             torque_per_code: transducers.full_scale_torque
                 / f64::from(DacCode::CODES_TO_FULL_SCALE)
                 / unit,
@@ -132,7 +141,8 @@ impl Subject {
             error: error / unit,
             numbers: numbers / unit,
             counts_per_radian: transducers.counts_per_turn / TAU,
-            fastest: transducers.largest_speed * scene.timing.period,
+            // So that the counter does not wrap unseen in the longest gap that a run has.
+            fastest: 0.9 * half * step / 8.0,
             size: drawn.size,
             reach: drawn.reach,
             angles: if theta < SLOWEST {
@@ -152,8 +162,9 @@ impl Subject {
         match rng.random_range(0..4) {
             0 => 0.0,
             1 => self.size * rng.random_range(-1.0..1.0),
-            2 => self.reach * rng.random_range(-1.0..1.0),
-            _ => -self.face,
+            // So far from the board's zero, on either side.
+            2 => self.reach + self.size * rng.random_range(-2.0..2.0),
+            _ => -self.reach + self.size * rng.random_range(-2.0..2.0),
         }
     }
 }

@@ -122,7 +122,11 @@ fn the_search_finds_torques_that_come_early() {
 /// gives energy away: the certificate does not ask for more than it must.
 #[test]
 fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
-    for kind in [Kind::Wall, Kind::FreeMode, Kind::FreeModeWall, Kind::Rational] {
+    // Of how many scenes at least it finds that, in a hundred: the hand that takes the least is
+    // harder to find the more poles there are.
+    let kinds =
+        [(Kind::Wall, 20), (Kind::FreeMode, 10), (Kind::FreeModeWall, 15), (Kind::Rational, 2)];
+    for (kind, percent) in kinds {
         let search = Search {
             seed: 2,
             scenes: 400,
@@ -140,7 +144,7 @@ fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
         };
         let found = search.run();
         println!("{kind}: {found} counterexamples={}", found.counterexamples.len());
-        assert!(found.counterexamples.len() * 10 > found.accepted as usize, "{kind}");
+        assert!(found.counterexamples.len() as u64 * 100 >= found.accepted * percent, "{kind}");
     }
 }
 
