@@ -1,5 +1,5 @@
 //! Searches among some scenes only: `hunt name=value ...`, each of
-//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `saturates`, `taken`,
+//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `saturates`, `taken`, `bisected`,
 //! `weakened`, `drawn`, `climbed`, `periods`, `long`,
 //! `full`.
 
@@ -33,6 +33,7 @@ fn main() {
             "limited" => search.choice.limited = yes(),
             "latched" => search.choice.latched = yes(),
             "taken" => search.choice.taken = value.parse().expect("a number"),
+            "bisected" => search.choice.bisected = value.parse().expect("true or false"),
             "weakened" => search.choice.weakened = Some(value.parse().expect("a number")),
             "drawn" => search.effort.drawn = number() as u32,
             "climbed" => search.effort.climbed = number() as u32,

@@ -98,6 +98,9 @@ pub struct Choice {
     pub saturates: bool,
     /// Share of the margin that the device loses.
     pub taken: f64,
+    /// Whether the margin is not what the assessment states, but how much less damping would still
+    /// be certified.
+    pub bisected: bool,
     /// The damping of the device, over the least with which the scene's controller as it is would
     /// be certified; only linear scenes are drawn then.
     pub weakened: Option<f64>,
@@ -112,6 +115,7 @@ impl Choice {
         latched: None,
         saturates: true,
         taken: 0.9,
+        bisected: false,
         weakened: None,
     };
 }
@@ -347,9 +351,16 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     let scene = scaled(&scene, knob, scale);
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
-    let damping = match choice.weakened {
-        Some(share) => Some(share * least_damping(&scene, format.format())?),
-        None => None,
+    let damping = if choice.bisected || choice.weakened.is_some() {
+        let least = |scene: &Scene| least_damping(scene, format.format());
+        let least = least(&scene)?.max(other.as_ref().and_then(least).unwrap_or(0.0));
+        let has = delta.min(damping);
+        Some(match choice.weakened {
+            Some(share) => share * least,
+            None => has - choice.taken * (has - least),
+        })
+    } else {
+        None
     };
     // The room is known only once the scene is certified.
     let injected = rng.random_bool(0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));

@@ -54,7 +54,8 @@ fn readme(one_sided: bool, torque_limit: Option<f64>) -> Scene {
 /// spring is at rest, which is a little inside of a wall at the servo's zero.
 fn springy(stiffness: f64) -> Plan {
     // In units of the device's damping and the period.
-    let (unit, inertia) = (0.022 / 0.001, 2.2e-5 / 0.022 / 0.001);
+    let (damping, period) = (0.022, 0.001);
+    let (unit, inertia) = (damping / period, 2.2e-5 / (damping * period));
     let hand = Hand { inertia, damping: 0.05, stiffness: stiffness / unit, segments: Vec::new() };
     let mut start = [0.0; 8];
     start[0] = PI / 18.0;
