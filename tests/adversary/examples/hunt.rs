@@ -1,7 +1,8 @@
-//! Searches among some scenes only: `hunt name=value ...`, each of
-//! `seed`, `scenes`, `enough`, `kind`, `worst_period`, `limited`, `latched`, `saturates`, `taken`, `bisected`,
-//! `weakened`, `drawn`, `climbed`, `periods`, `long`,
-//! `full`.
+//! Searches among some scenes only: `hunt name=value ...`.
+//!
+//! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of what is drawn: `kind`,
+//! `worst_period`, `limited`, `latched`, `saturates`. Of the device: `taken`, `bisected`, `weakened`.
+//! Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two lines each.
 
 use adversary::scenes::{Choice, Kind};
 use adversary::search::{Effort, Search};
@@ -16,15 +17,16 @@ fn main() {
         enough: 5,
         effort: Effort::USUAL,
     };
-    let mut full = true;
+    let (mut full, mut number) = (true, None);
     for argument in std::env::args().skip(1) {
         let (name, value) = argument.split_once('=').expect("name=value");
-        let number = || value.parse::<u64>().expect("a whole number");
+        let whole = || value.parse::<u64>().expect("a whole number");
         let yes = || Some(value.parse::<bool>().expect("true or false"));
         match name {
-            "seed" => search.seed = number(),
-            "scenes" => search.scenes = number(),
-            "enough" => search.enough = usize::try_from(number()).expect("a small number"),
+            "seed" => search.seed = whole(),
+            "number" => number = Some(whole()),
+            "scenes" => search.scenes = whole(),
+            "enough" => search.enough = usize::try_from(whole()).expect("a small number"),
             "kind" => {
                 let kind = Kind::ALL.into_iter().find(|kind| kind.to_string() == value);
                 search.choice.kind = Some(kind.expect("a kind"));
@@ -35,17 +37,17 @@ fn main() {
             "taken" => search.choice.taken = value.parse().expect("a number"),
             "bisected" => search.choice.bisected = value.parse().expect("true or false"),
             "weakened" => search.choice.weakened = Some(value.parse().expect("a number")),
-            "drawn" => search.effort.drawn = number() as u32,
-            "climbed" => search.effort.climbed = number() as u32,
-            "periods" => search.effort.periods = number() as u32,
-            "long" => search.effort.long = number() as u32,
+            "drawn" => search.effort.drawn = whole() as u32,
+            "climbed" => search.effort.climbed = whole() as u32,
+            "periods" => search.effort.periods = whole() as u32,
+            "long" => search.effort.long = whole() as u32,
             "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
             _ => panic!("no such setting: {name}"),
         }
     }
     let began = std::time::Instant::now();
-    let found = search.run();
+    let found = number.map_or_else(|| search.run(), |number| search.scene(number));
     let seconds = began.elapsed().as_secs_f64();
     println!("{found}");
     println!(

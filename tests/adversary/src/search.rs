@@ -57,7 +57,7 @@ pub struct Effort {
 
 impl Effort {
     /// Some milliseconds a scene.
-    pub const USUAL: Self = Self { drawn: 24, climbed: 24, periods: 512, long: 8192 };
+    pub const USUAL: Self = Self { drawn: 16, climbed: 16, periods: 512, long: 8192 };
 }
 
 /// What a search found.
