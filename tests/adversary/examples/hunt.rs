@@ -1,7 +1,8 @@
 //! Searches among some scenes only: `hunt name=value ...`.
 //!
 //! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of what is drawn: `kind`,
-//! `worst_period`, `limited`, `latched`, `saturates`. Of the device: `taken`, `bisected`, `weakened`.
+//! `worst_period`, `limited`, `latched`, `saturates`,
+//! `injected`. Of the device: `taken`, `bisected`, `weakened`.
 //! Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two lines each.
 
 use adversary::scenes::{Choice, Kind};
@@ -41,6 +42,7 @@ fn main() {
             "climbed" => search.effort.climbed = whole() as u32,
             "periods" => search.effort.periods = whole() as u32,
             "long" => search.effort.long = whole() as u32,
+            "injected" => search.choice.injected = yes(),
             "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
             _ => panic!("no such setting: {name}"),

@@ -96,6 +96,8 @@ pub struct Choice {
     pub latched: Option<bool>,
     /// Whether the converter may reach its full scale where a scene has no torque limit.
     pub saturates: bool,
+    /// The same of injected damping.
+    pub injected: Option<bool>,
     /// Share of the margin that the device loses.
     pub taken: f64,
     /// Whether the margin is not what the assessment states, but how much less damping would still
@@ -114,6 +116,7 @@ impl Choice {
         limited: None,
         latched: None,
         saturates: true,
+        injected: None,
         taken: 0.9,
         bisected: false,
         weakened: None,
@@ -363,7 +366,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
         None
     };
     // The room is known only once the scene is certified.
-    let injected = rng.random_bool(0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
+    let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
     Some(Drawn {
         kind,
         scene,

@@ -46,6 +46,8 @@ pub struct Subject {
     pub reach: f64,
     /// Angles a sample at which the loop is likely at its worst.
     pub angles: [f64; 4],
+    /// Injected damping in N m s/rad; zero without any.
+    pub injection: f64,
     /// Sets that may be swapped in.
     pub sets: usize,
 }
@@ -153,6 +155,7 @@ impl Subject {
             } else {
                 [theta; 4]
             },
+            injection: drawn.rendering.injection.unwrap_or(0.0),
             sets,
         })
     }
