@@ -2,7 +2,7 @@
 //!
 //! Of the search: `seed`, `scenes`, `enough`, or one scene's `number`. Of what is drawn: `kind`,
 //! `worst_period`, `limited`, `latched`, `saturates`,
-//! `injected`. Of the device: `taken`, `bisected`, `weakened`.
+//! `injected`, `overrun`. Of the device: `taken`, `bisected`, `weakened`.
 //! Of the effort: `drawn`, `climbed`, `periods`, `long`. `full=false` prints two lines each.
 
 use adversary::scenes::{Choice, Kind};
@@ -43,6 +43,7 @@ fn main() {
             "periods" => search.effort.periods = whole() as u32,
             "long" => search.effort.long = whole() as u32,
             "injected" => search.choice.injected = yes(),
+            "overrun" => search.choice.overrun = value.parse().expect("a number"),
             "saturates" => search.choice.saturates = value.parse().expect("true or false"),
             "full" => full = value.parse().expect("true or false"),
             _ => panic!("no such setting: {name}"),

@@ -19,7 +19,7 @@ use firmware::number::Number;
 use firmware::servo::{OutputMode, OutputTiming, Rendering, Renders};
 use firmware::tuning::Tunable;
 
-use crate::device::{Held, Step, TORQUE};
+use crate::device::{Held, State, Step, TORQUE};
 use crate::hardware::{Board, Last};
 use crate::plan::{Pattern, Plan, Request, Tick};
 use crate::subject::Subject;
@@ -112,6 +112,8 @@ struct Account {
     dissipated: f64,
     /// What went through the motor, whichever way.
     moved: f64,
+    /// What the dampers of the hand took, where that is looked at.
+    taken: f64,
     /// Travel of the device in rad, or more.
     travel: f64,
     /// Sum of all changes of the torque.
@@ -129,6 +131,22 @@ impl Account {
         let turns = (self.farthest / std::f64::consts::TAU).max(1.0);
         let error = subject.error + subject.numbers * turns;
         error * (2.0 * self.travel + subject.compliance * self.changes)
+    }
+
+    /// Moves the state on with this torque, and books what that takes and gives.
+    #[inline]
+    fn advance(&mut self, x: &mut State, step: &Step, torque: f64, damping: f64) {
+        self.changes += (torque - x[TORQUE]).abs();
+        x[TORQUE] = torque;
+        let start = x[0];
+        self.taken += step.taken(x);
+        let squared = step.advance(x);
+        let loss = squared * damping;
+        let work = torque * (x[0] - start);
+        self.gained += work - loss;
+        self.moved += work.abs();
+        self.dissipated += loss;
+        self.travel += squared.max(0.0).sqrt();
     }
 
     fn allowed(&self, subject: &Subject) -> f64 {
@@ -244,9 +262,15 @@ where
         let (mut motor, mut waiting) = (0_i16, 0_i16);
         let mut overdue = None;
         let (mut skipped, mut in_a_row, mut since) = (0_u32, 0_u32, 0_u32);
-        let (mut strongest, mut taken) = (0.0_f64, 0.0_f64);
+        let mut strongest = 0.0_f64;
         let latched = self.output == Output::Latched;
         let mut powered = false;
+        let torque = |motor: i16, powered: bool| {
+            if powered { f64::from(motor) * subject.torque_per_code } else { 0.0 }
+        };
+        let overrun = (latched && subject.overrun > 0.0)
+            .then(|| [subject.overrun, 1.0 - subject.overrun].map(|part| held.audited(part)));
+        let mut was_late = false;
         let first = plan.requests.iter().flatten().map(|(period, _)| *period).min();
         let mut next_request = first.unwrap_or(u32::MAX);
         for period in 0..plan.periods {
@@ -277,6 +301,12 @@ where
             since += 1;
             let tick = ticks.next();
             let mut switched = false;
+            // A tick that has to wait for the one before it reads its count when that has ended.
+            let waits = overrun.as_ref().filter(|_| was_late && tick != Tick::Missed);
+            was_late = tick == Tick::Late;
+            if let Some([first, _]) = waits {
+                account.advance(&mut x, first, torque(motor, powered), held.damping());
+            }
             if tick == Tick::Missed {
                 skipped += 1;
                 in_a_row += 1;
@@ -323,22 +353,13 @@ where
             }
             for (i, part) in parts.iter().enumerate() {
                 let Some(part) = part else { continue };
+                let part = waits.map_or(part, |[_, rest]| rest);
                 if i == 1 && !latched && switched {
                     motor = waiting;
                 }
-                let torque = if powered { f64::from(motor) * subject.torque_per_code } else { 0.0 };
+                let torque = torque(motor, powered);
                 strongest = strongest.max(torque.abs());
-                account.changes += (torque - x[TORQUE]).abs();
-                x[TORQUE] = torque;
-                let start = x[0];
-                taken += part.taken(&x);
-                let squared = part.advance(&mut x);
-                let loss = squared * held.damping();
-                let work = torque * (x[0] - start);
-                account.gained += work - loss;
-                account.moved += work.abs();
-                account.dissipated += loss;
-                account.travel += squared.max(0.0).sqrt();
+                account.advance(&mut x, part, torque, held.damping());
             }
             account.farthest = account.farthest.max((x[0] - plan.zero).abs());
             if period % LOOK == LOOK - 1 {
@@ -354,7 +375,7 @@ where
                 outcome.openings = account.openings;
                 outcome.limits = last.limits;
                 if audited {
-                    let residual = held.energy(&x) + taken - largest;
+                    let residual = held.energy(&x) + account.taken - largest;
                     outcome.residual = outcome.residual.max(residual.abs());
                 }
                 if period % window >= window - LOOK {

@@ -98,6 +98,8 @@ pub struct Choice {
     pub saturates: bool,
     /// The same of injected damping.
     pub injected: Option<bool>,
+    /// Part of a period by which late ticks outlast their own.
+    pub overrun: f64,
     /// Share of the margin that the device loses.
     pub taken: f64,
     /// Whether the margin is not what the assessment states, but how much less damping would still
@@ -117,6 +119,7 @@ impl Choice {
         latched: None,
         saturates: true,
         injected: None,
+        overrun: 0.0,
         taken: 0.9,
         bisected: false,
         weakened: None,
@@ -159,6 +162,8 @@ pub struct Drawn {
     pub taken: f64,
     /// The damping of the device in N m s/rad where it is another.
     pub damping: Option<f64>,
+    /// Part of a period by which late ticks outlast their own.
+    pub overrun: f64,
     /// Injected damping over the room that there is for it.
     pub injected: Option<f64>,
 }
@@ -186,6 +191,7 @@ impl Drawn {
             reach: size,
             taken: 0.9,
             damping: None,
+            overrun: 0.0,
             injected: None,
         }
     }
@@ -380,6 +386,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
         reach: reach.max(face.abs()),
         taken: choice.taken,
         damping,
+        overrun: choice.overrun,
         injected,
     })
 }

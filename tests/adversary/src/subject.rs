@@ -24,6 +24,9 @@ pub struct Subject {
     /// Whether codes are latched: only then can one be late. A simultaneous one is there at its
     /// count, however long it took.
     pub latched: bool,
+    /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
+    /// so much later.
+    pub overrun: f64,
     /// Torque of one code of the converter.
     pub torque_per_code: f64,
     /// The largest torque of any of its sets.
@@ -134,6 +137,7 @@ impl Subject {
             damping: (damping / declared).max(0.0),
             tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
             latched: drawn.latched,
+            overrun: drawn.overrun,
             torque_per_code: transducers.full_scale_torque
                 / f64::from(DacCode::CODES_TO_FULL_SCALE)
                 / unit,
