@@ -1,0 +1,125 @@
+//! A board that is simulated: encoder, converter, amplifier and timer of the servo's interrupt.
+
+use firmware::boot::Startup;
+use firmware::cycle::{Frame, FrameSink, Hardware, State};
+use firmware::dac::DacCode;
+use firmware::encoder::RawCount;
+use firmware::fault::Retained;
+
+/// Timer counts in a period.
+pub const PERIOD: u32 = 1000;
+
+/// Timer counts that a tick takes which is in time.
+const USUAL: u32 = 300;
+
+/// The board. What the run sets before a tick, and what the tick did.
+#[derive(Clone, Copy, Debug)]
+pub struct Board {
+    /// Angle of the device in rad.
+    pub angle: f64,
+    /// Whole periods since the last tick.
+    pub passed: u32,
+    /// Whether the tick ends after its period.
+    pub late: bool,
+    /// Codes above mid-scale that were written last.
+    pub offset: i16,
+    /// Whether the amplifier is on.
+    pub amplifier: bool,
+    /// Whether the last reset was the watchdog's, so that the servo is not armed by booting.
+    pub by_watchdog: bool,
+    counts_per_radian: f64,
+    /// Angle in rad at which the encoder's counter is zero.
+    zero: f64,
+}
+
+impl Board {
+    /// A board with the device at zero.
+    pub const fn new(counts_per_radian: f64, by_watchdog: bool) -> Self {
+        Self {
+            angle: 0.0,
+            passed: 1,
+            late: false,
+            offset: 0,
+            amplifier: false,
+            by_watchdog,
+            counts_per_radian,
+            zero: 0.0,
+        }
+    }
+}
+
+impl Hardware for Board {
+    #[inline]
+    fn count(&mut self) -> RawCount {
+        // The counter wraps; 64 bits hold any angle that a run reaches.
+        let counts = (self.angle - self.zero) * self.counts_per_radian;
+        RawCount::from((counts + 0.5).floor() as i64 as u32)
+    }
+
+    #[inline]
+    fn write(&mut self, code: DacCode) {
+        self.offset = code.offset();
+    }
+
+    fn amplifier(&mut self, on: bool) {
+        self.amplifier = on;
+    }
+
+    #[inline]
+    fn passed(&mut self) -> u32 {
+        self.passed
+    }
+
+    #[inline]
+    fn elapsed(&mut self) -> u32 {
+        if self.late { PERIOD } else { USUAL }
+    }
+
+    #[inline]
+    fn feed(&mut self) {}
+}
+
+impl Startup for Board {
+    fn zero(&mut self) {
+        self.zero = self.angle;
+    }
+
+    fn guard(&mut self) {}
+
+    fn kept(&mut self) -> [u32; Retained::WORDS] {
+        Retained::NOTHING
+    }
+
+    fn was_reset_by_watchdog(&mut self) -> bool {
+        self.by_watchdog
+    }
+
+    fn period(&self) -> u32 {
+        PERIOD
+    }
+}
+
+/// Keeps the state of the last tick, and how often each reason limited the torque.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Last {
+    /// The state at the end of it.
+    pub state: State,
+    /// Ticks by their reason, in the order of [`LimitReason::ALL`].
+    ///
+    /// [`LimitReason::ALL`]: firmware::torque::LimitReason::ALL
+    pub limits: [u32; 6],
+}
+
+impl FrameSink for Last {
+    #[inline]
+    fn push(&mut self, frame: Frame) {
+        self.state = frame.state;
+        if let Some(ticks) = self.limits.get_mut(frame.limit as usize) {
+            *ticks += 1;
+        }
+    }
+
+    fn dropped(&self) -> u32 {
+        0
+    }
+}

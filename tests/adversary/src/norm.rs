@@ -1,0 +1,146 @@
+//! How much an error can become: norms of impulse responses.
+
+use firmware::certificate::Loop;
+use firmware::environment::{Environment, Rational, Wall};
+use firmware::number::Format;
+use firmware::passivity::polynomial::Polynomial;
+use firmware::scene::{Coupling, Scene};
+
+/// Samples after which a response is said not to end.
+const LONGEST: usize = 1 << 16;
+
+/// Powers that a controller has at most.
+const TAPS: usize = 40;
+
+/// Sum of the magnitudes of the impulse response of `numerator / denominator`, in ascending powers;
+/// `None` where it does not end.
+fn l1(numerator: &[f64], denominator: &[f64]) -> Option<f64> {
+    let degree = denominator.len().max(numerator.len());
+    if degree > TAPS {
+        return None;
+    }
+    let leading = *denominator.last()?;
+    // In powers of 1/z, from the first that is there: a delay changes nothing.
+    let tap = |p: &[f64], i: usize| {
+        p.len().checked_sub(1 + i).and_then(|at| p.get(at)).copied().unwrap_or(0.0) / leading
+    };
+    let mut past = [0.0; TAPS];
+    let mut sum = 0.0;
+    for k in 0..LONGEST {
+        let mut output = tap(numerator, k);
+        for i in 1..degree {
+            output -= tap(denominator, i) * past[(k + TAPS - i) % TAPS];
+        }
+        past[k % TAPS] = output;
+        sum += output.abs();
+        if k > degree && past.iter().take(TAPS.min(k)).all(|y| y.abs() <= 1e-15 * sum) {
+            return sum.is_finite().then_some(sum);
+        }
+    }
+    None
+}
+
+fn ascending(p: &Polynomial, ones: i32, minus_ones: i32) -> Option<Vec<f64>> {
+    let mut product: Vec<f64> = (0..p.len()).map(|i| p.coefficient(i).midpoint()).collect();
+    for (root, count) in [(1.0, ones), (-1.0, minus_ones)] {
+        for _ in 0..u32::try_from(count).ok()? {
+            let mut next = vec![0.0; product.len() + 1];
+            for (i, c) in product.iter().enumerate() {
+                next[i + 1] += c;
+                next[i] -= root * c;
+            }
+            product = next;
+        }
+    }
+    Some(product)
+}
+
+/// A number of this size, rounded, is off by at most so much.
+fn rounding(format: Format, size: f64) -> f64 {
+    match format {
+        Format::F64 => size * 0.5 * f64::EPSILON,
+        Format::F32 => size * 0.5 * f64::from(f32::EPSILON),
+        Format::Fixed { fraction_bits } | Format::Truncated { fraction_bits } => {
+            0.5_f64.powi(i32::try_from(fraction_bits).unwrap_or(0))
+        }
+    }
+}
+
+/// How much positions that are off, and errors of the numbers, move a torque in N m.
+#[derive(Clone, Copy, Debug)]
+pub struct Errors {
+    /// Of positions that are off by 1 rad each.
+    pub position: f64,
+    /// Of numbers, within a turn of zero.
+    pub numbers: f64,
+}
+
+impl Errors {
+    /// With positions that are off by so much, in rad.
+    pub fn over(self, step: f64) -> Self {
+        Self { position: self.position * step, ..self }
+    }
+
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.position + self.numbers
+    }
+
+    /// The torque of the environment, at the position where it is: a wall that switches or is
+    /// clipped included. `None`: of another environment.
+    pub fn alone(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
+        let period = scene.timing.period;
+        let compliance = match scene.coupling {
+            Coupling::Rigid => 0.0,
+            Coupling::Spring { stiffness } => 1.0 / stiffness,
+        };
+        // A state follows by the share `rate` of what is left, and no closer than rounding allows.
+        let washout = |damping: f64, rate: f64| {
+            let gain = 2.0 * damping.abs() / period;
+            (gain, gain / rate)
+        };
+        let of = |w: &Wall| {
+            let (gain, state) = washout(w.damping, 1.0 - w.filter.unwrap_or(0.0));
+            (w.stiffness.abs() + gain, w.stiffness.abs() + state)
+        };
+        let canceller = |residual: f64| {
+            let cancelled = scene.device.damping - residual;
+            let rate = 1.0 / (1.0 + (cancelled * compliance / period).max(0.0));
+            washout(cancelled, rate)
+        };
+        let (position, states) = match &scene.environment {
+            Environment::DelayedSpring(w) => (w.stiffness.abs(), w.stiffness.abs()),
+            Environment::DamperWall(w) => of(w),
+            Environment::FreeMode { residual, .. } => canceller(*residual),
+            Environment::FreeModeWall { residual, wall } => {
+                let (a, b) = (canceller(*residual), of(wall));
+                (a.0 + b.0, a.1 + b.1)
+            }
+            Environment::Rational(_) => return None,
+        };
+        let angle = rounding(format, std::f64::consts::TAU + compliance * bound);
+        let numbers = 4.0 * states * angle + 8.0 * rounding(format, bound);
+        Some(Self { position, numbers })
+    }
+
+    /// The torque of the whole controller, of a rational environment that may be unstable by
+    /// itself behind a coupling that makes a stable controller of it: what rounds in its sums comes
+    /// out through that. `None`: of another environment, or without a bound.
+    pub fn through(scene: &Scene, format: Format, bound: f64) -> Option<Self> {
+        let Environment::Rational(Rational { numerator, .. }) = &scene.environment else {
+            return None;
+        };
+        let controller = Loop::in_format(scene, format).ok()?.controller;
+        let over = ascending(&controller.numerator, controller.ones, controller.minus_ones)?;
+        let under = ascending(&controller.denominator, 0, 0)?;
+        let position = l1(&over, &under)? * controller.scale.midpoint().abs();
+        let leading = *under.last()?;
+        let alone = l1(&[leading], &under)?;
+        let gains: f64 = numerator.as_slice().iter().map(|c| c.abs()).sum();
+        let step = rounding(format, bound + gains * std::f64::consts::TAU);
+        // Four roundings a degree and a tick.
+        let sections = 4.0 * f64::from(u32::try_from(under.len()).ok()?);
+        let angle = rounding(format, std::f64::consts::TAU);
+        Some(Self { position, numbers: 2.0 * step * sections * alone + 4.0 * angle * position })
+    }
+}

@@ -1,0 +1,241 @@
+//! What a run does: the hand and where it starts, when updates are missed, and what is asked of the
+//! servo.
+
+use std::f64::consts::PI;
+
+use rand::Rng;
+use tests::hands::Hand;
+use tests::scenes::log_uniform;
+
+use crate::device::{SEGMENTS, State};
+use crate::subject::Subject;
+
+/// What happens to the tick of one period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tick {
+    /// It is in time.
+    InTime,
+    /// The interrupt does not run.
+    Missed,
+    /// Its code comes after the update that it was for.
+    Late,
+}
+
+/// The ticks that come, over and over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pattern {
+    /// All in time.
+    InTime,
+    /// The first so many of these, again and again.
+    Periodic([Tick; Pattern::LONGEST], usize),
+    /// By chance, each with a probability, and never more in a row than so many.
+    Random {
+        /// Where the numbers begin.
+        seed: u64,
+        /// Share of missed ticks, in 256ths.
+        missed: u8,
+        /// Share of late ticks, in 256ths.
+        late: u8,
+        /// Most in a row.
+        most: u32,
+    },
+}
+
+impl Pattern {
+    /// Longest periodic pattern.
+    pub const LONGEST: usize = 6;
+
+    /// One that misses at most `most` updates in a row, if that is not zero; with late codes where
+    /// they are latched.
+    pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
+        if most == 0 || rng.random_bool(0.15) {
+            return Self::InTime;
+        }
+        if rng.random_bool(0.3) {
+            let missed = rng.random_range(0..=200);
+            let late = if latched { rng.random_range(0..=200) } else { 0 };
+            return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
+        }
+        let length = rng.random_range(2..=Self::LONGEST);
+        let mut ticks = [Tick::InTime; Self::LONGEST];
+        let mut in_a_row = 0;
+        let kind = if latched { rng.random_range(0..3) } else { 0 };
+        for tick in ticks.iter_mut().take(length - 1) {
+            if in_a_row < most && rng.random_bool(0.6) {
+                in_a_row += 1;
+                let is_late = kind == 1 || kind == 2 && rng.random_bool(0.5);
+                *tick = if is_late { Tick::Late } else { Tick::Missed };
+            } else {
+                in_a_row = 0;
+            }
+        }
+        Self::Periodic(ticks, length)
+    }
+}
+
+/// What is asked of the servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// To be armed.
+    Arm,
+    /// To be disarmed.
+    Disarm,
+    /// To swap a set in: the scene's own, or its other one.
+    Submit(usize),
+}
+
+/// Requests in a run at most.
+pub const REQUESTS: usize = 6;
+
+/// A run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The hand, with the device's inertia in it, in the loop's units.
+    pub hand: Hand,
+    /// Angle of the device in rad when the board boots, whose zero that is.
+    pub zero: f64,
+    /// Where device and hand start.
+    pub start: State,
+    /// Whether booting arms the servo; otherwise a request does, some ticks later.
+    pub armed_by_boot: bool,
+    /// What happens to the ticks.
+    pub pattern: Pattern,
+    /// What is asked for, and in which period.
+    pub requests: [Option<(u32, Request)>; REQUESTS],
+    /// Whether the servo is armed again after each fault.
+    pub again: bool,
+    /// Periods.
+    pub periods: u32,
+}
+
+/// Numbers of a hand, for the loop's arithmetic: what a simulation follows exactly enough.
+const LIGHTEST: f64 = 1e-3;
+const HEAVIEST: f64 = 3e3;
+const STIFFEST: f64 = 1e2;
+
+fn bounded(mut hand: Hand) -> Hand {
+    hand.segments.truncate(SEGMENTS);
+    hand.inertia = hand.inertia.clamp(LIGHTEST, HEAVIEST);
+    hand.stiffness = hand.stiffness.min(STIFFEST);
+    for segment in &mut hand.segments {
+        segment.inertia = segment.inertia.clamp(LIGHTEST, HEAVIEST);
+        segment.stiffness = segment.stiffness.min(STIFFEST);
+        segment.link_stiffness = segment.link_stiffness.min(STIFFEST);
+    }
+    hand
+}
+
+impl Plan {
+    /// A plan for a subject.
+    pub fn draw(rng: &mut impl Rng, subject: &Subject, periods: u32) -> Self {
+        let mut hand = bounded(Self::hand(rng, subject));
+        // A limit cycle must feed somebody: with a damper in the hand it does so for ever.
+        if hand.damping == 0.0 && rng.random_bool(0.7) {
+            hand.damping = log_uniform(rng, 1e-5, 1e-2);
+        }
+        let mut start = [0.0; 8];
+        let size = subject.size * log_uniform(rng, 0.1, 3.0);
+        for i in 0..=hand.segments.len() {
+            start[2 * i] = size * rng.random_range(-1.0..1.0);
+            start[2 * i + 1] = size * rng.random_range(-1.0..1.0);
+        }
+        let armed_by_boot = rng.random_bool(0.5);
+        let zero = if armed_by_boot { start[0] } else { subject.place(rng) };
+        let most = match rng.random_range(0..10) {
+            0 => subject.tolerated + rng.random_range(1..=3),
+            _ => subject.tolerated,
+        };
+        let mut plan = Self {
+            hand,
+            zero,
+            start,
+            armed_by_boot,
+            pattern: Pattern::draw(rng, most, subject.latched),
+            requests: [None; REQUESTS],
+            again: rng.random_bool(0.7),
+            periods,
+        };
+        plan.draw_requests(rng, subject);
+        plan
+    }
+
+    fn hand(rng: &mut impl Rng, subject: &Subject) -> Hand {
+        match rng.random_range(0..8) {
+            0 => Hand::draw(rng),
+            1..=2 => {
+                let theta = rng.random_range(0.02..PI);
+                Hand::tuned(rng, theta)
+            }
+            3 => {
+                let theta = log_uniform(rng, 5e-3, PI);
+                Hand::tuned(rng, theta)
+            }
+            _ => {
+                let theta = subject.angles[rng.random_range(0..subject.angles.len())];
+                Hand::tuned(rng, theta)
+            }
+        }
+    }
+
+    fn draw_requests(&mut self, rng: &mut impl Rng, subject: &Subject) {
+        self.requests = [None; REQUESTS];
+        let mut next = 0;
+        let mut ask = |period: u32, request: Request| {
+            if let Some(place) = self.requests.get_mut(next) {
+                *place = Some((period, request));
+                next += 1;
+            }
+        };
+        if !self.armed_by_boot {
+            // A board that finds the device elsewhere in its first tick has to be calm for a while.
+            ask(rng.random_range(14..40), Request::Arm);
+        }
+        let late = self.periods / 2;
+        if late < 100 {
+            return;
+        }
+        if subject.sets > 1 && rng.random_bool(0.6) {
+            for set in [1, 0, 1].into_iter().take(rng.random_range(1..=3)) {
+                ask(rng.random_range(40..late), Request::Submit(set));
+            }
+        }
+        if rng.random_bool(0.15) {
+            let disarm = rng.random_range(40..late);
+            ask(disarm, Request::Disarm);
+            let wait = log_uniform(rng, 1.0, 200.0) as u32;
+            ask(disarm + wait, Request::Arm);
+        }
+    }
+
+    /// A plan like this one, some of it changed by about `spread`.
+    pub fn varied(&self, rng: &mut impl Rng, subject: &Subject, spread: f64) -> Self {
+        let mut plan = self.clone();
+        let all = rng.random_bool(0.3);
+        let mut pick = |share: f64| all || rng.random_bool(share);
+        let (hand, start, pattern, requests) = (pick(0.7), pick(0.5), pick(0.15), pick(0.15));
+        if hand {
+            plan.hand = bounded(plan.hand.varied(rng, spread));
+        }
+        if start {
+            let moved = plan.start[0];
+            let size = if rng.random_bool(0.3) { log_uniform(rng, 0.5, 2.0) } else { 1.0 };
+            for value in &mut plan.start[..6] {
+                let change = 1.0 + spread * rng.random_range(-1.0..1.0);
+                *value *= size * change;
+                if rng.random_bool(0.05) {
+                    *value = -*value;
+                }
+            }
+            if plan.armed_by_boot {
+                plan.zero += plan.start[0] - moved;
+            }
+        }
+        if pattern && subject.tolerated > 0 {
+            plan.pattern = Pattern::draw(rng, subject.tolerated, subject.latched);
+        }
+        if requests {
+            plan.draw_requests(rng, subject);
+        }
+        plan
+    }
+}

@@ -1,0 +1,64 @@
+//! A counterexample, with all that it takes to find it again.
+
+use std::fmt;
+
+use firmware::torque::LimitReason;
+
+use crate::plan::Plan;
+use crate::run::{Outcome, Output};
+use crate::scenes::Drawn;
+use crate::subject::Subject;
+
+/// A run in which a certified scene gave energy away.
+#[derive(Clone, Debug)]
+pub struct Counterexample {
+    /// The search's seed.
+    pub seed: u64,
+    /// The scene's number in it.
+    pub number: u64,
+    /// What was drawn.
+    pub drawn: Drawn,
+    /// The same as numbers.
+    pub subject: Subject,
+    /// The run.
+    pub plan: Plan,
+    /// When the codes reached the motor.
+    pub output: Output,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+impl fmt::Display for Counterexample {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { seed, number, drawn, subject, plan, output, outcome } = self;
+        let gain = outcome.gained - outcome.allowed;
+        writeln!(f, "counterexample: ADVERSARY_SEED={seed}, scene {number}, {}", drawn.kind)?;
+        if outcome.went_on {
+            writeln!(f, "  the servo went on with more missed updates than are tolerated")?;
+        }
+        writeln!(
+            f,
+            "  {gain:.3e} above the {:.3e} at the start and the {:.3e} allowed, score {:.3e}, \
+             rate {:.3e}, in period {} of {}; the simulation's own error is {:.1e}",
+            outcome.start,
+            outcome.allowed,
+            outcome.score,
+            outcome.rate,
+            outcome.period,
+            outcome.periods,
+            outcome.residual,
+        )?;
+        write!(f, "  openings {}, stops {}, ticks by limit", outcome.openings, outcome.faults)?;
+        for (reason, ticks) in LimitReason::ALL.into_iter().zip(outcome.limits) {
+            write!(f, " {reason} {ticks}")?;
+        }
+        writeln!(f)?;
+        writeln!(f, "  {:?} {output:?} {:?}", drawn.format, drawn.scene)?;
+        if let Some(other) = &drawn.other {
+            writeln!(f, "  other set: {other:?}")?;
+        }
+        writeln!(f, "  {:?} {:?}", drawn.transducers, drawn.rendering)?;
+        writeln!(f, "  {plan:?}")?;
+        write!(f, "  {subject:?}")
+    }
+}

@@ -1,0 +1,370 @@
+//! The search: a scene is drawn and booted, runs are drawn, and the best are climbed.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use firmware::boot::{Booted, Program, boot};
+use firmware::certificate::{Assessment, certify_in};
+use firmware::cycle::{Mailbox, Options};
+use firmware::environment::Environment;
+use firmware::number::Number;
+use firmware::scene::Scene;
+use firmware::servo::{Latched, OutputMode, Rendering, Renders, Simultaneous};
+use firmware::tuning::Tunable;
+use fixed::types::{I8F24, I12F20};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::hardware::Board;
+use crate::plan::Plan;
+use crate::report::Counterexample;
+use crate::run::{Machine, Outcome, Output};
+use crate::scenes::{self, Choice, Drawn, Numbers};
+use crate::subject::Subject;
+
+/// How long a search is, and what it draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    /// Where the random numbers begin.
+    pub seed: u64,
+    /// Scenes to draw.
+    pub scenes: u64,
+    /// After that no more are drawn.
+    pub time: Option<Duration>,
+    /// What is drawn.
+    pub choice: Choice,
+    /// When codes reach the motor, where that is not as the mode has it.
+    pub output: Option<Output>,
+    /// After so many counterexamples it ends.
+    pub enough: usize,
+    /// How thoroughly each scene is searched.
+    pub effort: Effort,
+}
+
+/// How thoroughly a scene is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Runs that are drawn.
+    pub drawn: u32,
+    /// Steps of the climb.
+    pub climbed: u32,
+    /// Periods of a run.
+    pub periods: u32,
+    /// Periods of what looks like a gain.
+    pub long: u32,
+}
+
+impl Effort {
+    /// Some milliseconds a scene.
+    pub const USUAL: Self = Self { drawn: 16, climbed: 16, periods: 512, long: 8192 };
+}
+
+/// What a search found.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// Scenes that were drawn.
+    pub scenes: u64,
+    /// Those that boards accept.
+    pub accepted: u64,
+    /// Those of which no bound on the effect of their steps is known, so that nothing was run.
+    pub unbounded: u64,
+    /// Runs.
+    pub runs: u64,
+    /// Periods of all of them.
+    pub ticks: u64,
+    /// The largest height of any run; see [`Outcome::score`].
+    pub largest: f64,
+    /// The largest rate of any run; see [`Outcome::rate`].
+    pub rate: f64,
+    /// Runs that refute a certificate.
+    pub counterexamples: Vec<Counterexample>,
+}
+
+impl Found {
+    fn add(&mut self, other: Self) {
+        self.scenes += other.scenes;
+        self.accepted += other.accepted;
+        self.unbounded += other.unbounded;
+        self.runs += other.runs;
+        self.ticks += other.ticks;
+        self.largest = self.largest.max(other.largest);
+        self.rate = self.rate.max(other.rate);
+        self.counterexamples.extend(other.counterexamples);
+    }
+}
+
+impl std::fmt::Display for Found {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { scenes, accepted, unbounded, runs, ticks, largest, rate, .. } = self;
+        write!(
+            f,
+            "scenes={scenes} accepted={accepted} unbounded={unbounded} runs={runs} ticks={ticks} \
+             largest_score={largest:.3e} largest_rate={rate:.3e}"
+        )
+    }
+}
+
+/// Something that is done with a booted servo in whatever number format and mode.
+pub trait Task {
+    /// What comes of it.
+    type Result;
+    /// Does it.
+    fn with<N: Number, M: OutputMode>(
+        self,
+        machine: Machine<N, M>,
+        subject: Subject,
+        program: &Program<Environment>,
+    ) -> Self::Result
+    where
+        Environment: Tunable<N> + Renders<M>;
+}
+
+/// Why there is nothing to search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unjudged {
+    /// A board refuses the scene.
+    Refused,
+    /// What encoder, numbers and converter do to the torque has no bound that is known.
+    Unbounded,
+}
+
+/// Boots a drawn scene as a board does, and does something with it.
+///
+/// # Errors
+/// Why not.
+pub fn booted<T: Task>(
+    drawn: &Drawn,
+    output: Option<Output>,
+    task: T,
+) -> Result<T::Result, Unjudged> {
+    match (drawn.format, drawn.latched) {
+        (Numbers::F32, true) => with::<f32, Latched, T>(drawn, output, task),
+        (Numbers::F32, false) => with::<f32, Simultaneous, T>(drawn, output, task),
+        (Numbers::F64, true) => with::<f64, Latched, T>(drawn, output, task),
+        (Numbers::F64, false) => with::<f64, Simultaneous, T>(drawn, output, task),
+        (Numbers::Q24, true) => with::<I8F24, Latched, T>(drawn, output, task),
+        (Numbers::Q24, false) => with::<I8F24, Simultaneous, T>(drawn, output, task),
+        (Numbers::Q20, true) => with::<I12F20, Latched, T>(drawn, output, task),
+        (Numbers::Q20, false) => with::<I12F20, Simultaneous, T>(drawn, output, task),
+    }
+}
+
+fn with<N: Number, M: OutputMode, T: Task>(
+    drawn: &Drawn,
+    output: Option<Output>,
+    task: T,
+) -> Result<T::Result, Unjudged>
+where
+    Environment: Tunable<N> + Renders<M>,
+{
+    let mut drawn = drawn.clone();
+    // Refused scenes are looked at for remedies, which takes a while.
+    certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
+    if let Some(share) = drawn.injected {
+        let timed = drawn.scene.certify_in(N::FORMAT).ok().and_then(|scene| scene.time::<M>().ok());
+        drawn.rendering.injection = timed.and_then(|timed| timed.room()).map(|room| room * share);
+    }
+    let set = |scene: &Scene| {
+        let timed = scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
+        let assessment = *timed.assessment();
+        let set = Rendering::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
+        Some((set, assessment))
+    };
+    let (own, assessment) = set(&drawn.scene).ok_or(Unjudged::Refused)?;
+    let mut sets = vec![own];
+    let mut assessments: Vec<Assessment> = vec![assessment];
+    let other = drawn.other.as_ref().and_then(set);
+    match other {
+        Some((other, assessment)) => {
+            sets.push(other);
+            assessments.push(assessment);
+        }
+        None => drawn.other = None,
+    }
+    let drawn = &drawn;
+    let subject = Subject::of(drawn, &assessments, N::FORMAT).ok_or(Unjudged::Unbounded)?;
+    let program = Program {
+        scene: drawn.scene,
+        transducers: drawn.transducers,
+        rendering: drawn.rendering,
+        options: Options::DEFAULT,
+    };
+    let mut board = Board::new(subject.counts_per_radian, true);
+    let mut mailbox = Mailbox::new();
+    let (requests, _inbox) = mailbox.split();
+    let Booted { cycle, .. } =
+        boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
+    let machine = Machine::new(cycle, sets, output.unwrap_or(Output::of::<M>()));
+    Ok(task.with(machine, subject, &program))
+}
+
+fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
+    let posed = firmware::certificate::Posed::in_format(scene, format.format()).ok()?;
+    posed.is_certified().then_some(())
+}
+
+/// Why a board refuses a scene in a number format; `None` where it does not.
+pub fn refusal(scene: &Scene, format: Numbers) -> Option<String> {
+    certify_in(scene, format.format()).err().map(|rejection| rejection.to_string())
+}
+
+/// A rate from which a run is worth to be gone on with.
+const SURE: f64 = 1e-5;
+
+/// A search through the runs of one scene.
+struct Climb<'a> {
+    search: &'a Search,
+    number: u64,
+    drawn: &'a Drawn,
+    rng: ChaCha8Rng,
+}
+
+impl Task for Climb<'_> {
+    type Result = Found;
+
+    fn with<N: Number, M: OutputMode>(
+        mut self,
+        machine: Machine<N, M>,
+        subject: Subject,
+        _: &Program<Environment>,
+    ) -> Found
+    where
+        Environment: Tunable<N> + Renders<M>,
+    {
+        let effort = self.search.effort;
+        let mut found = Found { accepted: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+        let rng = &mut self.rng;
+        let run = |found: &mut Found, plan: &Plan, audited: bool| -> Outcome {
+            let outcome = machine.run(&subject, plan, audited);
+            found.runs += 1;
+            found.ticks += u64::from(outcome.periods);
+            outcome
+        };
+        let mut best: Option<(Plan, Outcome)> = None;
+        let consider = |found: &mut Found, plan: Plan, best: &mut Option<(Plan, Outcome)>| {
+            let mut plan = plan;
+            let mut outcome = run(found, &plan, false);
+            // A gain that does not show yet shows after a while, if it is one and not what the
+            // clamp's opening put in.
+            for periods in [effort.long, 8 * effort.long] {
+                if !outcome.is_violation() && outcome.rate > SURE {
+                    plan.periods = periods;
+                    outcome = run(found, &plan, false);
+                }
+            }
+            let better = best.as_ref().is_none_or(|(_, b)| outcome.height() > b.height());
+            if outcome.is_violation() {
+                let mut audit = run(found, &plan, true);
+                // What the simulation itself makes is no gain.
+                let over = audit.gained - audit.allowed - 4.0 * audit.residual;
+                if audit.went_on || over > 0.0 {
+                    audit.score = audit.score.max(f64::MIN_POSITIVE);
+                    *best = Some((plan, audit));
+                    return true;
+                }
+                return false;
+            }
+            if better {
+                *best = Some((plan, outcome));
+            }
+            false
+        };
+        let mut is_refuted = false;
+        for _ in 0..effort.drawn {
+            let plan = Plan::draw(rng, &subject, effort.periods);
+            is_refuted = consider(&mut found, plan, &mut best);
+            if is_refuted {
+                break;
+            }
+        }
+        let mut spread = 0.5;
+        for _ in 0..effort.climbed {
+            let Some((plan, outcome)) = &best else { break };
+            if is_refuted {
+                break;
+            }
+            let before = outcome.height();
+            let mut plan = plan.varied(rng, &subject, spread);
+            plan.periods = effort.periods;
+            is_refuted = consider(&mut found, plan, &mut best);
+            let after = best.as_ref().map_or(before, |(_, o)| o.height());
+            spread =
+                if after > before { (spread * 1.3).min(1.0) } else { (spread * 0.85).max(1e-3) };
+        }
+        if let Some((plan, outcome)) = best {
+            found.largest = outcome.score;
+            found.rate = outcome.rate;
+            if is_refuted {
+                found.counterexamples.push(Counterexample {
+                    seed: self.search.seed,
+                    number: self.number,
+                    drawn: self.drawn.clone(),
+                    subject,
+                    plan,
+                    output: machine.output,
+                    outcome,
+                });
+            }
+        }
+        found
+    }
+}
+
+impl Search {
+    /// A scene of this search, by number.
+    pub fn scene(&self, number: u64) -> Found {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        rng.set_stream(number);
+        let Some(drawn) = scenes::draw(&mut rng, &self.choice) else {
+            return Found { scenes: 1, largest: -1.0, rate: -1.0, ..Found::default() };
+        };
+        self.climb(number, &drawn, rng)
+    }
+
+    /// Searches through the runs of a scene.
+    pub fn climb(&self, number: u64, drawn: &Drawn, rng: ChaCha8Rng) -> Found {
+        let climb = Climb { search: self, number, drawn, rng };
+        let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
+        match booted(drawn, self.output, climb) {
+            Ok(found) => Found { scenes: 1, ..found },
+            Err(Unjudged::Refused) => Found { scenes: 1, ..nothing },
+            Err(Unjudged::Unbounded) => Found { scenes: 1, unbounded: 1, ..nothing },
+        }
+    }
+
+    /// The whole search, on two threads.
+    pub fn run(&self) -> Found {
+        let began = Instant::now();
+        let next = AtomicU64::new(0);
+        let all = Mutex::new(Found { largest: -1.0, rate: -1.0, ..Found::default() });
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| {
+                    let mut found = Found { largest: -1.0, rate: -1.0, ..Found::default() };
+                    loop {
+                        let number = next.fetch_add(1, Ordering::Relaxed);
+                        let over = self.time.is_some_and(|time| began.elapsed() > time);
+                        if number >= self.scenes
+                            || over
+                            || found.counterexamples.len() >= self.enough
+                        {
+                            break;
+                        }
+                        found.add(self.scene(number));
+                        if !found.counterexamples.is_empty() {
+                            // So that both threads stop when there are enough together.
+                            let mut all = all.lock().expect("no thread panics");
+                            all.counterexamples.append(&mut found.counterexamples);
+                            if all.counterexamples.len() >= self.enough {
+                                next.store(self.scenes, Ordering::Relaxed);
+                            }
+                        }
+                    }
+                    all.lock().expect("no thread panics").add(found);
+                });
+            }
+        });
+        all.into_inner().expect("no thread panics")
+    }
+}

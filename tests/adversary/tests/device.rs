@@ -1,0 +1,63 @@
+//! The held device against an independent exponential of the same chain, and its energies against
+//! each other.
+
+use adversary::device::{Held, TORQUE};
+use nalgebra::DVector;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tests::hands::Hand;
+use tests::plant::Plant;
+
+/// A hand whose stiffness and inertia are such that both exponentials are exact to many digits.
+fn draw(rng: &mut ChaCha8Rng) -> Hand {
+    let mut hand = Hand::draw(rng);
+    hand.inertia = hand.inertia.max(0.05);
+    hand.damping = hand.damping.min(1.0);
+    hand.stiffness = hand.stiffness.min(10.0);
+    for segment in &mut hand.segments {
+        segment.inertia = segment.inertia.max(0.05);
+        segment.link_stiffness = segment.link_stiffness.min(10.0);
+        segment.link_damping = segment.link_damping.min(1.0);
+        segment.stiffness = segment.stiffness.min(10.0);
+        segment.damping = segment.damping.min(1.0);
+    }
+    hand
+}
+
+#[test]
+fn a_held_device_moves_as_the_reference_does() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for _ in 0..500 {
+        let hand = draw(&mut rng);
+        let (plant, held) = (Plant::new(&hand), Held::new(&hand, 1.0));
+        let masses = 1 + hand.segments.len();
+        let mut x = [0.0; 8];
+        x[..2 * masses].fill_with(|| rng.random_range(-1.0..1.0));
+        x[TORQUE] = rng.random_range(-1.0..1.0);
+        // The reference has every position against the ground.
+        let absolute = |x: &[f64; 8]| {
+            let position = |i: usize| (0..=i).map(|j| x[2 * j]).sum::<f64>();
+            DVector::from_fn(2 * masses, |k, _| if k % 2 == 0 { position(k / 2) } else { x[k] })
+        };
+        let expected = &plant.a * absolute(&x) + &plant.b * x[TORQUE];
+        let energy = (held.energy(&x) - plant.energy(&absolute(&x))).abs();
+        assert!(energy <= 1e-12 * (1.0 + held.energy(&x)), "{energy} {hand:?}");
+        // In one piece, and in two.
+        let mut pieces = x;
+        held.step(0.3).advance(&mut pieces);
+        held.step(0.7).advance(&mut pieces);
+        let (whole, start) = (held.audited(1.0), x);
+        let taken = whole.taken(&x);
+        let squared = whole.advance(&mut x);
+        let size = 1.0 + expected.amax();
+        for moved in [x, pieces] {
+            let error = (absolute(&moved) - &expected).amax();
+            assert!(error <= 1e-9 * size, "{error} {hand:?}");
+        }
+        // Nothing is lost: the work of the torque is in the masses, the springs and the dampers.
+        let work = start[TORQUE] * (x[0] - start[0]);
+        let gained = held.energy(&x) - held.energy(&start);
+        let lost = work - gained - taken - squared;
+        assert!(lost.abs() <= 1e-9 * (held.energy(&start) + 1.0), "{lost} {hand:?}");
+    }
+}

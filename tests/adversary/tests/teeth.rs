@@ -1,0 +1,196 @@
+//! The search finds what is wrong, where something is.
+
+use std::f64::consts::PI;
+
+use adversary::plan::{Pattern, Plan, REQUESTS};
+use adversary::run::{Machine, Outcome, Output};
+use adversary::scenes::{Choice, Drawn, Kind, Numbers};
+use adversary::search::{Effort, Search, Task, booted};
+use adversary::shaking::{self, Shaking};
+use adversary::subject::Subject;
+use firmware::boot::Program;
+use firmware::environment::{Environment, Wall};
+use firmware::number::Number;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::{OutputMode, Renders};
+use firmware::tuning::Tunable;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use tests::hands::Hand;
+
+/// Runs one plan.
+struct Once {
+    plan: Plan,
+}
+
+impl Task for Once {
+    type Result = Outcome;
+
+    fn with<N: Number, M: OutputMode>(
+        self,
+        machine: Machine<N, M>,
+        subject: Subject,
+        _: &Program<Environment>,
+    ) -> Outcome
+    where
+        Environment: Tunable<N> + Renders<M>,
+    {
+        machine.run(&subject, &self.plan, true)
+    }
+}
+
+/// The wall of the README.
+fn readme(one_sided: bool, torque_limit: Option<f64>) -> Scene {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment: Environment::DamperWall(Wall { one_sided, ..shaking::wall(22.0, 0.01, 1) }),
+        torque_limit,
+    }
+}
+
+/// A finger that is a spring, on a device of 2.2e-5 kg m^2 that starts 10 degrees from where that
+/// spring is at rest, which is a little inside of a wall at the servo's zero.
+fn springy(stiffness: f64) -> Plan {
+    // In units of the device's damping and the period.
+    let (damping, period) = (0.022, 0.001);
+    let (unit, inertia) = (damping / period, 2.2e-5 / (damping * period));
+    let hand = Hand { inertia, damping: 0.05, stiffness: stiffness / unit, segments: Vec::new() };
+    let mut start = [0.0; 8];
+    start[0] = PI / 18.0;
+    Plan {
+        hand,
+        zero: -0.03,
+        start,
+        armed_by_boot: true,
+        pattern: Pattern::InTime,
+        requests: [None; REQUESTS],
+        again: false,
+        periods: 65_536,
+    }
+}
+
+/// A servo computes a torque from positions that are a whole sample old, and counts on the motor
+/// having it no sooner: near the line the loop of coupling and environment has a pole near -1, which
+/// only a whole sample makes passive. Put out 5 microseconds after its count, where it was certified
+/// for the next one, the same torque makes the loop need twenty times the damping that the device
+/// has. That an earlier torque is a better one holds of a wall alone, not of one behind a coupling.
+#[test]
+fn a_torque_that_comes_early_shakes_a_springy_finger() {
+    for (one_sided, torque_limit) in [(false, None), (false, Some(1.0)), (true, Some(1.0))] {
+        let scene = readme(one_sided, torque_limit);
+        let mut drawn = Drawn::of(Kind::Wall, scene, Numbers::F32, true, 0.1);
+        // The device is as it was declared.
+        drawn.taken = 0.0;
+        let mut shakes = 0;
+        for stiffness in [20.0, 35.0, 60.0, 100.0, 150.0, 205.0] {
+            let plan = springy(stiffness);
+            let run = |output| booted(&drawn, output, Once { plan: plan.clone() }).unwrap();
+            let (early, latched) = (run(Some(Output::Early(0.005))), run(None));
+            assert!(!latched.is_violation(), "{stiffness} N m/rad, as certified: {latched:?}");
+            shakes += u32::from(early.score > 0.0);
+            println!("{stiffness} N m/rad: {:.3e}, latched {:.3e}", early.score, latched.score);
+        }
+        assert!(shakes > 0, "one-sided {one_sided}, limit {torque_limit:?}: nothing shook");
+    }
+}
+
+/// The search itself finds that, too.
+#[test]
+fn the_search_finds_torques_that_come_early() {
+    let search = Search {
+        seed: 1,
+        scenes: 2000,
+        time: None,
+        choice: Choice {
+            kind: Some(Kind::Wall),
+            latched: Some(true),
+            worst_period: Some(false),
+            taken: 0.0,
+            ..Choice::ANY
+        },
+        output: Some(Output::Early(0.005)),
+        enough: 20,
+        effort: Effort::USUAL,
+    };
+    let found = search.run();
+    println!("{found} counterexamples={}", found.counterexamples.len());
+    assert!(found.counterexamples.len() >= 20);
+}
+
+/// A device with a twentieth less damping than its scene needs, by the certificate's own account,
+/// gives energy away: the certificate does not ask for more than it must.
+#[test]
+fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
+    // Of how many scenes at least it finds that, in a hundred: the hand that takes the least is
+    // harder to find the more poles there are.
+    let kinds =
+        [(Kind::Wall, 20), (Kind::FreeMode, 10), (Kind::FreeModeWall, 15), (Kind::Rational, 2)];
+    for (kind, percent) in kinds {
+        let search = Search {
+            seed: 2,
+            scenes: 400,
+            time: None,
+            choice: Choice {
+                kind: Some(kind),
+                worst_period: Some(false),
+                weakened: Some(0.95),
+                saturates: false,
+                ..Choice::ANY
+            },
+            output: None,
+            enough: usize::MAX,
+            effort: Effort::USUAL,
+        };
+        let found = search.run();
+        println!("{kind}: {found} counterexamples={}", found.counterexamples.len());
+        assert!(found.counterexamples.len() as u64 * 100 >= found.accepted * percent, "{kind}");
+    }
+}
+
+/// What becomes of a scene that shook once: refused, or not to be shaken.
+fn judge(shaking: &Shaking, format: Numbers, latched: bool) -> Result<&'static str, String> {
+    let scene = shaking.scene;
+    let search = Search {
+        seed: 3,
+        scenes: 1,
+        time: None,
+        choice: Choice::ANY,
+        output: None,
+        enough: 1,
+        effort: Effort { drawn: 200, climbed: 200, ..Effort::USUAL },
+    };
+    // Against the torque of a converter that is hardly, sometimes and nearly always at its end.
+    for full_scale in [4.0, 1.0, 20.0] {
+        let mut drawn = Drawn::of(Kind::Wall, scene, format, latched, 0.1);
+        drawn.judged_as = shaking.judged_as;
+        if scene.torque_limit.is_none() {
+            drawn.transducers.full_scale_torque *= 0.25 * full_scale;
+        }
+        let found = search.climb(0, &drawn, ChaCha8Rng::seed_from_u64(search.seed));
+        match (found.accepted, found.counterexamples.first()) {
+            (0, _) if found.unbounded > 0 => return Err("cannot be judged".to_owned()),
+            (0, _) => return Ok("refused"),
+            (_, None) => {}
+            (_, Some(counterexample)) => return Err(counterexample.to_string()),
+        }
+    }
+    Ok("comes to rest")
+}
+
+#[test]
+fn scenes_that_shook_once_are_refused_or_come_to_rest() {
+    let mut shook = Vec::new();
+    for shaking in shaking::all() {
+        for format in [Numbers::F32, Numbers::F64, Numbers::Q24] {
+            for latched in [false, true] {
+                let judged = judge(&shaking, format, latched);
+                let text = judged.as_ref().map_or("SHAKES", |text| text);
+                println!("{}, {format:?}, latched {latched}: {text}", shaking.name);
+                shook.extend(judged.err().map(|why| format!("{}: {why}", shaking.name)));
+            }
+        }
+    }
+    assert!(shook.is_empty(), "{} of them shake:\n{}", shook.len(), shook.join("\n\n"));
+}
