@@ -4,9 +4,10 @@
 use core::f64::consts::PI;
 use core::fmt;
 
+use super::margin::Limited;
 use super::model::{Loop, Numbers};
 use super::rest::{Rest, Steps};
-use super::rules::{Answer, Assessment, compare, is_nonlinear, paper_limit, wall_of};
+use super::rules::{Assessment, is_nonlinear, wall_of};
 use super::timed::limited_bound;
 use crate::environment::Environment;
 use crate::passivity::discrete::index;
@@ -58,6 +59,8 @@ pub enum Assumption {
     Saturates {
         /// The bound in N m s/rad by which it would pass with a limit; `None` where it would not.
         bound: Option<f64>,
+        /// The damping in N m s/rad that the device may then lose.
+        margin: f64,
     },
     /// The canceller removes damping that must be there.
     CancelledDamping {
@@ -102,8 +105,8 @@ impl Assumption {
             | Self::CancelledDamping { .. }
             | Self::StepsUnbounded
             | Self::WorstPeriod { passes: false, .. }
-            | Self::Saturates { bound: None } => Standing::TakenForGranted,
-            Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_) } => {
+            | Self::Saturates { bound: None, .. } => Standing::TakenForGranted,
+            Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_), .. } => {
                 Standing::Holds
             }
             Self::OneSided { bound } if bound.is_some() => Standing::Holds,
@@ -156,13 +159,15 @@ impl fmt::Display for Assumption {
                 write_bound(f, *bound)
             }
             Self::Limited { torque, full_scale } => write_limit(f, *torque, *full_scale),
-            Self::Saturates { bound: Some(bound) } => write!(
+            Self::Saturates { bound: Some(bound), margin } => write!(
                 f,
                 "the torque may reach the converter's full scale, and be faded in and out: with a \
-                 torque limit it passes too, by the nonlinear bound of {} N m s/rad",
-                Written(*bound)
+                 torque limit it passes too, by the nonlinear bound of {} N m s/rad, and the device \
+                 may lose {} N m s/rad of its damping",
+                Written(*bound),
+                Written(*margin)
             ),
-            Self::Saturates { bound: None } => f.write_str(
+            Self::Saturates { bound: None, .. } => f.write_str(
                 "the torque is never limited: with a torque limit it would not pass, so that no board \
                  fades it in",
             ),
@@ -307,16 +312,19 @@ fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<A
         // Judged by that bound already.
         return None;
     }
-    Some(Assumption::Saturates { bound: bound_that_passes(scene, assessment).map(Interval::hi) })
+    let passes = passes_limited(scene, assessment);
+    let bound = passes.map(|(bound, _)| bound.hi());
+    Some(Assumption::Saturates { bound, margin: passes.map_or(0.0, |(_, margin)| margin) })
 }
 
-/// The nonlinear bound of a scene that has an index, if it passes.
-fn bound_that_passes(scene: &Scene, assessment: &Assessment) -> Option<Interval> {
+/// The nonlinear bound of a scene that has an index, if it passes, and the margin then.
+fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f64)> {
     // Without one its numbers may be out of range.
     assessment.alpha?;
     let numbers = Numbers::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment, &numbers)?;
-    (compare(bound, paper_limit(&numbers)?) == Answer::Pass).then_some(bound)
+    let limited = Limited::of(scene, &numbers, bound)?;
+    Some((bound, limited.margin(0.0)))
 }
 
 fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assumption {

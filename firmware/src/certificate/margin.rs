@@ -23,7 +23,10 @@ impl Assessment {
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
         match (self.rule, &self.outcome, self.exact) {
             (Rule::Nonlinear, Ok(()), _) => match self.bound {
-                Some(bound) => Some(limited(scene, &Numbers::of(scene, self.format), bound)),
+                Some(bound) => match Limited::of(scene, &Numbers::of(scene, self.format), bound) {
+                    Some(limited) => Some(limited.margin(0.0)),
+                    None => Some(0.0),
+                },
                 None => None,
             },
             (Rule::Exact, Ok(()), _) => Some(match self.linear(scene) {
@@ -81,33 +84,67 @@ const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     if assessment.outcome.is_ok() { Some(passes) } else { None }
 }
 
-/// The margin of a one-sided or limited scene with this bound on its index, below the limit of
-/// [`paper_limit`]; not negative.
-///
-/// Down to `k = K_vc T / 2` conditions 17 and 18 go on to hold. For a device that has only
-/// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
-/// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less
-/// `(k - delta') sum d^2 / T`. With `d = e + V w` and a torque that changes by no more than
-/// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`.
-pub(super) const fn limited(scene: &Scene, n: &Numbers, bound: Interval) -> f64 {
-    let (Some(k), Some(limit), Some(gain)) =
-        (n.coupling_damping(), paper_limit(n), largest_gain(&scene.environment, n))
-    else {
-        return 0.0;
-    };
-    // V g, for V = T / (2 k).
-    let amplification = Interval::ONE.add(gain.div(k.double()));
-    let above = n.delta.sub(k).lo().max(0.0);
-    let below = n.delta.min(k).sub(bound).div(amplification.mul(amplification)).lo();
-    let margin = match &n.missed {
-        None => above + below,
-        Some(missed) if limit.sub(bound).is_positive() => {
-            where_latched(missed, k, bound, amplification).min(above + below)
+/// A scene whose torque is limited: its own limit, or that of a board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limited {
+    /// Bound on the index.
+    bound: Interval,
+    /// What it has to stay below: [`paper_limit`].
+    limit: Interval,
+    /// [`largest_gain`].
+    gain: Interval,
+    /// `K_vc T / 2`.
+    coupling: Interval,
+    delta: Interval,
+    missed: Option<Missed>,
+}
+
+impl Limited {
+    /// Of a scene with this bound on its index. `None` where that is not below the limit, or none is
+    /// known.
+    pub const fn of(scene: &Scene, n: &Numbers, bound: Interval) -> Option<Self> {
+        let (Some(coupling), Some(limit), Some(gain)) =
+            (n.coupling_damping(), paper_limit(n), largest_gain(&scene.environment, n))
+        else {
+            return None;
+        };
+        if !bound.is_below(limit) {
+            return None;
         }
-        Some(_) => 0.0,
-    };
-    // Each end was rounded, and then their sum.
-    (margin * (1.0 - f64::EPSILON)).max(0.0).min(n.delta.lo())
+        Some(Self { bound, limit, gain, coupling, delta: n.delta, missed: n.missed })
+    }
+
+    /// What the limit leaves over the bound, in N m s/rad.
+    pub const fn room(&self) -> f64 {
+        self.limit.sub(self.bound).lo()
+    }
+
+    /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late,
+    /// beside the environment; not negative.
+    ///
+    /// Down to `k = K_vc T / 2` conditions 17 and 18 go on to hold. For a device that has only
+    /// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
+    /// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less
+    /// `(k - delta') sum d^2 / T`. With `d = e + V w` and a torque that changes by no more than
+    /// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`.
+    pub const fn margin(&self, injected: f64) -> f64 {
+        let injected = Interval::exact(injected);
+        let bound = self.bound.add(injected);
+        if !bound.is_below(self.limit) {
+            return 0.0;
+        }
+        let (k, gain) = (self.coupling, self.gain.add(injected.double()));
+        // V g, for V = T / (2 k).
+        let amplification = Interval::ONE.add(gain.div(k.double()));
+        let above = self.delta.sub(k).lo().max(0.0);
+        let below = self.delta.min(k).sub(bound).div(amplification.mul(amplification)).lo();
+        let margin = match &self.missed {
+            None => above + below,
+            Some(missed) => where_latched(missed, k, bound, amplification).min(above + below),
+        };
+        // Each end was rounded, and then their sum.
+        (margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo())
+    }
 }
 
 /// The same where torques are latched and updates missed. As long as the index is below `s k` the

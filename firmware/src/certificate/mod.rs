@@ -171,7 +171,7 @@ macro_rules! certify_for {
                 $environment: Renders<M>,
             {
                 match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
-                    Ok(spare) => Ok(Timed::new(self, spare)),
+                    Ok(limited) => Ok(Timed::new(self, limited)),
                     Err(error) => Err(error),
                 }
             }

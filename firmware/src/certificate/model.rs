@@ -37,7 +37,7 @@ pub(super) struct Numbers {
 }
 
 /// Updates that may be missed by a scene whose torques may be latched one period after their counts.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Missed {
     /// Longest time between two counts over the period, `T_max / T`.
     pub stretch: Interval,

@@ -158,7 +158,11 @@ where
     let scene = apply(scene, changes)?;
     let timed = E::time(E::certify(scene)?)?;
     let rendering = Rendering::build(&timed, transducers, options)?;
-    Ok(Prepared { scene, margin: Some(timed.margin()), rendering })
+    Ok(Prepared {
+        scene,
+        margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
+        rendering,
+    })
 }
 
 #[cfg(test)]

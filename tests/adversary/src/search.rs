@@ -163,7 +163,7 @@ where
     certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
     if let Some(share) = drawn.injected {
         let timed = drawn.scene.certify_in(N::FORMAT).ok().and_then(|scene| scene.time::<M>().ok());
-        drawn.rendering.injection = timed.and_then(|timed| timed.room()).map(|room| room * share);
+        drawn.rendering.injection = timed.map(|timed| timed.room() * share);
     }
     let set = |scene: &Scene| {
         let timed = scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;

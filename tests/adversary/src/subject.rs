@@ -9,6 +9,7 @@ use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
+use firmware::servo::Simultaneous;
 use rand::Rng;
 
 use crate::norm::Errors;
@@ -57,8 +58,12 @@ pub struct Subject {
 
 /// Damping in N m s/rad that a device may lose, everything else as it runs, before the certificate
 /// is void.
-pub fn margin(assessment: &Assessment, _scene: &Scene) -> f64 {
-    assessment.margin().unwrap_or(0.0)
+///
+/// The margin of a board, which limits the torque of every scene; whether the scene is rendered in
+/// the mode that is run is not asked here.
+pub fn margin(assessment: &Assessment, scene: &Scene, injected: Option<f64>) -> f64 {
+    let timed = scene.certify_in(assessment.format).ok().map(|scene| scene.time::<Simultaneous>());
+    timed.and_then(Result::ok).map_or(0.0, |timed| timed.margin_with(injected.unwrap_or(0.0)))
 }
 
 /// The wall of an environment.
@@ -121,7 +126,7 @@ impl Subject {
                 compliance = compliance.max(1.0 / stiffness);
             }
             face = face.max(wall(&scene.environment).map_or(0.0, |wall| wall.face.abs()));
-            let lost = drawn.taken * margin(assessment, scene);
+            let lost = drawn.taken * margin(assessment, scene, drawn.rendering.injection);
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
         }
         let half = match transducers.counter {

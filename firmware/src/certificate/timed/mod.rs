@@ -4,7 +4,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::margin;
+use super::margin::Limited;
 use super::model::{Numbers, nonlinear_bound, transfer};
 use super::rules::paper_limit;
 use super::{Assessment, Certified, Rule, Sentence};
@@ -39,13 +39,13 @@ use crate::servo::{OutputMode, OutputTiming};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed<S, M> {
     certified: Certified<S>,
-    spare: Spare,
+    limited: Limited,
     mode: PhantomData<M>,
 }
 
 impl<S, M> Timed<S, M> {
-    pub(super) const fn new(certified: Certified<S>, spare: Spare) -> Self {
-        Self { certified, spare, mode: PhantomData }
+    pub(super) const fn new(certified: Certified<S>, limited: Limited) -> Self {
+        Self { certified, limited, mode: PhantomData }
     }
 
     /// Damping in N m s/rad that may be switched on and off at will, one sample late, beside the
@@ -55,13 +55,18 @@ impl<S, M> Timed<S, M> {
     /// nonlinear bound), and index and damper together have to meet conditions 17 and 18, the rule
     /// that does not ask for linearity.
     pub const fn room(&self) -> f64 {
-        self.spare.room
+        self.limited.room()
     }
 
     /// Damping in N m s/rad that the device may lose with everything else as it runs on a board, where
     /// the torque is limited; see [`Assessment::margin`], which for a linear scene leaves that out.
     pub const fn margin(&self) -> f64 {
-        self.spare.margin
+        self.limited.margin(0.0)
+    }
+
+    /// The same while so much damping (N m s/rad) is switched on and off: below [`Timed::room`].
+    pub const fn margin_with(&self, injected: f64) -> f64 {
+        self.limited.margin(injected)
     }
 
     /// The scene.
@@ -73,13 +78,6 @@ impl<S, M> Timed<S, M> {
     pub const fn assessment(&self) -> &Assessment {
         self.certified.assessment()
     }
-}
-
-/// What a timed scene has to spare, in N m s/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spare {
-    room: f64,
-    margin: f64,
 }
 
 /// Why a certified scene cannot be rendered by a board.
@@ -157,27 +155,29 @@ impl Assessment {
     }
 }
 
-/// Whether a scene with this assessment agrees with a mode; if so, what it has to spare.
+/// Whether a scene with this assessment agrees with a mode; if so, what it is with its
+/// torque limited.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
-) -> Result<Spare, TimingError> {
+) -> Result<Limited, TimingError> {
     if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
     }
     let n = Numbers::of(scene, assessment.format);
-    let limit = paper_limit(&n);
     let bound = limited_bound(scene, assessment, &n);
-    match (bound, limit) {
-        (Some(bound), Some(limit)) if bound.is_below(limit) => {
-            Ok(Spare { room: limit.sub(bound).lo(), margin: margin::limited(scene, &n, bound) })
-        }
-        _ => Err(TimingError::Limited {
+    let limited = match bound {
+        Some(bound) => Limited::of(scene, &n, bound),
+        None => None,
+    };
+    match limited {
+        Some(limited) => Ok(limited),
+        None => Err(TimingError::Limited {
             bound: match bound {
                 Some(bound) => Some(bound.hi()),
                 None => None,
             },
-            limit: match limit {
+            limit: match paper_limit(&n) {
                 Some(limit) => Some(limit.lo()),
                 None => None,
             },
