@@ -165,12 +165,13 @@ impl Pace {
     ///
     /// Between the two counts are `periods + late - before`, from the first of them to its latch
     /// `1 - before`, and the certificate allows the one to be a worst period over the period times the
-    /// other. Half a period is as late as a tick may be with the next one in time.
+    /// other. A tick in time counts as one at the beginning; half a period is late enough.
     pub(crate) fn latest(&self, periods: u32, before: f32) -> f32 {
         let in_time = 1.0 / IN_TIME as f32;
         let before = if before <= in_time { 0.0 } else { before };
-        let allowed = self.stretch * (1.0 - before) + in_time + before - periods as f32;
-        allowed.clamp(0.0, 0.5)
+        let allowed = self.stretch * (1.0 - before) + before - periods as f32;
+        // A worst period of whole periods, but for rounding.
+        if allowed < -1e-5 { 0.0 } else { allowed.clamp(in_time, 0.5) }
     }
 
     /// Whether the encoder cannot have moved by `step` counts within a period.

@@ -1,16 +1,13 @@
 //! A board that is simulated: encoder, converter, amplifier and timer of the servo's interrupt.
 
 use firmware::boot::Startup;
-use firmware::cycle::{Frame, FrameSink, Hardware, State};
+use firmware::cycle::{BEGAN_LATE, Frame, FrameSink, Hardware, IN_TIME, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::fault::Retained;
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;
-
-/// Timer counts that a tick takes which is in time.
-const USUAL: u32 = 300;
 
 /// The board. What the run sets before a tick, and what the tick did.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +18,8 @@ pub struct Board {
     pub passed: u32,
     /// Whether the tick ends after its period.
     pub late: bool,
+    /// Timer counts after the beginning of its period with which the tick begins.
+    pub delay: u32,
     /// Codes above mid-scale that were written last.
     pub offset: i16,
     /// Whether the amplifier is on.
@@ -39,6 +38,7 @@ impl Board {
             angle: 0.0,
             passed: 1,
             late: false,
+            delay: 0,
             offset: 0,
             amplifier: false,
             by_watchdog,
@@ -67,12 +67,12 @@ impl Hardware for Board {
 
     #[inline]
     fn passed(&mut self) -> u32 {
-        self.passed
+        if self.delay > PERIOD / IN_TIME && self.passed == 1 { BEGAN_LATE } else { self.passed }
     }
 
     #[inline]
     fn elapsed(&mut self) -> u32 {
-        if self.late { PERIOD } else { USUAL }
+        if self.late { PERIOD } else { self.delay.max(1) }
     }
 
     #[inline]

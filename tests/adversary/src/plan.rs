@@ -19,6 +19,8 @@ pub enum Tick {
     Missed,
     /// Its code comes after the update that it was for.
     Late,
+    /// It begins late in its period, and so reads a later count.
+    Delayed,
 }
 
 /// The ticks that come, over and over.
@@ -45,13 +47,19 @@ impl Pattern {
     /// Longest periodic pattern.
     pub const LONGEST: usize = 6;
 
+    /// Whether it has delayed ticks.
+    pub fn delays(&self) -> bool {
+        matches!(self, Self::Periodic(ticks, length) if ticks[..*length].contains(&Tick::Delayed))
+    }
+
     /// One that misses at most `most` updates in a row, if that is not zero; with late codes where
     /// they are latched.
     pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
-        if most == 0 || rng.random_bool(0.15) {
+        let only_delays = most == 0 && latched && rng.random_bool(0.3);
+        if !only_delays && (most == 0 || rng.random_bool(0.15)) {
             return Self::InTime;
         }
-        if rng.random_bool(0.3) {
+        if most > 0 && rng.random_bool(0.3) {
             let missed = rng.random_range(0..=200);
             let late = if latched { rng.random_range(0..=200) } else { 0 };
             return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
@@ -59,14 +67,20 @@ impl Pattern {
         let length = rng.random_range(2..=Self::LONGEST);
         let mut ticks = [Tick::InTime; Self::LONGEST];
         let mut in_a_row = 0;
-        let kind = if latched { rng.random_range(0..3) } else { 0 };
+        let kind = match (only_delays, latched) {
+            (true, _) => 3,
+            (_, true) => rng.random_range(0..5),
+            _ => 0,
+        };
+        let (late, delayed) = (kind == 1 || kind == 2, kind > 2);
         for tick in ticks.iter_mut().take(length - 1) {
             if in_a_row < most && rng.random_bool(0.6) {
                 in_a_row += 1;
-                let is_late = kind == 1 || kind == 2 && rng.random_bool(0.5);
+                let is_late = late && (kind == 1 || rng.random_bool(0.5));
                 *tick = if is_late { Tick::Late } else { Tick::Missed };
             } else {
                 in_a_row = 0;
+                *tick = if delayed && rng.random_bool(0.6) { Tick::Delayed } else { Tick::InTime };
             }
         }
         Self::Periodic(ticks, length)
@@ -100,6 +114,8 @@ pub struct Plan {
     pub armed_by_boot: bool,
     /// What happens to the ticks.
     pub pattern: Pattern,
+    /// The part of a period by which a delayed tick begins late: longer than what counts as in time.
+    pub delay: f64,
     /// What is asked for, and in which period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
     /// Whether the servo is armed again after each fault.
@@ -151,6 +167,7 @@ impl Plan {
             start,
             armed_by_boot,
             pattern: Pattern::draw(rng, most, subject.latched),
+            delay: rng.random_range(0.04..0.55),
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
             periods,
@@ -230,8 +247,9 @@ impl Plan {
                 plan.zero += plan.start[0] - moved;
             }
         }
-        if pattern && subject.tolerated > 0 {
+        if pattern {
             plan.pattern = Pattern::draw(rng, subject.tolerated, subject.latched);
+            plan.delay = rng.random_range(0.04..0.55);
         }
         if requests {
             plan.draw_requests(rng, subject);

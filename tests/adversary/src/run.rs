@@ -20,7 +20,7 @@ use firmware::servo::{OutputMode, OutputTiming, Rendering, Renders};
 use firmware::tuning::Tunable;
 
 use crate::device::{Held, State, Step, TORQUE};
-use crate::hardware::{Board, Last};
+use crate::hardware::{Board, Last, PERIOD};
 use crate::plan::{Pattern, Plan, Request, Tick};
 use crate::subject::Subject;
 
@@ -268,8 +268,9 @@ where
         let torque = |motor: i16, powered: bool| {
             if powered { f64::from(motor) * subject.torque_per_code } else { 0.0 }
         };
-        let overrun = (latched && subject.overrun > 0.0)
-            .then(|| [subject.overrun, 1.0 - subject.overrun].map(|part| held.audited(part)));
+        let split = |part: f64| [part, 1.0 - part].map(|part| held.audited(part));
+        let overrun = (latched && subject.overrun > 0.0).then(|| split(subject.overrun));
+        let delayed = plan.pattern.delays().then(|| split(plan.delay));
         let mut was_late = false;
         let first = plan.requests.iter().flatten().map(|(period, _)| *period).min();
         let mut next_request = first.unwrap_or(u32::MAX);
@@ -302,7 +303,11 @@ where
             let tick = ticks.next();
             let mut switched = false;
             // A tick that has to wait for the one before it reads its count when that has ended.
-            let waits = overrun.as_ref().filter(|_| was_late && tick != Tick::Missed);
+            let waits = if tick == Tick::Delayed {
+                delayed.as_ref()
+            } else {
+                overrun.as_ref().filter(|_| was_late && tick != Tick::Missed)
+            };
             was_late = tick == Tick::Late;
             if let Some([first, _]) = waits {
                 account.advance(&mut x, first, torque(motor, powered), held.damping());
@@ -315,6 +320,8 @@ where
                 board.angle = x[0];
                 board.passed = skipped + 1;
                 board.late = tick == Tick::Late;
+                board.delay =
+                    if tick == Tick::Delayed { (plan.delay * f64::from(PERIOD)) as u32 } else { 0 };
                 skipped = 0;
                 cycle.run(&mut board, &mut inbox, &mut last);
                 if board.late {

@@ -65,6 +65,7 @@ fn springy(stiffness: f64) -> Plan {
         start,
         armed_by_boot: true,
         pattern: Pattern::InTime,
+        delay: 0.0,
         requests: [None; REQUESTS],
         again: false,
         periods: 65_536,

@@ -113,11 +113,18 @@ fn where_updates_may_be_missed_a_tick_may_begin_late_instead() {
     // Two and a half periods, and the last two of three.
     assert_eq!(began(&[(2, 490)]), None);
     assert_eq!(began(&[(3, 40)]), Some(Fault::LateTick { late: 40, allowed: 31 }));
-    // From a late count to its latch there is less time, and a third of that has to be enough:
+    // From a late count to its latch there is less time, of which three times has to be enough:
     // 3 (1 - 0.3) = 2.1 = 2 + 0.4 - 0.3.
-    assert_eq!(began(&[(BEGAN_LATE, 300), (2, 400)]), None);
-    let error = began(&[(BEGAN_LATE, 300), (2, 440)]);
-    assert_eq!(error, Some(Fault::LateTick { late: 440, allowed: 431 }));
+    assert_eq!(began(&[(BEGAN_LATE, 300), (2, 399)]), None);
+    let Some(Fault::LateTick { late: 402, allowed }) = began(&[(BEGAN_LATE, 300), (2, 402)]) else {
+        panic!("it was not too late")
+    };
+    assert!((399..=401).contains(&allowed), "{allowed}");
+    // After half a period, not even a tick that is in time may be missed.
+    let error = began(&[(BEGAN_LATE, 500), (2, 10)]);
+    assert_eq!(error, None);
+    let error = began(&[(BEGAN_LATE, 500), (3, 10)]);
+    assert_eq!(error, Some(Fault::LateTick { late: 10, allowed: 0 }));
 }
 
 #[test]
