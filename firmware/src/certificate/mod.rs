@@ -45,7 +45,7 @@ mod varied;
 pub use assumption::{Assumption, Assumptions, Standing};
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
-pub use posed::Posed;
+pub use posed::{Posed, PosedIn};
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
@@ -87,14 +87,23 @@ pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
 }
 
 /// The same of the coefficients that a servo in this number format multiplies by.
+pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
+    certify_data::<true>(scene, format)
+}
+
+/// The same. Where the type of an environment tells that it is not `RATIONAL`, a program has nothing
+/// of what only those take: degrees above that of a wall, and poles on the unit circle.
 // In a frame of its own it would hold the assessment twice while the scene is judged, which is when
 // a small board's stack is at its fullest.
 #[inline(always)]
-pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
-    let assessment = assessed(scene, format, Extent::OwnRule);
+const fn certify_data<const RATIONAL: bool>(
+    scene: &Scene,
+    format: Format,
+) -> Result<Assessment, Rejection> {
+    let assessment = assessed::<RATIONAL>(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies(rejection, scene, format)),
+        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
     }
 }
 
@@ -105,7 +114,7 @@ const fn refuse(sentence: &Sentence) -> ! {
 }
 
 macro_rules! certify_for {
-    ($([$($generics:tt)*] $environment:ty;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
         impl<$($generics)*> Scene<$environment> {
             /// The same scene with its environment as data.
             pub const fn as_data(&self) -> Scene {
@@ -126,7 +135,7 @@ macro_rules! certify_for {
 
             /// Judges the coefficients that a servo in this number format multiplies by.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
-                match certify_in(&self.as_data(), format) {
+                match certify_data::<$rational>(&self.as_data(), format) {
                     Ok(assessment) => Ok(Certified { scene: self, assessment }),
                     Err(rejection) => Err(rejection),
                 }

@@ -168,7 +168,7 @@ const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interva
 
 /// `E(z)`, causal and with a proper denominator.
 #[inline(never)]
-pub(super) const fn transfer(
+pub(super) const fn transfer<const RATIONAL: bool>(
     environment: &Environment,
     n: &Numbers,
 ) -> Result<Transfer, Unbuildable> {
@@ -180,7 +180,8 @@ pub(super) const fn transfer(
             Some(free)
         }
         Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(&wall(w, n)),
-        Environment::Rational(r) => rational(r, n),
+        Environment::Rational(r) if RATIONAL => rational(r, n),
+        Environment::Rational(_) => None,
     };
     match built {
         None => Err(Unbuildable::OutOfRange),
@@ -355,7 +356,7 @@ const fn solved(
     }
     let contact = match contact {
         Some(scale) => scale,
-        None => match transfer(environment, n) {
+        None => match transfer::<false>(environment, n) {
             Ok(transfer) => transfer.scale,
             Err(_) => return None,
         },
@@ -475,11 +476,11 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
-        if first_invalid(scene).is_some() {
+        if first_invalid::<true>(scene).is_some() {
             return Err(Unbuildable::OutOfRange);
         }
         let n = Numbers::of(scene, format);
-        let environment = match transfer(&scene.environment, &n) {
+        let environment = match transfer::<true>(&scene.environment, &n) {
             Ok(environment) => environment,
             Err(error) => return Err(error),
         };

@@ -8,7 +8,7 @@ use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::bernstein::Closeness;
-use crate::passivity::discrete::{RealPart, index_looked_at};
+use crate::passivity::discrete::{RealPart, index_in};
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
@@ -17,6 +17,9 @@ use crate::scene::Scene;
 /// Width of an index, relative to its magnitude, that a search follows: it shifts the place of its
 /// zero by a tenth of the last of three digits.
 const ROUGHLY: f64 = 1e-4;
+
+/// A [`PosedIn`] with any environment.
+pub type Posed = PosedIn<true>;
 
 /// A scene whose numbers are valid, whose device is passive, and whose coupling and environment
 /// have one solution every tick.
@@ -49,7 +52,7 @@ const ROUGHLY: f64 = 1e-4;
 /// assert!(passes(23.9) && !passes(24.1));
 /// ```
 #[derive(Clone, Copy)]
-pub struct Posed {
+pub struct PosedIn<const RATIONAL: bool> {
     pub(super) numbers: Numbers,
     pub(super) environment: Transfer,
     pub(super) rule: Rule,
@@ -57,7 +60,7 @@ pub struct Posed {
     pub(super) bound: Option<Interval>,
 }
 
-impl Posed {
+impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// Poses a scene as it was written.
     ///
     /// # Errors
@@ -72,7 +75,7 @@ impl Posed {
     /// # Errors
     /// As [`Posed::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
-        match first_invalid(scene) {
+        match first_invalid::<RATIONAL>(scene) {
             Some(invalid) => Err(Rejection::Invalid(invalid)),
             None => Self::with(scene, Numbers::of(scene, format)),
         }
@@ -83,12 +86,13 @@ impl Posed {
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
-        let environment = match transfer(&scene.environment, &numbers) {
+        let environment = match transfer::<RATIONAL>(&scene.environment, &numbers) {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
         };
-        if let (Environment::Rational(_), Some(cos_theta)) =
-            (&scene.environment, hidden_mode(&environment))
+        if RATIONAL
+            && matches!(scene.environment, Environment::Rational(_))
+            && let Some(cos_theta) = hidden_mode(&environment)
         {
             return Err(Rejection::HiddenMode { cos_theta });
         }
@@ -215,10 +219,10 @@ impl Posed {
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (theory-lag,
     /// equation (1), for an ideal hold).
     pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        match cancelled(self.environment).behind(self.numbers.compliance) {
+        match cancelled::<RATIONAL>(self.environment).behind(self.numbers.compliance) {
             Ok(mut late) => {
                 late.shift -= 1;
-                index_looked_at(late, self.numbers.period, false, closeness)
+                index_in::<RATIONAL>(late, self.numbers.period, false, closeness)
             }
             Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
         }
@@ -233,7 +237,7 @@ impl Posed {
 
     /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        index_looked_at(self.environment, self.numbers.period, true, closeness)
+        index_in::<RATIONAL>(self.environment, self.numbers.period, true, closeness)
     }
 
     /// Index of `E'`; that of the environment alone is not asked for again where it is known.
@@ -264,8 +268,10 @@ impl Posed {
 
     /// Index of `E'` for a coupling with this much compliance over the standard one.
     const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        match cancelled(self.environment).behind(excess) {
-            Ok(equivalent) => index_looked_at(equivalent, self.numbers.period, false, closeness),
+        match cancelled::<RATIONAL>(self.environment).behind(excess) {
+            Ok(equivalent) => {
+                index_in::<RATIONAL>(equivalent, self.numbers.period, false, closeness)
+            }
             Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
         }
     }

@@ -6,7 +6,7 @@ use super::between::passes_upwards;
 use super::digits::{Digits, Side};
 use super::model::Numbers;
 use super::parameter::Parameter;
-use super::posed::Posed;
+use super::posed::PosedIn;
 use super::rejection::Rejection;
 use super::varied::{FARTHEST, Varied};
 use crate::environment::Environment;
@@ -170,7 +170,7 @@ impl Remedies {
 }
 
 /// The rejection with the remedies that there are, where a remedy makes sense.
-pub(super) const fn with_remedies(
+pub(super) const fn with_remedies<const RATIONAL: bool>(
     rejection: Rejection,
     scene: &Scene,
     format: Format,
@@ -179,21 +179,21 @@ pub(super) const fn with_remedies(
     match &mut out {
         Rejection::Shortage { remedies, .. }
         | Rejection::Coupling { remedies, .. }
-        | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
+        | Rejection::Undecided { remedies, .. } => *remedies = search::<RATIONAL>(scene, format),
         _ => {}
     }
     out
 }
 
-const fn search(scene: &Scene, format: Format) -> Remedies {
-    let own = shortage(scene, format);
+const fn search<const RATIONAL: bool>(scene: &Scene, format: Format) -> Remedies {
+    let own = shortage::<RATIONAL>(scene, format);
     let mut found = Remedies::NONE;
     let mut i = 0;
     while i < CANDIDATES {
-        let varied = Varied { scene, format, parameter: ORDER[i] };
+        let varied = Varied::<RATIONAL> { scene, format, parameter: ORDER[i] };
         let remedy = match ORDER[i] {
             Parameter::CouplingStiffness => standard_coupling(&varied),
-            Parameter::Passivity => more_damping(scene, format),
+            Parameter::Passivity => more_damping::<RATIONAL>(scene, format),
             _ => varied.remedy(own),
         };
         found.put(i, remedy);
@@ -204,8 +204,8 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
 
 /// What the scene lacks as it is.
 #[inline(never)]
-const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
+const fn shortage<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<f64> {
+    match PosedIn::<RATIONAL>::in_format(scene, format) {
         Ok(posed) => posed.shortage(),
         Err(_) => None,
     }
@@ -213,7 +213,7 @@ const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
 
 /// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
 /// digits as pass, on the soft side.
-const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
+const fn standard_coupling<const RATIONAL: bool>(varied: &Varied<RATIONAL>) -> Option<Remedy> {
     let numbers = Numbers::of(varied.scene, varied.format);
     if numbers.is_standard {
         return None;
@@ -238,7 +238,7 @@ const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
 
 /// A device with more damping; where its passivity was declared, with more of that, up to the
 /// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
-const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
+const fn more_damping<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<Remedy> {
     let cancels = matches!(
         scene.environment,
         Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
@@ -249,7 +249,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
         None => return None,
     };
     let numbers = Numbers::of(scene, format);
-    let Some(needed) = needed_passivity(scene, format) else { return None };
+    let Some(needed) = needed_passivity::<RATIONAL>(scene, format) else { return None };
     // A device gives only so much of its passivity as its longest period leaves.
     let scale = match scene.timing.worst_period {
         Some(worst) => worst / scene.timing.period,
@@ -258,7 +258,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     if needed > FARTHEST * numbers.delta.hi() {
         return None;
     }
-    let varied = Varied { scene, format, parameter };
+    let varied = Varied::<RATIONAL> { scene, format, parameter };
     match varied.certified(Digits::of(needed * scale, Side::Above), Side::Above) {
         Some(value) if passes_upwards(scene, &numbers, value / scale) => {
             Some(Remedy::at_least(parameter, value))
@@ -270,8 +270,8 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
 
 /// In a frame of its own, as what it calls.
 #[inline(never)]
-const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
+const fn needed_passivity<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<f64> {
+    match PosedIn::<RATIONAL>::in_format(scene, format) {
         Ok(posed) => posed.needed_passivity(),
         Err(_) => None,
     }

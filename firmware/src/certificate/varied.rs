@@ -3,7 +3,7 @@
 use super::between::{Between, between};
 use super::digits::{Digits, Side};
 use super::parameter::Parameter;
-use super::posed::Posed;
+use super::posed::PosedIn;
 use super::remedy::Remedy;
 use super::secant::{Bracket, Look, Search};
 use crate::environment::Environment;
@@ -22,13 +22,13 @@ const LEAST_STEP: f64 = 1.01;
 const CANDIDATES: u32 = 3;
 
 /// A scene with one of its numbers open.
-pub(super) struct Varied<'a> {
+pub(super) struct Varied<'a, const RATIONAL: bool> {
     pub scene: &'a Scene,
     pub format: Format,
     pub parameter: Parameter,
 }
 
-impl Varied<'_> {
+impl<const RATIONAL: bool> Varied<'_, RATIONAL> {
     /// The values that pass, from the nearest on: to three digits on the side that passes, and
     /// certified.
     ///
@@ -56,7 +56,7 @@ impl Varied<'_> {
             (Between::Unknown, _) => return Some(nearest),
             (Between::PassesDownToZero, _) => return None,
             (Between::PassesDownToZeroWithoutStiffness, _) => {
-                let soft = Varied { parameter: Parameter::Stiffness, ..*self };
+                let soft = Self { parameter: Parameter::Stiffness, ..*self };
                 if soft.is_certified(0.0) {
                     return None;
                 }
@@ -168,9 +168,9 @@ impl Varied<'_> {
     }
 
     #[inline(never)]
-    const fn posed(&self, value: f64) -> Option<Posed> {
+    const fn posed(&self, value: f64) -> Option<PosedIn<RATIONAL>> {
         let Some(scene) = with(self.scene, self.parameter, value) else { return None };
-        match Posed::in_format(&scene, self.format) {
+        match PosedIn::in_format(&scene, self.format) {
             Ok(posed) => Some(posed),
             Err(_) => None,
         }

@@ -7,28 +7,29 @@
 //! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
 //! Each is data first; [`Renderable`] turns it into its [`Law`], which the servo runs.
 
-/// Gives a macro all environments, each with its generic parameters: the one list of them.
+/// Gives a macro all environments, each with its generic parameters and with whether it may be
+/// rational: the one list of them.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
-            [const N: usize] DelayedSpring<N>;
-            [const N: usize] Placed<DelayedSpring<N>>;
-            [const N: usize] OneSided<DelayedSpring<N>>;
-            [const N: usize] DamperWall<N>;
-            [const N: usize] Placed<DamperWall<N>>;
-            [const N: usize] OneSided<DamperWall<N>>;
-            [const N: usize] FilteredWall<N>;
-            [const N: usize] Placed<FilteredWall<N>>;
-            [const N: usize] OneSided<FilteredWall<N>>;
-            [const N: usize] FreeMode<N>;
-            [const N: usize] FreeModeWall<DelayedSpring<N>>;
-            [const N: usize] FreeModeWall<DamperWall<N>>;
-            [const N: usize] FreeModeWall<FilteredWall<N>>;
-            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>;
-            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>;
-            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>;
-            [] Rational;
-            [] Environment;
+            [const N: usize] DelayedSpring<N>: false;
+            [const N: usize] Placed<DelayedSpring<N>>: false;
+            [const N: usize] OneSided<DelayedSpring<N>>: false;
+            [const N: usize] DamperWall<N>: false;
+            [const N: usize] Placed<DamperWall<N>>: false;
+            [const N: usize] OneSided<DamperWall<N>>: false;
+            [const N: usize] FilteredWall<N>: false;
+            [const N: usize] Placed<FilteredWall<N>>: false;
+            [const N: usize] OneSided<FilteredWall<N>>: false;
+            [const N: usize] FreeMode<N>: false;
+            [const N: usize] FreeModeWall<DelayedSpring<N>>: false;
+            [const N: usize] FreeModeWall<DamperWall<N>>: false;
+            [const N: usize] FreeModeWall<FilteredWall<N>>: false;
+            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: false;
+            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: false;
+            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: false;
+            [] Rational: true;
+            [] Environment: true;
         }
     };
 }

@@ -3,7 +3,7 @@
 use super::bernstein::{Closeness, Minimum, minimum};
 use super::chebyshev::{Kernel, Series, at_cosine};
 use super::interval::Interval;
-use super::poles::{Doubt, Obstacle, Reduced, reduce};
+use super::poles::{Doubt, Obstacle, Reduced, reduce, reduce_in};
 use super::polynomial::UnitRoot;
 use super::transfer::Transfer;
 
@@ -24,13 +24,17 @@ pub struct RealPart {
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
-    looked_at(g, widen, &Closeness::TIGHT)
+    looked_at::<true>(g, widen, &Closeness::TIGHT)
 }
 
 /// [`input_passivity`], looked at so closely.
-const fn looked_at(g: Transfer, widen: bool, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-    match reduce(g, widen) {
-        Ok(reduced) => real_part(&reduced, closeness),
+const fn looked_at<const RATIONAL: bool>(
+    g: Transfer,
+    widen: bool,
+    closeness: &Closeness,
+) -> Result<RealPart, Obstacle> {
+    match reduce_in::<RATIONAL>(g, widen) {
+        Ok(reduced) => real_part::<RATIONAL>(&reduced, closeness),
         Err(obstacle) => Err(obstacle),
     }
 }
@@ -77,29 +81,43 @@ pub const fn index_within(
     index_looked_at(environment, period, widen, &Closeness::within(tolerance))
 }
 
-/// [`index`], looked at so closely. The border is one of the real part: the negative of a limit.
+/// [`index`], looked at so closely; see [`index_in`].
 pub const fn index_looked_at(
     environment: Transfer,
     period: Interval,
     widen: bool,
     closeness: &Closeness,
 ) -> Result<RealPart, Obstacle> {
-    match looked_at(environment.from_velocity(period), widen, closeness) {
+    index_in::<true>(environment, period, widen, closeness)
+}
+
+/// [`index`], looked at so closely, of an environment that may be `RATIONAL`: where it is known not to
+/// be, its poles are those of walls and free mode, not at -1 and not in pairs on the circle. The border is one of the real part: the negative of a limit.
+pub const fn index_in<const RATIONAL: bool>(
+    environment: Transfer,
+    period: Interval,
+    widen: bool,
+    closeness: &Closeness,
+) -> Result<RealPart, Obstacle> {
+    match looked_at::<RATIONAL>(environment.from_velocity(period), widen, closeness) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
     }
 }
 
 #[inline(never)]
-const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-    if let Err(obstacle) = residues_at_real_points(g) {
+const fn real_part<const RATIONAL: bool>(
+    g: &Reduced,
+    closeness: &Closeness,
+) -> Result<RealPart, Obstacle> {
+    if let Err(obstacle) = residues_at_real_points::<RATIONAL>(g) {
         return Err(obstacle);
     }
-    let (kernel, shift) = kernel_of(g);
+    let (kernel, shift) = kernel_of::<RATIONAL>(g);
     let Some(mut p) = Series::real_part(kernel, shift, &g.numerator, &g.denominator) else {
         return Err(Obstacle::Undecided(Doubt::OutOfRange));
     };
-    if let Some(sum) = g.pair {
+    if RATIONAL && let Some(sum) = g.pair {
         p = match without_pair(g, p, sum.half()) {
             Ok(p) => p,
             Err(obstacle) => return Err(obstacle),
@@ -122,10 +140,10 @@ const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obsta
 }
 
 /// The kernel of the poles at 1 and -1, and the power of `z` that is left beside it.
-const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
+const fn kernel_of<const RATIONAL: bool>(g: &Reduced) -> (Kernel, i32) {
     // 1 / (z^2 - 2 c0 z + 1) = z^-1 / (2 (c - c0)) on the circle.
-    let shift = if g.pair.is_some() { g.shift - 1 } else { g.shift };
-    match (g.at_one, g.at_minus_one) {
+    let shift = if RATIONAL && g.pair.is_some() { g.shift - 1 } else { g.shift };
+    match (g.at_one, RATIONAL && g.at_minus_one) {
         (false, false) => (Kernel::One, shift),
         (true, false) => (Kernel::AtOne, shift - 1),
         (false, true) => (Kernel::AtMinusOne, shift),
@@ -134,9 +152,9 @@ const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
 }
 
 /// Residues at `z = 1` and `z = -1`: `k = residue / z_0` must be positive.
-const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
+const fn residues_at_real_points<const RATIONAL: bool>(g: &Reduced) -> Result<(), Obstacle> {
     if g.at_one {
-        let residue = residue_at(g, UnitRoot::Plus);
+        let residue = residue_at::<RATIONAL>(g, UnitRoot::Plus);
         if residue.is_negative() {
             return Err(Obstacle::NegativeResidue { residue });
         }
@@ -144,8 +162,8 @@ const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
             return Err(Obstacle::Undecided(Doubt::ResidueSign));
         }
     }
-    if g.at_minus_one {
-        let k = residue_at(g, UnitRoot::Minus).neg();
+    if RATIONAL && g.at_minus_one {
+        let k = residue_at::<RATIONAL>(g, UnitRoot::Minus).neg();
         if k.is_negative() {
             return Err(Obstacle::ResidueAngle { cos_theta: Interval::ONE.neg() });
         }
@@ -156,9 +174,12 @@ const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
     Ok(())
 }
 
-const fn residue_at(g: &Reduced, root: UnitRoot) -> Interval {
+const fn residue_at<const RATIONAL: bool>(g: &Reduced, root: UnitRoot) -> Interval {
     let mut value = g.scale.mul(g.numerator.at_unit_root(root));
     value = value.div(g.denominator.at_unit_root(root));
+    if !RATIONAL {
+        return value;
+    }
     let two = Interval::exact(2.0);
     match root {
         UnitRoot::Plus => {
@@ -194,7 +215,7 @@ const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Ob
     if !remainder.is_zero() {
         return Err(Obstacle::Undecided(Doubt::ResidueSign));
     }
-    let (kernel, shift) = kernel_of(g);
+    let (kernel, shift) = kernel_of::<true>(g);
     let (real, imaginary) = at_cosine(c0, shift, &g.numerator, &g.denominator);
     // Imaginary part of K(z) z^shift n conj(d), times a positive factor, by kernel.
     let sign = match kernel {

@@ -31,7 +31,7 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
 }
 
 macro_rules! tunable {
-    ($([$($generics:tt)*] $environment:ty;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
                 scene.certify_in(F::FORMAT)

@@ -199,7 +199,8 @@ pub(super) const fn limited_bound(
     if matches!(assessment.rule, Rule::Nonlinear) {
         return assessment.bound;
     }
-    match transfer(&scene.environment, n) {
+    // None is known of a rational environment.
+    match transfer::<false>(&scene.environment, n) {
         Ok(contact) => nonlinear_bound(&scene.environment, &contact, n),
         Err(_) => None,
     }

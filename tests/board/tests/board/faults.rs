@@ -64,6 +64,20 @@ const CASES: &[Case] = &[
         expected: Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
     },
     Case {
+        fault: "late-tick",
+        cause: "all interrupts are masked through an update, for half a period behind it",
+        program: "damper_wall",
+        bound: 1.25,
+        provoke: |bench| {
+            let period = bench.period();
+            bench.run_to_update();
+            bench.run_for(period / 2);
+            hold_up(bench, period, Masks::All)
+        },
+        resets: false,
+        expected: None,
+    },
+    Case {
         fault: "not-a-number",
         cause: "a coefficient in memory is no number",
         program: "damper_wall",

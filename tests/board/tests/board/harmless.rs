@@ -66,6 +66,7 @@ fn what_masks_all_but_the_servo_makes_no_tick_late() {
     });
 }
 
+/// A later one is a fault, although its code would be in time: its count is another one.
 #[test]
 fn a_tick_that_is_held_up_and_still_in_time_is_no_fault() {
     on_both(|chip| {
@@ -73,12 +74,12 @@ fn a_tick_that_is_held_up_and_still_in_time_is_no_fault() {
         let (period, slack) = (bench.period(), bench.status().worst_slack);
         bench.run_to_update();
         bench.run_for(period / 2);
-        // Through the next update, and up to nine tenths of the period behind it.
-        hold_up(&mut bench, period * 14 / 10, Masks::All);
+        // Through the next update, and a hundredth of the period behind it or a little more.
+        hold_up(&mut bench, period * 49 / 100, Masks::All);
         bench.run(5);
         assert_running(&mut bench, chip.name);
         let less = bench.status().worst_slack as f64 / f64::from(slack);
-        assert!((0.05..0.15).contains(&less), "{}: {less} of the slack is left", chip.name);
+        assert!((0.965..0.995).contains(&less), "{}: {less} of the slack is left", chip.name);
     });
 }
 
