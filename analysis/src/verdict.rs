@@ -120,6 +120,9 @@ pub struct Report {
     /// Damping in N m s/rad that the device may lose with everything else as it runs; negative: what
     /// it lacks.
     pub margin: Option<f64>,
+    /// The same where the torque is limited as on a board; `None` where no board renders the scene.
+    #[serde(skip)]
+    pub margin_on_board: Option<f64>,
     /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
     /// Nyquist frequency.
     pub theta: Option<f64>,
@@ -162,6 +165,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
     };
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin(scene);
+    let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
     let remedies = rejection.map(|rejection| rejection.remedies());
     let assumptions = Assumptions::of(scene, &assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == Standing::Fails);
@@ -179,6 +183,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
         bound: assessment.bound.map(|bound| enclosure(Some(bound))),
         delta,
         margin,
+        margin_on_board,
         theta: minimum_angle(scene, &assessment),
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),

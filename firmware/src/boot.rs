@@ -45,7 +45,7 @@ pub struct Program<E> {
 pub struct Booted<E: Renderable<N>, N: Number, M> {
     /// What its interrupt runs.
     pub cycle: Cycle<E, N, M>,
-    /// Damping in N m s/rad that the scene's certificate leaves to spare.
+    /// Damping in N m s/rad that the device may lose with this scene running.
     pub margin: Option<f64>,
     /// What was left from before the reset.
     pub left: Option<Retained>,

@@ -53,9 +53,10 @@ impl fmt::Display for LimitReason {
 /// Clamps the coupling torque to `-level..=level`.
 ///
 /// The level is the scene's bound, except while the servo fades in or out: then it moves by a
-/// fixed step a tick. What is ramped is the clamp and never the stiffness, since a changing
-/// stiffness is outside the certificate and a clamp is inside (theory, end of section 5). Closing
-/// only takes energy away; opening puts in at most what the environment stores at its depth, once.
+/// fixed step a tick. A scene is faded only if it passes with a torque limit at any level
+/// ([`Timed`](crate::certificate::Timed) asks for that, of linear scenes too): many that are certified
+/// without a limit oscillate with one. What is ramped is the clamp and never the stiffness, since a
+/// changing stiffness is outside of the certificate.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter<N> {
     level: N,

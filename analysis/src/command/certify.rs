@@ -56,6 +56,9 @@ pub fn text(report: &Report) -> String {
     if let Some(margin) = report.margin {
         rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
     }
+    if let Some(margin) = report.margin_on_board.filter(|&margin| Some(margin) != report.margin) {
+        rows.push(("margin on a board", format!("{} N m s/rad", significant(margin, 6))));
+    }
     if let Some(theta) = report.theta {
         let degrees = theta.to_degrees();
         rows.push(("reached at", format!("theta = {theta:.6} rad ({degrees:.2} degrees)")));

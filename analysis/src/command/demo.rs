@@ -145,7 +145,7 @@ pub(super) fn section(program: &Program, report: &Report, outcome: &Outcome) -> 
         ("verdict", verdict),
         ("alpha", damping(report.alpha.hi)),
         ("delta", damping(Some(report.delta))),
-        ("margin", damping(report.margin)),
+        ("margin", damping(report.margin_on_board)),
     ];
     let mut text = format!("{}\n", report.name);
     for (label, value) in rows {

@@ -18,7 +18,7 @@ impl Report {
     /// Of a certified scene, of the same scene with its environment as data, and of the machine.
     pub fn new<E>(certified: &Certified<Scene<E>>, data: &Scene, steps: &Steps) -> Self {
         let assessment = *certified.assessment();
-        let margin = assessment.margin(data);
+        let margin = assessment.margin_on_board(data);
         Self { assessment, margin, assumptions: Assumptions::of(data, &assessment, steps) }
     }
 }

@@ -250,3 +250,70 @@ impl Rational {
         (product, given.len().saturating_sub(1).saturating_add(zeros))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::{Rejection, certify};
+    use crate::environment::Environment;
+    use crate::scene::{Coupling, Device, Scene, Timing};
+
+    fn rational(numerator: &[f64], denominator: &[f64], unit_zeros: usize) -> Rational {
+        let coefficients = |c| Coefficients::new(c).unwrap();
+        let (numerator, denominator) = (coefficients(numerator), coefficients(denominator));
+        Rational { numerator, denominator, delay: 1, unit_zeros }
+    }
+
+    fn scene(rational: Rational) -> Scene {
+        Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 1e-3, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment: Environment::Rational(rational),
+            torque_limit: None,
+        }
+    }
+
+    #[test]
+    fn common_factors_on_the_circle_are_not_run() {
+        let four = rational(&[3.0, 12.0, 18.0, 12.0, 3.0], &[1.0, 4.0, 6.0, 4.0, 1.0], 0);
+        assert_eq!(four.cancelled(), rational(&[3.0], &[1.0], 0));
+        // A virtual mass: (z - 1)^2 over z (z - 1).
+        let mass = rational(&[0.02, -0.04, 0.02], &[1e-6, -1e-6, 0.0], 0);
+        assert_eq!(mass.cancelled(), rational(&[0.02, -0.02], &[1e-6, 0.0], 0));
+        // A zero that is declared goes first.
+        let declared = rational(&[1.0], &[1.0, -1.5, 0.5], 2);
+        assert_eq!(declared.cancelled(), rational(&[1.0], &[1.0, -0.5], 1));
+        // Nothing is cancelled that is not common, or not to the last bit.
+        for kept in [
+            rational(&[1.0, -1.0], &[1.0, 1.0], 0),
+            rational(&[0.1, 0.8, 0.7], &[1.0, 1.5, 0.5], 0),
+            rational(&[0.0], &[1.0, -1.0], 0),
+        ] {
+            assert_eq!(kept.cancelled(), kept);
+        }
+        for environment in [four, mass, declared] {
+            let law = Renderable::<f64>::law(&environment, &setting()).unwrap();
+            assert!(
+                law.sections[..law.degree]
+                    .iter()
+                    .all(|section| { section.denominator.abs() <= 0.5 })
+            );
+        }
+    }
+
+    fn setting() -> Setting {
+        Setting { period: 1e-3, damping: 0.022, coupling: Coupling::Rigid }
+    }
+
+    #[test]
+    fn a_common_pair_on_the_circle_is_refused() {
+        let pair = rational(&[2.5, -3.125, 2.5], &[1.0, -1.25, 1.0], 0);
+        let rejection = certify(&scene(pair)).unwrap_err();
+        assert!(matches!(rejection, Rejection::HiddenMode { .. }), "{rejection}");
+        assert_eq!(rejection.reason(), "residue_angle");
+        assert!(rejection.to_string().contains("divide both by that factor"), "{rejection}");
+        // The same without it is a spring.
+        assert!(certify(&scene(rational(&[2.5], &[1.0], 0))).is_ok());
+    }
+}

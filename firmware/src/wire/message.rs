@@ -110,8 +110,7 @@ pub struct Board {
 pub struct Running {
     /// Sets that were swapped in since the start; wraps.
     pub sets: u32,
-    /// Damping in N m s/rad that the certificate leaves to spare; `None`: the rule has none to
-    /// give.
+    /// Damping in N m s/rad that the device may lose with these numbers running; `None`: not known.
     pub margin: Option<f64>,
     /// The numbers that can be changed.
     pub values: Changes,

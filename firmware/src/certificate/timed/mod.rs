@@ -10,7 +10,7 @@ use super::rules::paper_limit;
 use super::{Assessment, Certified, Rule, Sentence};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, OutputTiming};
+use crate::servo::{OutputMode, OutputTiming, Simultaneous};
 
 /// A certified scene that agrees with the mode `M` in which a board puts its torques out.
 ///
@@ -142,6 +142,15 @@ impl fmt::Display for TimingError {
 impl core::error::Error for TimingError {}
 
 impl Assessment {
+    /// [`Timed::margin`] of the scene that was assessed and certified; `None` where no board renders it
+    /// for its numbers.
+    pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
+        match agree::<Simultaneous>(scene, self) {
+            Ok(limited) => Some(limited.margin(0.0)),
+            Err(_) => None,
+        }
+    }
+
     /// Whether a board that puts its torques out in the mode `M` renders the scene that was assessed
     /// and certified, as far as its numbers tell: what [`Certified::time`](Certified) answers.
     ///

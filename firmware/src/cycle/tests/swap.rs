@@ -98,6 +98,31 @@ fn a_set_is_the_one_that_was_built_and_runs_as_one_that_always_ran() {
     }
 }
 
+/// A velocity filter that takes a hundred ticks to forget a position: it never was at another one.
+#[test]
+fn a_new_set_starts_at_rest_where_the_device_is() {
+    let program = program(FilteredWall::<1> { stiffness: 2.0, damping: 0.015, filter: 0.98 });
+    let mut bench: Bench<_, f32, Latched> = Bench::boot(&program, Board::new()).unwrap();
+    let swing = |bench: &mut Bench<_, f32, Latched>| {
+        let codes = bench.board.codes().len();
+        bench.stand(900, 400);
+        let codes = &bench.board.codes()[codes..];
+        let spring = *codes.last().unwrap();
+        // Nothing is added to the spring's torque as the clamp opens.
+        assert!(codes.iter().all(|code| (spring..=2048).contains(code)), "{codes:?}");
+        spring
+    };
+    bench.stand(900, 2000);
+    let spring = *bench.board.codes().last().unwrap();
+    bench.requests.submit(set(&program, &[(Parameter::Damping, 0.014)])).unwrap();
+    assert_eq!(swing(&mut bench), spring);
+    // And so does one that is armed: what it remembers of a fault is not what the motor did.
+    bench.board.underrun = true;
+    bench.stand(900, 20);
+    bench.requests.arm();
+    assert_eq!(swing(&mut bench), spring);
+}
+
 #[test]
 fn the_position_is_carried_over() {
     // A 16-bit counter that has wrapped: only the servo knows where the device is.

@@ -48,7 +48,7 @@ pub struct Facts {
 /// Notices that a poll looks at: more than can wait.
 const NOTICES: usize = 16;
 
-/// A set of parameters with what its certificate leaves to spare.
+/// A set of parameters with the damping that the device may lose while it runs.
 #[derive(Clone, Copy)]
 struct Set<E> {
     scene: Scene<E>,
@@ -81,8 +81,8 @@ where
     N: Number,
     M: OutputMode,
 {
-    /// The wire's end of the servo that runs this program; `margin` is what the certificate of its
-    /// scene leaves to spare in N m s/rad.
+    /// The wire's end of the servo that runs this program; `margin` is the damping in N m s/rad
+    /// that the device may lose with its scene.
     pub fn new(
         program: Program<E>,
         margin: Option<f64>,
