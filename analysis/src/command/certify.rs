@@ -56,7 +56,10 @@ pub fn text(report: &Report) -> String {
     if let Some(margin) = report.margin {
         rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
     }
-    if let Some(margin) = report.margin_on_board.filter(|&margin| Some(margin) != report.margin) {
+    if let Some(margin) = report
+        .margin_on_board
+        .filter(|&margin| report.board.is_none() && Some(margin) != report.margin)
+    {
         rows.push(("margin on a board", format!("{} N m s/rad", significant(margin, 6))));
     }
     if let Some(theta) = report.theta {

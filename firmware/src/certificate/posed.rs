@@ -188,7 +188,10 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
             return None;
         };
         let delta = self.numbers.delta;
-        let over_the_limit = bound.sub(delta.min(coupling));
+        let over_the_limit = bound.sub(match paper_limit(&self.numbers) {
+            Some(limit) => limit,
+            None => delta.min(coupling),
+        });
         // A coupling that is stiffer than the standard one lacks what it stands for over `delta`.
         Some(if delta.is_below(coupling) {
             over_the_limit.max(coupling.sub(delta))

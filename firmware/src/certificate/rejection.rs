@@ -66,6 +66,15 @@ pub enum Rejection {
         /// Changes of one number that would pass.
         remedies: Remedies,
     },
+    /// The environment would pass if no update were missed, or if torques were not latched.
+    Missed {
+        /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
+        alpha: Interval,
+        /// What it has to stay below with this coupling.
+        limit: Interval,
+        /// Changes of one number that would pass.
+        remedies: Remedies,
+    },
     /// The environment would pass behind the standard coupling; this coupling does not suit it
     /// (equation 18).
     Coupling {
@@ -101,7 +110,7 @@ impl Rejection {
         match self {
             Self::Invalid(_) | Self::IllPosed { .. } => "ill_posed",
             Self::Improper => "improper",
-            Self::NoPassivity { .. } | Self::Shortage { .. } => "shortage",
+            Self::NoPassivity { .. } | Self::Shortage { .. } | Self::Missed { .. } => "shortage",
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
@@ -120,6 +129,7 @@ impl Rejection {
     pub const fn remedies(&self) -> Remedies {
         match self {
             Self::Shortage { remedies, .. }
+            | Self::Missed { remedies, .. }
             | Self::Coupling { remedies, .. }
             | Self::Undecided { remedies, .. } => *remedies,
             _ => Remedies::NONE,
@@ -178,6 +188,13 @@ impl Rejection {
             }
             Self::Shortage { alpha, delta, cos_theta, .. } => {
                 write_shortage(&mut t, *alpha, *delta, *cos_theta);
+            }
+            Self::Missed { alpha, limit, .. } => {
+                t.push("with updates missed up to the worst period and torques latched the environment needs alpha = ");
+                t.push_number(alpha.hi());
+                t.push(" N m s/rad of damping, not below the ");
+                t.push_number(limit.lo());
+                t.push(" N m s/rad that device and coupling leave it");
             }
             Self::Coupling { alpha, alpha_coupled, delta, stiffness, standard, .. } => {
                 write_coupling(&mut t, *alpha, *alpha_coupled, *delta, *stiffness, *standard);

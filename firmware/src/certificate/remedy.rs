@@ -178,6 +178,7 @@ pub(super) const fn with_remedies<const RATIONAL: bool>(
     let mut out = rejection;
     match &mut out {
         Rejection::Shortage { remedies, .. }
+        | Rejection::Missed { remedies, .. }
         | Rejection::Coupling { remedies, .. }
         | Rejection::Undecided { remedies, .. } => *remedies = search::<RATIONAL>(scene, format),
         _ => {}

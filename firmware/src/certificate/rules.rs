@@ -237,6 +237,9 @@ const fn exact_outcome(
                 limit: Some(limit),
                 remedies: Remedies::NONE,
             }),
+            Answer::Fail if blames_coupling && n.missed.is_some() => {
+                Err(missed_rejection(found.minimum, limit))
+            }
             Answer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
             Answer::Fail => Err(Rejection::Shortage {
                 alpha: found.minimum,
@@ -266,6 +269,10 @@ const fn coupling_rejection(n: &Numbers, out: &Assessment) -> Rejection {
     }
 }
 
+const fn missed_rejection(alpha: Interval, limit: Interval) -> Rejection {
+    Rejection::Missed { alpha, limit, remedies: Remedies::NONE }
+}
+
 const fn nonlinear_outcome(
     n: &Numbers,
     alone: &Result<RealPart, Obstacle>,
@@ -291,7 +298,10 @@ const fn nonlinear_outcome(
             limit: Some(n.delta),
             remedies: Remedies::NONE,
         }),
-        Answer::Fail if bound.is_below(n.delta) => Err(coupling_rejection(n, out)),
+        Answer::Fail if bound.is_below(n.delta) => match (paper_limit(n), &n.missed) {
+            (Some(limit), Some(_)) => Err(missed_rejection(bound, limit)),
+            _ => Err(coupling_rejection(n, out)),
+        },
         Answer::Fail => Err(Rejection::Shortage {
             alpha: bound,
             delta: n.delta,
