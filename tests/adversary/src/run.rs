@@ -335,6 +335,8 @@ where
                 if last.state != was {
                     match last.state {
                         Doing::FadingIn => account.openings += 1,
+                        // A clamp that opens within a tick.
+                        Doing::Running if was != Doing::FadingIn => account.openings += 1,
                         Doing::Faulted => {
                             outcome.faults += 1;
                             let damping = held.damping().max(f64::MIN_POSITIVE);
