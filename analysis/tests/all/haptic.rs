@@ -139,6 +139,26 @@ fn json_has_the_fields_of_the_contract_and_nothing_else_is_printed() {
     assert_eq!(answer["remedies"], serde_json::json!([]));
 }
 
+#[test]
+fn a_certified_scene_that_no_board_renders_says_why() {
+    let late = WALL
+        .replace("\"stiffness\": 22", "\"stiffness\": 15")
+        .replace("0.01,", "0,")
+        .replace("\"delay\": 1", "\"delay\": 2")
+        .replace("44", "33");
+    let undelayed = WALL.replace("\"delay\": 1", "\"delay\": 0");
+    for (scene, why) in [(late, "never limited"), (undelayed, "not late by a whole sample")] {
+        let output = haptic(&["certify", "--json", "-"], scene.as_bytes());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let board = lines(&output)[0]["board"].as_str().unwrap().to_owned();
+        assert!(board.contains(why), "{board}");
+        let output = haptic(&["certify", "-"], scene.as_bytes());
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains("not on a board") && text.contains(why), "{text}");
+        assert!(!text.contains("margin on a board"), "{text}");
+    }
+}
+
 /// `delta` plus the least real part of `T C / (z - 1)` on a fine grid, for the wall's controller `C`
 /// behind its coupling.
 fn margin_of_the_wall() -> f64 {
