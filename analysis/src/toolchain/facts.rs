@@ -20,6 +20,7 @@ pub fn observe(lists_are_fresh: bool) -> Facts {
             cmake: says("cmake", &["--version"]).is_some(),
             make: says("make", &["--version"]).is_some(),
             cxx: says("c++", &["--version"]).is_some(),
+            pkg_config: says("pkg-config", &["--version"]).is_some(),
             libclang: has_libclang(),
         },
         debian: debian(lists_are_fresh),

@@ -59,6 +59,8 @@ pub struct Native {
     pub make: bool,
     /// Whether there is a C++ compiler, which cmake asks for.
     pub cxx: bool,
+    /// Whether there is pkg-config, without which the library's own configuration fails.
+    pub pkg_config: bool,
     /// Whether there is libclang.
     pub libclang: bool,
 }
@@ -103,13 +105,15 @@ pub enum Package {
     Make,
     /// The compiler that cmake asks for.
     Cxx,
+    /// Finds libraries for the library's own configuration.
+    PkgConfig,
     /// Reads its header.
     Libclang,
 }
 
 impl Package {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Rustc,
         Self::Cargo,
         Self::RustSource,
@@ -118,6 +122,7 @@ impl Package {
         Self::Cmake,
         Self::Make,
         Self::Cxx,
+        Self::PkgConfig,
         Self::Libclang,
     ];
     /// Those that make a compiler for the target.
@@ -134,6 +139,7 @@ impl Package {
             Self::Cmake => "cmake",
             Self::Make => "make",
             Self::Cxx => "g++",
+            Self::PkgConfig => "pkg-config",
             Self::Libclang => "libclang-dev",
         }
     }
@@ -143,7 +149,9 @@ impl Package {
         match self {
             Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),
             Self::Qemu => Some(Version::QEMU),
-            Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::Libclang => None,
+            Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::PkgConfig | Self::Libclang => {
+                None
+            }
         }
     }
 
@@ -266,11 +274,12 @@ fn emulator(facts: &Facts) -> Need {
 }
 
 fn native(facts: &Facts) -> Need {
-    let Native { cmake, make, cxx, libclang } = facts.native;
+    let Native { cmake, make, cxx, pkg_config, libclang } = facts.native;
     let missing = [
         (cmake, Package::Cmake),
         (make, Package::Make),
         (cxx, Package::Cxx),
+        (pkg_config, Package::PkgConfig),
         (libclang, Package::Libclang),
     ];
     let packages: Vec<_> =
@@ -375,6 +384,7 @@ impl fmt::Display for Request {
                     (native.cmake, "cmake"),
                     (native.make, "make"),
                     (native.cxx, "a C++ compiler"),
+                    (native.pkg_config, "pkg-config"),
                     (native.libclang, "libclang"),
                 ];
                 let missing: Vec<_> =
@@ -382,9 +392,9 @@ impl fmt::Display for Request {
                 write!(
                     f,
                     "install {}, with which the virtual board's processor is built: apt install \
-                     cmake make g++ libclang-dev (Debian, Ubuntu), dnf install cmake make gcc-c++ \
-                     clang-devel (Fedora), pacman -S cmake make gcc clang (Arch), brew install cmake \
-                     llvm (macOS)",
+                     cmake make g++ pkg-config libclang-dev (Debian, Ubuntu), dnf install cmake make \
+                     gcc-c++ pkgconf clang-devel (Fedora), pacman -S cmake make gcc pkgconf clang \
+                     (Arch), brew install cmake pkgconf llvm (macOS)",
                     missing.join(" and ")
                 )
             }

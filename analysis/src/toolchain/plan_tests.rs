@@ -10,7 +10,7 @@ const CMAKE: Version = Version { major: 3, minor: 25 };
 const CLANG: Version = Version { major: 14, minor: 0 };
 /// The packages' versions.
 const VERSIONS: [Version; Package::ALL.len()] =
-    [NEW, NEW, NEW, QEMU_7, QEMU_7, CMAKE, CMAKE, CMAKE, CLANG];
+    [NEW, NEW, NEW, QEMU_7, QEMU_7, CMAKE, CMAKE, CMAKE, CMAKE, CLANG];
 /// What the emulated board needs.
 const FOR_EMULATOR: [Package; 5] =
     [Package::Rustc, Package::Cargo, Package::RustSource, Package::Lld, Package::Qemu];
@@ -26,7 +26,7 @@ fn complete() -> Facts {
         rustup: true,
         fetching_forbidden: false,
         qemu: Some(QEMU_7),
-        native: Native { cmake: true, make: true, cxx: true, libclang: true },
+        native: Native { cmake: true, make: true, cxx: true, pkg_config: true, libclang: true },
         debian: None,
         root: false,
     }
@@ -171,7 +171,7 @@ fn requests_are_commands() {
 /// Whatever the machine, following the plan ends: each step changes the facts that asked for it.
 #[test]
 fn following_the_plan_ends() {
-    for bits in 0..4096_u32 {
+    for bits in 0..8192_u32 {
         let bit = |n: u32| bits >> n & 1 == 1;
         let mut facts = Facts {
             rust: bit(0).then_some(Rust { version: NEW, has_target: bit(1) }),
@@ -180,7 +180,13 @@ fn following_the_plan_ends() {
             qemu: bit(4).then_some(QEMU_7),
             debian: bit(5).then(debian),
             root: bit(6),
-            native: Native { cmake: bit(8), make: bit(10), cxx: bit(11), libclang: bit(9) },
+            native: Native {
+                cmake: bit(8),
+                make: bit(10),
+                cxx: bit(11),
+                pkg_config: bit(12),
+                libclang: bit(9),
+            },
         };
         if bit(7) {
             facts.debian = facts
@@ -214,6 +220,7 @@ fn take(facts: &mut Facts, step: Step) {
                     Package::Cmake => facts.native.cmake = true,
                     Package::Make => facts.native.make = true,
                     Package::Cxx => facts.native.cxx = true,
+                    Package::PkgConfig => facts.native.pkg_config = true,
                     Package::Libclang => facts.native.libclang = true,
                     _ => {}
                 }
@@ -233,10 +240,11 @@ fn whoever_only_flashes_needs_no_emulator() {
 #[test]
 fn a_virtual_board_is_built_with_cmake_and_libclang_and_needs_no_emulator() {
     let tools = Tools::CompilerAndVirtualBoard;
-    let none = Native { cmake: false, make: false, cxx: false, libclang: false };
+    let none = Native { cmake: false, make: false, cxx: false, pkg_config: false, libclang: false };
     let facts =
         Facts { native: none, qemu: None, debian: Some(debian()), root: true, ..complete() };
-    let all = vec![Package::Cmake, Package::Make, Package::Cxx, Package::Libclang];
+    let all =
+        vec![Package::Cmake, Package::Make, Package::Cxx, Package::PkgConfig, Package::Libclang];
     assert_eq!(plan(&facts, tools), Plan::Do(Step::Install(all)));
     let half = Facts { native: Native { libclang: false, ..complete().native }, ..facts.clone() };
     assert_eq!(plan(&half, tools), Plan::Do(Step::Install(vec![Package::Libclang])));
