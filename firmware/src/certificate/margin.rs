@@ -149,7 +149,8 @@ impl Limited {
 
 /// The same where torques are latched and updates missed. As long as the index is below `s k` the
 /// form of [`Missed::limit`] for `delta = k` leaves `(s k - alpha) e^2 / T`; of that a device with
-/// `delta' >= k / 2` takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`.
+/// `delta' >= k / 2` takes `(k - delta') (s d^2 + 2 (1 - s) (V w)^2) / T`. What is left grows with `s`
+/// for such a device, so that a pattern of longer and shorter intervals leaves no less.
 const fn where_latched(
     missed: &Missed,
     k: Interval,

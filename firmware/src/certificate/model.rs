@@ -6,6 +6,7 @@
 //! is what was written, to the digits of a double.
 
 use super::parameter::first_invalid;
+use super::rules::wall_of;
 use crate::environment::{Environment, MAX_DEGREE, Rational, Wall};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
@@ -368,6 +369,10 @@ const fn solved(
 }
 
 const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
+    // A spring that pulls away is no monotone law.
+    if matches!(wall_of(environment), Some(w) if w.stiffness < 0.0) {
+        return None;
+    }
     match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall_bound(w, n)),
         Environment::FreeMode { .. } => canceller_bound(n),

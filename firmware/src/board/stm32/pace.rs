@@ -33,7 +33,8 @@ pub struct Period {
 }
 
 impl Period {
-    /// The period nearest to this many seconds.
+    /// The longest period of no more than this many seconds: a longer one needs more of the device's
+    /// passivity than was certified, a shorter one does not, since each coefficient stays what it is.
     ///
     /// # Errors
     /// Where the timer, 16 bits behind a 16-bit prescaler, cannot pace it.
@@ -45,13 +46,17 @@ impl Period {
             return Err(StartError::Period { period: seconds, longest: LONGEST_PERIOD });
         }
         // From the smallest prescaler with which the period fits, which has the finest steps, the one
-        // that comes nearest: usual periods are whole numbers of counts with one of the next few.
+        // that comes nearest: usual periods are whole numbers of counts with one of the next few, to
+        // the rounding of the product.
         // All casts round down what is positive and small enough.
         let first = (wanted / MOST) as u32 + 1;
-        let mut nearest = Self { prescale: first, counts: MOST as u32, clock };
-        for prescale in first..first + PRESCALERS {
-            let counts = ((wanted / f64::from(prescale) + 0.5) as u32).min(MOST as u32);
-            let other = Self { prescale, counts, clock };
+        let with = |prescale: u32| {
+            let counts = ((wanted / f64::from(prescale) + 1e-6) as u32).min(MOST as u32);
+            Self { prescale, counts, clock }
+        };
+        let mut nearest = with(first);
+        for prescale in first + 1..first + PRESCALERS {
+            let other = with(prescale);
             if other.off(wanted) < nearest.off(wanted) {
                 nearest = other;
             }
