@@ -47,6 +47,16 @@ pub(super) struct Missed {
 }
 
 impl Missed {
+    /// The same, with counts that are read up to a part `late` of a period after its beginning: then
+    /// the time between two counts may be longer, and that to the latch shorter, by as much.
+    pub const fn read_late(n: &Numbers, late: Interval) -> Self {
+        let slowest = Interval::ONE.add(late).div(Interval::ONE.sub(late));
+        match n.missed {
+            Some(missed) => Self { stretch: missed.stretch.mul(slowest), ..missed },
+            None => Self { stretch: slowest, declared: n.delta },
+        }
+    }
+
     /// What an index has to stay below behind a coupling spring of damping `k = K_vc T / 2`, where
     /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta`.
     ///

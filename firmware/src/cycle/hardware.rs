@@ -4,11 +4,12 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
 
-/// The part of a period in which a tick has to begin, for its count to be the one at the period's
-/// beginning. Later than this is what a board tells by [`BEGAN_LATE`].
-pub const IN_TIME: u32 = 32;
+/// Time in s after the beginning of its period in which a tick reads its count, where torques are
+/// latched: the interrupt's own latency, and what other instructions add. The certificate of a board
+/// covers counts that are read as late as this, and later ones are told by [`BEGAN_LATE`].
+pub const READ_WITHIN: f64 = 1e-6;
 
-/// What [`Hardware::passed`] gives for one period whose tick began later than an [`IN_TIME`]th of it.
+/// What [`Hardware::passed`] gives for one period whose tick began later than [`READ_WITHIN`].
 pub const BEGAN_LATE: u32 = 0;
 
 /// The board in the servo's interrupt: each method is an access or two to a register.

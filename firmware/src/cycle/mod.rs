@@ -21,7 +21,7 @@ mod trouble;
 
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
-pub use hardware::{BEGAN_LATE, Hardware, IN_TIME};
+pub use hardware::{BEGAN_LATE, Hardware, READ_WITHIN};
 pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{LinkPolicy, Options};

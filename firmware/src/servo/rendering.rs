@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 
 use super::{BuildError, Output, OutputMode, Renders, Servo, Transducers};
 use crate::certificate::Timed;
-use crate::cycle::IN_TIME;
+use crate::cycle::READ_WITHIN;
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::Renderable;
@@ -167,7 +167,7 @@ impl Pace {
     /// `1 - before`, and the certificate allows the one to be a worst period over the period times the
     /// other. A tick in time counts as one at the beginning; half a period is late enough.
     pub(crate) fn latest(&self, periods: u32, before: f32) -> f32 {
-        let in_time = 1.0 / IN_TIME as f32;
+        let in_time = (READ_WITHIN / self.period) as f32;
         let before = if before <= in_time { 0.0 } else { before };
         let allowed = self.stretch * (1.0 - before) + before - periods as f32;
         // A worst period of whole periods, but for rounding.

@@ -1,7 +1,7 @@
 //! A board that is simulated: encoder, converter, amplifier and timer of the servo's interrupt.
 
 use firmware::boot::Startup;
-use firmware::cycle::{BEGAN_LATE, Frame, FrameSink, Hardware, IN_TIME, State};
+use firmware::cycle::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::fault::Retained;
@@ -67,12 +67,12 @@ impl Hardware for Board {
 
     #[inline]
     fn passed(&mut self) -> u32 {
-        if self.delay > PERIOD / IN_TIME && self.passed == 1 { BEGAN_LATE } else { self.passed }
+        if self.delay > 0 && self.passed == 1 { BEGAN_LATE } else { self.passed }
     }
 
     #[inline]
     fn elapsed(&mut self) -> u32 {
-        if self.late { PERIOD } else { self.delay.max(1) }
+        if self.late { PERIOD } else { self.delay }
     }
 
     #[inline]

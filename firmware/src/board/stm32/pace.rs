@@ -15,7 +15,7 @@ use embassy_stm32::rcc;
 use super::registers::LONGEST_PERIOD;
 use super::wiring::CLOCK;
 use crate::board::StartError;
-use crate::cycle::{BEGAN_LATE, IN_TIME};
+use crate::cycle::{BEGAN_LATE, READ_WITHIN};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' converters can take.
@@ -113,8 +113,9 @@ impl Pace {
         CLOCK.psc().write_value(0);
         CLOCK.arr().write_value(u32::MAX);
         CLOCK.egr().write(|w| w.set_ug(true));
-        let period = period.clock_counts();
-        Self { period, in_time: period.get() / IN_TIME, began: 0 }
+        // The cast gives the nearest of what does not fit.
+        let in_time = (period.clock * READ_WITHIN) as u32;
+        Self { period: period.clock_counts(), in_time, began: 0 }
     }
 
     /// Starts the clock and then the timer, so that a period never begins before the clock says so.

@@ -5,9 +5,10 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use super::margin::Limited;
-use super::model::{Numbers, nonlinear_bound, transfer};
+use super::model::{Missed, Numbers, nonlinear_bound, transfer};
 use super::rules::paper_limit;
 use super::{Assessment, Certified, Rule, Sentence};
+use crate::cycle::READ_WITHIN;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, OutputTiming, Simultaneous};
@@ -94,6 +95,23 @@ pub enum TimingError {
         /// the standard one, or rigid.
         limit: Option<f64>,
     },
+    /// The scene would pass if each count were read at the very beginning of its period.
+    ReadLate {
+        /// Its period in s.
+        period: f64,
+        /// Bound on the index in N m s/rad.
+        bound: f64,
+        /// What it has to stay below.
+        limit: f64,
+    },
+}
+
+/// Whether the bound is below the limit that is asked for where counts are read in time.
+const fn paper_passes(n: &Numbers, bound: Interval) -> bool {
+    match paper_limit(n) {
+        Some(limit) => bound.is_below(limit),
+        None => false,
+    }
 }
 
 impl TimingError {
@@ -101,6 +119,17 @@ impl TimingError {
     pub const fn sentence(&self) -> Sentence {
         let mut t = Sentence::new();
         match self {
+            Self::ReadLate { period, bound, limit } => {
+                t.push("a board reads a count up to ");
+                t.push_number(READ_WITHIN);
+                t.push(" s after the beginning of its period of ");
+                t.push_number(*period);
+                t.push(" s, and needs alpha = ");
+                t.push_number(*bound);
+                t.push(" N m s/rad below ");
+                t.push_number(*limit);
+                t.push(" N m s/rad for that: make the environment a little softer");
+            }
             Self::NotLate => t.push(
                 "the environment is not late by a whole sample, but on this board a torque takes \
                  one: give all of it a delay of at least 1",
@@ -175,6 +204,16 @@ pub(super) const fn agree<M: OutputMode>(
     }
     let n = Numbers::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment, &n);
+    if let (OutputTiming::Latched, Some(bound), Some(k)) = (M::TIMING, bound, n.coupling_damping())
+    {
+        let period = scene.timing.period;
+        let late = Interval::exact(READ_WITHIN).div(n.period);
+        let limit = Missed::read_late(&n, late).limit(k);
+        if period <= READ_WITHIN || !bound.is_below(limit) && paper_passes(&n, bound) {
+            let (bound, limit) = (bound.hi(), limit.lo());
+            return Err(TimingError::ReadLate { period, bound, limit });
+        }
+    }
     let limited = match bound {
         Some(bound) => Limited::of(scene, &n, bound),
         None => None,

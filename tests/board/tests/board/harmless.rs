@@ -66,20 +66,19 @@ fn what_masks_all_but_the_servo_makes_no_tick_late() {
     });
 }
 
-/// A later one is a fault, although its code would be in time: its count is another one.
+/// One that is held up is a fault, although its code would be in time: see the faults.
 #[test]
-fn a_tick_that_is_held_up_and_still_in_time_is_no_fault() {
+fn what_masks_the_servo_between_two_ticks_makes_no_tick_late() {
     on_both(|chip| {
         let mut bench = pushing(chip);
         let (period, slack) = (bench.period(), bench.status().worst_slack);
         bench.run_to_update();
-        bench.run_for(period / 2);
-        // Through the next update, and a hundredth of the period behind it or a little more.
-        hold_up(&mut bench, period * 49 / 100, Masks::All);
+        bench.run_for(period / 10);
+        hold_up(&mut bench, period * 8 / 10, Masks::All);
         bench.run(5);
         assert_running(&mut bench, chip.name);
-        let less = bench.status().worst_slack as f64 / f64::from(slack);
-        assert!((0.965..0.995).contains(&less), "{}: {less} of the slack is left", chip.name);
+        let slower = slack - bench.status().worst_slack;
+        assert!(slower < 100, "{}: {slower} counts less of a period are left", chip.name);
     });
 }
 
