@@ -18,7 +18,8 @@ pub struct Board {
     pub passed: u32,
     /// Whether the tick ends after its period.
     pub late: bool,
-    /// Timer counts after the beginning of its period with which the tick begins.
+    /// Timer counts after the beginning of its period with which the tick begins, where that is not
+    /// in time.
     pub delay: u32,
     /// Codes above mid-scale that were written last.
     pub offset: i16,

@@ -114,7 +114,7 @@ pub struct Plan {
     pub armed_by_boot: bool,
     /// What happens to the ticks.
     pub pattern: Pattern,
-    /// The part of a period by which a delayed tick begins late: longer than what counts as in time.
+    /// The part of a period by which a delayed tick begins late.
     pub delay: f64,
     /// What is asked for, and in which period.
     pub requests: [Option<(u32, Request)>; REQUESTS],
@@ -167,13 +167,22 @@ impl Plan {
             start,
             armed_by_boot,
             pattern: Pattern::draw(rng, most, subject.latched),
-            delay: rng.random_range(0.04..0.55),
+            delay: Self::delay(rng, subject),
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
             periods,
         };
         plan.draw_requests(rng, subject);
         plan
+    }
+
+    /// Later than what counts as in time, or nearly as late as that is.
+    fn delay(rng: &mut impl Rng, subject: &Subject) -> f64 {
+        if rng.random_bool(0.5) {
+            rng.random_range(0.04..0.55)
+        } else {
+            subject.in_time * rng.random_range(0.9..1.0)
+        }
     }
 
     fn hand(rng: &mut impl Rng, subject: &Subject) -> Hand {
@@ -249,7 +258,7 @@ impl Plan {
         }
         if pattern {
             plan.pattern = Pattern::draw(rng, subject.tolerated, subject.latched);
-            plan.delay = rng.random_range(0.04..0.55);
+            plan.delay = Self::delay(rng, subject);
         }
         if requests {
             plan.draw_requests(rng, subject);

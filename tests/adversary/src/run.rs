@@ -320,8 +320,11 @@ where
                 board.angle = x[0];
                 board.passed = skipped + 1;
                 board.late = tick == Tick::Late;
-                board.delay =
-                    if tick == Tick::Delayed { (plan.delay * f64::from(PERIOD)) as u32 } else { 0 };
+                board.delay = if tick == Tick::Delayed && plan.delay > subject.in_time {
+                    (plan.delay * f64::from(PERIOD)) as u32
+                } else {
+                    0
+                };
                 skipped = 0;
                 cycle.run(&mut board, &mut inbox, &mut last);
                 if board.late {

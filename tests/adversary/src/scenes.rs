@@ -2,12 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::certificate::Posed;
+use firmware::certificate::{Posed, TimingError, assess_in};
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{RenderingOptions, Transducers};
+use firmware::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
 
@@ -356,7 +356,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
             w.one_sided = false;
         }
     }
-    let scale = taken_to_the_line(&scene, knob, format.format())?;
+    let scale = taken_to_the_line(&scene, knob, format.format(), latched)?;
     let scene = scaled(&scene, knob, scale);
     let judged_as = judged_as.map(|environment| Scene { environment, ..scene });
     let other = rng.random_bool(0.3).then(|| another(rng, &scene, size, format)).flatten();
@@ -539,10 +539,21 @@ fn passes(scene: &Scene, format: Format) -> bool {
     Posed::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
 }
 
+/// Whether a board takes a scene that the certificate has passed: where its torques are latched, it
+/// may ask for a little more. Scenes that no board takes are left to what is said of them later.
+fn accepted(scene: &Scene, format: Format, latched: bool) -> bool {
+    passes(scene, format)
+        && !(latched
+            && matches!(
+                assess_in(scene, format).renders_in::<Latched>(scene),
+                Err(TimingError::ReadLate { .. })
+            ))
+}
+
 /// The scale of a number at which a scene only just passes, to a millionth; any in a wide range
 /// where it passes throughout.
-fn taken_to_the_line(scene: &Scene, knob: Knob, format: Format) -> Option<f64> {
-    let passes = |by: f64| passes(&scaled(scene, knob, by), format);
+fn taken_to_the_line(scene: &Scene, knob: Knob, format: Format, latched: bool) -> Option<f64> {
+    let passes = |by: f64| accepted(&scaled(scene, knob, by), format, latched);
     let (mut inside, mut outside);
     if passes(1.0) {
         (inside, outside) = (1.0, 4.0);

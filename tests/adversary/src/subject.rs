@@ -4,6 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use firmware::certificate::{Answer, Assessment, Rest, Steps};
+use firmware::cycle::READ_WITHIN;
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
@@ -54,6 +55,8 @@ pub struct Subject {
     pub injection: f64,
     /// Sets that may be swapped in.
     pub sets: usize,
+    /// Part of a period within which counts are read that are in time.
+    pub in_time: f64,
 }
 
 /// Damping in N m s/rad that a device may lose, everything else as it runs, before the certificate
@@ -143,6 +146,7 @@ impl Subject {
             tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
             latched: drawn.latched,
             overrun: drawn.overrun,
+            in_time: READ_WITHIN / scene.timing.period,
             torque_per_code: transducers.full_scale_torque
                 / f64::from(DacCode::CODES_TO_FULL_SCALE)
                 / unit,
