@@ -171,7 +171,7 @@ impl Pace {
         let before = if before <= in_time { 0.0 } else { before };
         let allowed = self.stretch * (1.0 - before) + before - periods as f32;
         // A worst period of whole periods, but for rounding.
-        if allowed < -1e-5 { 0.0 } else { allowed.clamp(in_time, 0.5) }
+        if allowed < -1e-5 { 0.0 } else { allowed.max(in_time).min(0.5) }
     }
 
     /// Whether the encoder cannot have moved by `step` counts within a period.
