@@ -221,6 +221,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (theory-lag,
     /// equation (1), for an ideal hold).
+    #[inline(never)]
     pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match cancelled::<RATIONAL>(self.environment).behind(self.numbers.compliance) {
             Ok(mut late) => {
@@ -269,7 +270,9 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         }
     }
 
-    /// Index of `E'` for a coupling with this much compliance over the standard one.
+    /// Index of `E'` for a coupling with this much compliance over the standard one. In a frame of its
+    /// own: a small board's stack has no room for two of them.
+    #[inline(never)]
     const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match cancelled::<RATIONAL>(self.environment).behind(excess) {
             Ok(equivalent) => {

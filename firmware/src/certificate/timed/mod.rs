@@ -195,6 +195,9 @@ impl Assessment {
 
 /// Whether a scene with this assessment agrees with a mode; if so, what it is with its
 /// torque limited.
+// In a frame of its own: its transfer functions would otherwise lie on the stack of a small board while
+// the scene is judged.
+#[inline(never)]
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
