@@ -88,13 +88,13 @@ const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limited {
     /// Bound on the index.
-    bound: Interval,
+    pub bound: Interval,
     /// What it has to stay below: [`paper_limit`].
     limit: Interval,
     /// [`largest_gain`].
     gain: Interval,
     /// `K_vc T / 2`.
-    coupling: Interval,
+    pub coupling: Interval,
     delta: Interval,
     missed: Option<Missed>,
 }

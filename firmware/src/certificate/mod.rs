@@ -180,7 +180,7 @@ macro_rules! certify_for {
                 $environment: Renders<M>,
             {
                 match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
-                    Ok(limited) => Ok(Timed::new(self, limited)),
+                    Ok(limited) => Ok(Timed::new(self.scene, self.assessment.format, limited)),
                     Err(error) => Err(error),
                 }
             }

@@ -339,17 +339,17 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 /// Where the loop is solved in the tick, out of contact by one rounded gain and in contact by
 /// another, the larger of what they make of the torque multiplies all of it.
 ///
-/// `contact` is the environment's own [`transfer`].
+/// `contact` is the scale of the environment's own [`transfer`] where that is known already.
 pub(super) const fn nonlinear_bound(
     environment: &Environment,
-    contact: &Transfer,
+    contact: Option<Interval>,
     n: &Numbers,
 ) -> Option<Interval> {
     let Some(bound) = exactly_solved_bound(environment, n) else { return None };
     if matches!(n.format, Format::F64) {
         return Some(bound);
     }
-    match solved(environment, Some(contact.scale), n) {
+    match solved(environment, contact, n) {
         Some(scale) => Some(bound.mul(scale)),
         None => None,
     }
@@ -367,15 +367,24 @@ const fn solved(
     }
     let contact = match contact {
         Some(scale) => scale,
-        None => match transfer::<false>(environment, n) {
-            Ok(transfer) => transfer.scale,
-            Err(_) => return None,
+        None => match scale(environment, n) {
+            Some(scale) => scale,
+            None => return None,
         },
     };
     Some(match environment {
         Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()).max(contact),
         _ => contact.max(Interval::ONE),
     })
+}
+
+// In a frame of its own: a small board asks for scenes that are late, which need no transfer function.
+#[inline(never)]
+const fn scale(environment: &Environment, n: &Numbers) -> Option<Interval> {
+    match transfer::<false>(environment, n) {
+        Ok(transfer) => Some(transfer.scale),
+        Err(_) => None,
+    }
 }
 
 const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {

@@ -8,9 +8,9 @@ use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::bernstein::Closeness;
-use crate::passivity::discrete::{RealPart, index_in};
+use crate::passivity::discrete::{RealPart, index_in, reduced_index, velocity_reduced};
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle, cancelled, hidden_mode};
+use crate::passivity::poles::{Doubt, Obstacle, Reduced, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
@@ -100,7 +100,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = nonlinear_bound(&scene.environment, &environment, &numbers);
+            let bound = nonlinear_bound(&scene.environment, Some(environment.scale), &numbers);
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
             (Rule::Exact, None, !loop_gain.contains(0.0))
@@ -221,14 +221,10 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (theory-lag,
     /// equation (1), for an ideal hold).
-    #[inline(never)]
     pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        match cancelled::<RATIONAL>(self.environment).behind(self.numbers.compliance) {
-            Ok(mut late) => {
-                late.shift -= 1;
-                index_in::<RATIONAL>(late, self.numbers.period, false, closeness)
-            }
-            Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        match self.behind_reduced(self.numbers.compliance, true) {
+            Ok(late) => reduced_index::<RATIONAL>(&late, closeness),
+            Err(obstacle) => Err(obstacle),
         }
     }
 
@@ -241,7 +237,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
 
     /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        index_in::<RATIONAL>(self.environment, self.numbers.period, true, closeness)
+        index_in::<RATIONAL>(&self.environment, self.numbers.period, true, closeness)
     }
 
     /// Index of `E'`; that of the environment alone is not asked for again where it is known.
@@ -270,16 +266,37 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         }
     }
 
-    /// Index of `E'` for a coupling with this much compliance over the standard one. In a frame of its
-    /// own: a small board's stack has no room for two of them.
+    /// Index of `E'` for a coupling with this much compliance over the standard one.
     #[inline(never)]
     const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        match cancelled::<RATIONAL>(self.environment).behind(excess) {
-            Ok(equivalent) => {
-                index_in::<RATIONAL>(equivalent, self.numbers.period, false, closeness)
-            }
-            Err(_) => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        match self.behind_reduced(excess, false) {
+            Ok(equivalent) => reduced_index::<RATIONAL>(&equivalent, closeness),
+            Err(obstacle) => Err(obstacle),
         }
+    }
+
+    /// The velocity-to-torque function of the environment behind a coupling of this compliance, a
+    /// sample late or as it is.
+    // In a frame of its own: a small board's stack has no room for what it takes beside the search for
+    // the minimum.
+    #[inline(never)]
+    const fn behind_reduced(
+        &self,
+        compliance: Interval,
+        a_sample_late: bool,
+    ) -> Result<Reduced, Obstacle> {
+        let mut controller = match self.controller(compliance) {
+            Ok(controller) => controller,
+            Err(_) => return Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        };
+        controller.shift -= a_sample_late as i32;
+        velocity_reduced::<RATIONAL>(&controller, self.numbers.period, false)
+    }
+
+    /// The environment behind a coupling of this compliance, without their common factors.
+    #[inline(never)]
+    const fn controller(&self, compliance: Interval) -> Result<Transfer, Unbuildable> {
+        cancelled::<RATIONAL>(&self.environment).behind(compliance)
     }
 }
 

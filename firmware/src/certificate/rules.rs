@@ -128,9 +128,10 @@ pub(super) const fn assessed<const RATIONAL: bool>(
     }
     let numbers = Numbers::of(scene, format);
     out.delta = numbers.delta;
-    out.outcome = match PosedIn::<RATIONAL>::with(scene, numbers) {
-        Ok(posed) => judge(&posed, extent, &mut out),
-        Err(rejection) => Err(rejection),
+    // By reference: moved out of the result, the scene would be on a small board's stack twice.
+    out.outcome = match &PosedIn::<RATIONAL>::with(scene, numbers) {
+        Ok(posed) => judge(posed, extent, &mut out),
+        Err(rejection) => Err(*rejection),
     };
     out
 }

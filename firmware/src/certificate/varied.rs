@@ -148,7 +148,7 @@ impl<const RATIONAL: bool> Varied<'_, RATIONAL> {
     /// In a frame of its own, as what follows: a small board's stack has no room for two of them.
     #[inline(never)]
     const fn shortage(&self, value: f64) -> Option<f64> {
-        match self.posed(value) {
+        match &self.posed(value) {
             Some(posed) => posed.shortage(),
             None => None,
         }
@@ -161,7 +161,7 @@ impl<const RATIONAL: bool> Varied<'_, RATIONAL> {
     /// Whether the scene is certified with this value.
     #[inline(never)]
     pub const fn is_certified(&self, value: f64) -> bool {
-        match self.posed(value) {
+        match &self.posed(value) {
             Some(posed) => posed.is_certified(),
             None => false,
         }

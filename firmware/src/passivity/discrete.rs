@@ -24,17 +24,8 @@ pub struct RealPart {
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
-    looked_at::<true>(g, widen, &Closeness::TIGHT)
-}
-
-/// [`input_passivity`], looked at so closely.
-const fn looked_at<const RATIONAL: bool>(
-    g: Transfer,
-    widen: bool,
-    closeness: &Closeness,
-) -> Result<RealPart, Obstacle> {
-    match reduce_in::<RATIONAL>(g, widen) {
-        Ok(reduced) => real_part::<RATIONAL>(&reduced, closeness),
+    match reduce(&g, widen) {
+        Ok(reduced) => real_part::<true>(&reduced, &Closeness::TIGHT),
         Err(obstacle) => Err(obstacle),
     }
 }
@@ -42,7 +33,7 @@ const fn looked_at<const RATIONAL: bool>(
 /// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as
 /// `min Re (1/G)`. `G` must be stable; a pole on the circle leaves it an index of at most 0.
 pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
-    match reduce(g, widen) {
+    match reduce(&g, widen) {
         Ok(_) => input_passivity(g.inverse(), widen),
         Err(obstacle) => Err(obstacle),
     }
@@ -88,18 +79,43 @@ pub const fn index_looked_at(
     widen: bool,
     closeness: &Closeness,
 ) -> Result<RealPart, Obstacle> {
-    index_in::<true>(environment, period, widen, closeness)
+    index_in::<true>(&environment, period, widen, closeness)
 }
 
 /// [`index`], looked at so closely, of an environment that may be `RATIONAL`: where it is known not to
-/// be, its poles are those of walls and free mode, not at -1 and not in pairs on the circle. The border is one of the real part: the negative of a limit.
+/// be, its poles are those of walls and free mode, not at -1 and not in pairs on the circle. The
+/// border is one of the real part: the negative of a limit.
+// In a frame of its own, which the caller would otherwise have several times.
+#[inline(never)]
 pub const fn index_in<const RATIONAL: bool>(
-    environment: Transfer,
+    environment: &Transfer,
     period: Interval,
     widen: bool,
     closeness: &Closeness,
 ) -> Result<RealPart, Obstacle> {
-    match looked_at::<RATIONAL>(environment.from_velocity(period), widen, closeness) {
+    match velocity_reduced::<RATIONAL>(environment, period, widen) {
+        Ok(reduced) => reduced_index::<RATIONAL>(&reduced, closeness),
+        Err(obstacle) => Err(obstacle),
+    }
+}
+
+/// `(T z / (z - 1)) E` with its poles told apart: the first half of [`index_in`].
+// In a frame of its own: a small board's stack has no room for the function beside what comes of it.
+#[inline(never)]
+pub(crate) const fn velocity_reduced<const RATIONAL: bool>(
+    environment: &Transfer,
+    period: Interval,
+    widen: bool,
+) -> Result<Reduced, Obstacle> {
+    reduce_in::<RATIONAL>(&environment.from_velocity(period), widen)
+}
+
+/// The index of an environment whose `(T z / (z - 1)) E` this is: the second half of [`index_in`].
+pub(crate) const fn reduced_index<const RATIONAL: bool>(
+    velocity: &Reduced,
+    closeness: &Closeness,
+) -> Result<RealPart, Obstacle> {
+    match real_part::<RATIONAL>(velocity, closeness) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
     }

@@ -76,7 +76,7 @@ pub enum Doubt {
 /// Structure (which factors are there) is read from the doubles as they are; the enclosure that
 /// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
 /// result depend on them being exact.
-pub const fn reduce(g: Transfer, widen: bool) -> Result<Reduced, Obstacle> {
+pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, Obstacle> {
     reduce_in::<true>(g, widen)
 }
 
@@ -84,7 +84,7 @@ pub const fn reduce(g: Transfer, widen: bool) -> Result<Reduced, Obstacle> {
 /// if they are, they are not proved to be inside.
 #[inline(never)]
 pub(super) const fn reduce_in<const RATIONAL: bool>(
-    g: Transfer,
+    g: &Transfer,
     widen: bool,
 ) -> Result<Reduced, Obstacle> {
     if g.numerator.is_zero() {
@@ -105,11 +105,12 @@ pub(super) const fn reduce_in<const RATIONAL: bool>(
     } else {
         None
     };
-    let kept = if pair.is_some() || work.exact.minus_ones < 0 { work.exact } else { work.wide };
+    let exactly = pair.is_some() || work.exact.minus_ones < 0;
+    let kept = if exactly { &work.exact } else { &work.wide };
     if let Err(obstacle) = strictly_schur(&kept.denominator) {
         return Err(obstacle);
     }
-    let Some(numerator) = zeros_multiplied(&kept) else {
+    let Some(numerator) = zeros_multiplied(kept) else {
         return Err(Obstacle::Undecided(Doubt::OutOfRange));
     };
     Ok(Reduced {
@@ -126,8 +127,8 @@ pub(super) const fn reduce_in<const RATIONAL: bool>(
 /// `G` with its exact common factors at 0, 1 and -1 cancelled and the others moved to the
 /// exponents; coefficients as the decimals they stand for.
 #[inline(never)]
-pub const fn cancelled<const RATIONAL: bool>(g: Transfer) -> Transfer {
-    if g.numerator.is_zero() { g } else { Work::new::<RATIONAL>(g, true).wide }
+pub const fn cancelled<const RATIONAL: bool>(g: &Transfer) -> Transfer {
+    if g.numerator.is_zero() { *g } else { Work::new::<RATIONAL>(g, true).wide }
 }
 
 const fn constant_zero() -> Reduced {
@@ -167,8 +168,8 @@ struct Work {
 }
 
 impl Work {
-    const fn new<const RATIONAL: bool>(g: Transfer, widen: bool) -> Self {
-        let mut work = Self { wide: g, exact: g };
+    const fn new<const RATIONAL: bool>(g: &Transfer, widen: bool) -> Self {
+        let mut work = Self { wide: *g, exact: *g };
         if widen {
             work.wide.numerator = widened(&g.numerator);
             work.wide.denominator = widened(&g.denominator);

@@ -73,8 +73,8 @@ impl Transfer {
 
     /// `(T z / (z - 1)) G`: from backward-difference velocity instead of position (theory,
     /// section 2).
-    pub const fn from_velocity(self, period: Interval) -> Self {
-        Self { scale: self.scale.mul(period), shift: self.shift + 1, ones: self.ones - 1, ..self }
+    pub const fn from_velocity(&self, period: Interval) -> Self {
+        Self { scale: self.scale.mul(period), shift: self.shift + 1, ones: self.ones - 1, ..*self }
     }
 
     /// `1 / G`.
@@ -92,7 +92,7 @@ impl Transfer {
     /// `G / (1 + compliance G)`: the controller behind a coupling of that compliance. With
     /// `V - T/(2 delta)` as compliance it is `E'` of theory, section 4.1.
     #[inline(never)]
-    pub const fn behind(self, compliance: Interval) -> Result<Self, Unbuildable> {
+    pub const fn behind(&self, compliance: Interval) -> Result<Self, Unbuildable> {
         let Some(mut numerator) = self.numerator_with_roots(self.shift, self.ones, self.minus_ones)
         else {
             return Err(Unbuildable::OutOfRange);

@@ -72,7 +72,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
         options: &RenderingOptions,
     ) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if timed.assessment().format == format {
+        if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
         let again = E::certify(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
@@ -83,6 +83,8 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
     /// From a certificate in this number format.
+    // In a frame of its own: what it takes is not on the stack while a scene is judged.
+    #[inline(never)]
     pub(crate) fn build(
         timed: &Timed<Scene<E>, M>,
         transducers: &Transducers,

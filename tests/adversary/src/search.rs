@@ -166,8 +166,9 @@ where
         drawn.rendering.injection = timed.map(|timed| timed.room() * share);
     }
     let set = |scene: &Scene| {
-        let timed = scene.certify_in(N::FORMAT).ok()?.time::<M>().ok()?;
-        let assessment = *timed.assessment();
+        let certified = scene.certify_in(N::FORMAT).ok()?;
+        let assessment = *certified.assessment();
+        let timed = certified.time::<M>().ok()?;
         let set = Rendering::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
         Some((set, assessment))
     };

@@ -4,11 +4,14 @@
 use core::fmt;
 use core::marker::PhantomData;
 
+#[cfg(doc)]
+use super::Certified;
 use super::margin::Limited;
-use super::model::{Missed, Numbers, nonlinear_bound, transfer};
+use super::model::{Missed, Numbers, nonlinear_bound};
 use super::rules::paper_limit;
-use super::{Assessment, Certified, Rule, Sentence};
+use super::{Assessment, Rule, Sentence};
 use crate::cycle::READ_WITHIN;
+use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, OutputTiming, Simultaneous};
@@ -39,14 +42,15 @@ use crate::servo::{OutputMode, OutputTiming, Simultaneous};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed<S, M> {
-    certified: Certified<S>,
+    scene: S,
+    format: Format,
     limited: Limited,
     mode: PhantomData<M>,
 }
 
 impl<S, M> Timed<S, M> {
-    pub(super) const fn new(certified: Certified<S>, limited: Limited) -> Self {
-        Self { certified, limited, mode: PhantomData }
+    pub(super) const fn new(scene: S, format: Format, limited: Limited) -> Self {
+        Self { scene, format, limited, mode: PhantomData }
     }
 
     /// Damping in N m s/rad that may be switched on and off at will, one sample late, beside the
@@ -72,12 +76,12 @@ impl<S, M> Timed<S, M> {
 
     /// The scene.
     pub const fn scene(&self) -> &S {
-        self.certified.scene()
+        &self.scene
     }
 
-    /// The numbers that the certificate rests on.
-    pub const fn assessment(&self) -> &Assessment {
-        self.certified.assessment()
+    /// The number format whose coefficients are certified.
+    pub const fn format(&self) -> Format {
+        self.format
     }
 }
 
@@ -104,14 +108,6 @@ pub enum TimingError {
         /// What it has to stay below.
         limit: f64,
     },
-}
-
-/// Whether the bound is below the limit that is asked for where counts are read in time.
-const fn paper_passes(n: &Numbers, bound: Interval) -> bool {
-    match paper_limit(n) {
-        Some(limit) => bound.is_below(limit),
-        None => false,
-    }
 }
 
 impl TimingError {
@@ -207,23 +203,12 @@ pub(super) const fn agree<M: OutputMode>(
     }
     let n = Numbers::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment, &n);
-    if let (OutputTiming::Latched, Some(bound), Some(k)) = (M::TIMING, bound, n.coupling_damping())
-    {
-        let period = scene.timing.period;
-        let late = Interval::exact(READ_WITHIN).div(n.period);
-        let limit = Missed::read_late(&n, late).limit(k);
-        if period <= READ_WITHIN || !bound.is_below(limit) && paper_passes(&n, bound) {
-            let (bound, limit) = (bound.hi(), limit.lo());
-            return Err(TimingError::ReadLate { period, bound, limit });
-        }
-    }
     let limited = match bound {
         Some(bound) => Limited::of(scene, &n, bound),
         None => None,
     };
-    match limited {
-        Some(limited) => Ok(limited),
-        None => Err(TimingError::Limited {
+    let Some(limited) = limited else {
+        return Err(TimingError::Limited {
             bound: match bound {
                 Some(bound) => Some(bound.hi()),
                 None => None,
@@ -232,8 +217,22 @@ pub(super) const fn agree<M: OutputMode>(
                 Some(limit) => Some(limit.lo()),
                 None => None,
             },
-        }),
+        });
+    };
+    match M::TIMING {
+        OutputTiming::Latched => read_late(limited, scene.timing.period, &n),
+        OutputTiming::Simultaneous => Ok(limited),
     }
+}
+
+/// The scene, if it stands counts that are read up to [`READ_WITHIN`] after the beginning of a period.
+const fn read_late(limited: Limited, period: f64, n: &Numbers) -> Result<Limited, TimingError> {
+    let late = Interval::exact(READ_WITHIN).div(n.period);
+    let limit = Missed::read_late(n, late).limit(limited.coupling);
+    if period > READ_WITHIN && limited.bound.is_below(limit) {
+        return Ok(limited);
+    }
+    Err(TimingError::ReadLate { period, bound: limited.bound.hi(), limit: limit.lo() })
 }
 
 /// The bound on the index of a certified scene whose torque is limited.
@@ -250,11 +249,7 @@ pub(super) const fn limited_bound(
     if matches!(assessment.rule, Rule::Nonlinear) {
         return assessment.bound;
     }
-    // None is known of a rational environment.
-    match transfer::<false>(&scene.environment, n) {
-        Ok(contact) => nonlinear_bound(&scene.environment, &contact, n),
-        Err(_) => None,
-    }
+    nonlinear_bound(&scene.environment, None, n)
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::certificate::Certified;
 use crate::environment::{
     DamperWall, DelayedSpring, Environment, FreeMode, FreeModeWall, OneSided, Rational,
 };
