@@ -9,12 +9,13 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::arithmetic::{Motion, cost};
+use analysis::bench::live::live_set;
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use analysis::tradeoff::{servo, sine};
 use firmware::board::question::{Ends, Reply};
 use firmware::board::trial::Trial;
-use firmware::certificate::{Certified, assess};
+use firmware::certificate::{Certified, Parameter, assess};
 use firmware::encoder::RawCount;
 use firmware::environment::Environment;
 use firmware::excitation::sines::Sine;
@@ -216,6 +217,26 @@ fn a_board_that_does_nothing_is_an_error() {
     let mut board = Emulator::boot(file.path()).unwrap().with_patience(Duration::from_millis(500));
     let error = board.exchange(0).unwrap_err();
     assert!(matches!(error, EmulatorError::Silent { .. }), "{error}");
+}
+
+/// However a set is judged, taken or refused, by its certificate or by its timing, the answer comes
+/// and a kibibyte of stack is left.
+#[test]
+fn every_set_is_answered_with_stack_to_spare() {
+    for name in ["delayed_spring", "damper_wall", "free_mode"] {
+        let elf = &PROGRAMS[&(name, NumberFormat::F32)];
+        // The standard coupling; softer and stiffer ones, for which another function is looked at;
+        // one that ends the solution of the loop.
+        let mut taken = 0;
+        for stiffness in [44.0, 43.0, 60.0, 88.0, 1e9] {
+            let set = live_set(elf, &[(Parameter::CouplingStiffness, stiffness)])
+                .unwrap_or_else(|error| panic!("{name}, {stiffness} N m/rad: {error}"));
+            let left = set.stack_left.expect("the emulated board knows its stack");
+            assert!(left >= 1024, "{name}, {stiffness} N m/rad: {left} bytes left");
+            taken += usize::from(set.taken);
+        }
+        assert!((1..5).contains(&taken), "{name}: {taken} taken");
+    }
 }
 
 /// A program that crashes is an error at once.
