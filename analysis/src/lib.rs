@@ -1,7 +1,7 @@
 //! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
-//! The modules are in the order in which a question passes through them: a [`mod@file`] says what
-//! is asked, [`verdict`] what the certificate answers, [`batch`] both for many scenes.
+//! A [`mod@file`] says what is asked, [`verdict`] what the certificate answers, [`batch`] both for
+//! many scenes. The other modules are in groups by what they are about, with a line above each group.
 
 pub mod command;
 
@@ -9,7 +9,6 @@ pub mod file;
 
 pub mod batch;
 pub mod verdict;
-pub mod virtual_board;
 
 // The device: a chain of masses, its passivity as the certificate and as the paper see it, and
 // the identification of a real one.
@@ -29,10 +28,11 @@ pub mod rig;
 pub mod scenario;
 pub mod table;
 
-// The board, emulated, what builds for it, and what was built.
+// The board, emulated or virtual, what builds for it, and what was built.
 pub mod anatomy;
 pub mod emulator;
 pub mod toolchain;
+pub mod virtual_board;
 
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;

@@ -1,4 +1,5 @@
-//! Where a scene runs: an emulated board, or the host, where it prints its certificate.
+//! Where a scene runs: one of the STM32 boards, the board that QEMU emulates, or the host, where it
+//! prints its certificate.
 //!
 //! A scene's program is its numbers and one call of [`scene_program!`](crate::scene_program); what
 //! that call becomes is chosen here, by the target that the program is built for.
@@ -174,7 +175,10 @@ macro_rules! chosen_number {
 #[macro_export]
 macro_rules! board_program {
     ($($any:tt)*) => {
-        compile_error!("name the board that this program is for: --features board-qemu");
+        compile_error!(
+            "name the board that this program is for: --features nucleo-g474re, b-g431b-esc1 or \
+             stm32f405, or board-qemu,log for the emulated one"
+        );
     };
 }
 
@@ -184,6 +188,9 @@ macro_rules! board_program {
 #[macro_export]
 macro_rules! board_sweep {
     ($($any:tt)*) => {
-        compile_error!("name the board that this program is for: --features board-qemu");
+        compile_error!(
+            "name the board that this program is for: --features nucleo-g474re, b-g431b-esc1 or \
+             stm32f405, or board-qemu,log for the emulated one"
+        );
     };
 }

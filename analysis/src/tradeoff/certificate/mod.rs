@@ -1,5 +1,7 @@
-//! Ways to the certificate: how long each takes, how far off its index is, and how often its
-//! verdict is wrong or missing, among ten thousand environments of known answer.
+//! Ways to the certificate: how long each takes, how far off its index is, how often it passes what
+//! is not passive, and how often it does not pass what is, among ten thousand environments of known
+//! answer. The first of these two is the danger and the second only the price, so that they are
+//! never added up.
 
 pub mod environments;
 pub mod judges;
@@ -24,10 +26,10 @@ pub static SUBJECT: Subject = Subject {
         // The answers are doubles, off by one place at most.
         Axis::least(&["alpha_error"], "error of alpha, 99 of 100 below it (part)")
             .floored(1e-15, "a double's last places"),
-        Axis::least(&["not_right"], "verdicts wrong or left open, of 2500").floored(0.5, "none"),
+        Axis::least(&["wrong_yes"], "not passive, and passed, of 2500").floored(0.5, "none"),
+        Axis::least(&["no_yes"], "wrongly refused or left open, of 2500").floored(0.5, "none"),
     ],
     others: &[
-        Column { names: &["wrong_yes"], bound: NUMBER },
         Column { names: &["wrong_no"], bound: NUMBER },
         Column { names: &["open"], bound: NUMBER },
         Column { names: &["median_error"], bound: NUMBER },
@@ -168,8 +170,8 @@ impl Figures {
         let values = vec![
             Some(microseconds),
             self.quantile(0.99),
-            count(self.wrong_yes + self.wrong_no + self.open),
             count(self.wrong_yes),
+            count(self.wrong_no + self.open),
             count(self.wrong_no),
             count(self.open),
             self.quantile(0.5),
