@@ -21,7 +21,7 @@ pub struct Contact {
     pub limit: f64,
 }
 
-/// What theory section 4, step 5, bounds by the energy at the start.
+/// What equation 28 bounds by the energy at the start.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome {
     /// Energy of device and hand at the start.

@@ -1,7 +1,7 @@
 //! The exact method against trajectories of sixty digits over a thousand samples.
 //!
 //! The reference is written from the equations of motion and the environments' difference
-//! equations as theory.md has them, in fixed point of 240 places; it shares no code with what it
+//! equations as theory, section 5, has them, in fixed point of 240 places; it shares no code with what it
 //! checks, and its inputs are the exact values of the floats that the simulation is given.
 
 use crate::reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};

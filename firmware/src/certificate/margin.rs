@@ -126,7 +126,8 @@ impl Limited {
     /// `delta' < k` the sum over the ticks that theory, section 4, step 5, has is, in the notation of
     /// [`Missed::limit`] and for `delta = k`, `(k - alpha) sum e^2 / T` less
     /// `(k - delta') sum d^2 / T`. With `d = e + V w` and a torque that changes by no more than
-    /// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`.
+    /// `norm(w) <= g norm(e)`, that stays positive while `k - delta' < (k - alpha) / (1 + V g)^2`
+    /// (equation 37).
     pub const fn margin(&self, injected: f64) -> f64 {
         let injected = Interval::exact(injected);
         let bound = self.bound.add(injected);

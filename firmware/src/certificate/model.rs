@@ -58,12 +58,12 @@ impl Missed {
     }
 
     /// What an index has to stay below behind a coupling spring of damping `k = K_vc T / 2`, where
-    /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta`.
+    /// torques are latched: `1 / ((T_max / T - 1) / delta + 1 / k)`, for `k <= delta` (equation 36).
     ///
     /// Let the counts be `x_j`, `T_j <= T_max` apart, with the torque `u_j` at `x_j` and
     /// `u_{j+1}` from one period later on, `x_E,j = x_j - V u_j`, `d = x_{j+1} - x_j`,
-    /// `w = u_{j+1} - u_j`, `e = d - V w`, and `s = T / T_j`. Summed by theory-lag, equation (2),
-    /// device and controller keep over each interval at least the quadratic form
+    /// `w = u_{j+1} - u_j`, `e = d - V w`, and `s = T / T_j`. Summed by equation 34, device
+    /// and controller keep over each interval at least the quadratic form
     ///
     /// ```text
     /// s delta d^2 / T - s w d + (V / 2 - (1 - s) T / (4 delta)) w^2 - alpha e^2 / T,
@@ -328,7 +328,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 }
 
 /// Upper bound on `alpha` that holds for one-sided walls, switching and a torque limit between
-/// environment and coupling (theory, end of section 5); `None` where none is known.
+/// environment and coupling (equation 31); `None` where none is known.
 ///
 /// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and changes
 ///   nothing in `sum abs(v(k)) abs(v(k - i))`.
@@ -480,7 +480,7 @@ pub struct Loop {
     pub environment: Transfer,
     /// The total controller `C = E / (1 + V E)` (theory, section 2).
     pub controller: Transfer,
-    /// `E'`, which behind the standard coupling is the same controller (theory, section 4.1).
+    /// `E'`, which behind the standard coupling is the same controller (equation 29).
     pub equivalent: Transfer,
 }
 

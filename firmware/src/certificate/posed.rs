@@ -219,8 +219,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     }
 
     /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
-    /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (theory-lag,
-    /// equation (1), for an ideal hold).
+    /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match self.behind_reduced(self.numbers.compliance, true) {
             Ok(late) => reduced_index::<RATIONAL>(&late, closeness),

@@ -1,4 +1,4 @@
-//! Real parts on the unit circle as Chebyshev series in `c = cos(theta)` (theory, section 7).
+//! Real parts on the unit circle as Chebyshev series in `c = cos(theta)` (theory, section 7, equation 32).
 //!
 //! With `n(z)`, `d(z)` real polynomials, `2 Re(K(z) n(z) conj(d(z)))` is a sum over the lags
 //! `m = i - j` of the cross-correlation of their coefficients times `2 Re(K(z) z^m)`. For the

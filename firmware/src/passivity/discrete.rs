@@ -1,4 +1,5 @@
-//! The discrete-time tests of theory, section 1: passive, input strictly, output strictly passive.
+//! The discrete-time tests of theory, section 1: passive, output strictly, input strictly passive
+//! (equations 1 to 3).
 
 use super::bernstein::{Closeness, Minimum, minimum};
 use super::chebyshev::{Kernel, Series, at_cosine};

@@ -28,7 +28,8 @@ pub enum OutputTiming {
 }
 
 /// The timer that begins a period latches the code of the tick before: a torque appears exactly
-/// one sample after the count that it was computed from, without jitter. The servo computes each
+/// one sample after the count that it was computed from, without jitter, so that equation 35 has no
+/// part of a sample in it. The servo computes each
 /// torque one tick early, so that what the scene calls one sample late *is* that sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Latched;

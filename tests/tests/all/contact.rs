@@ -1,6 +1,6 @@
 //! One-sided and limited walls, accepted by the nonlinear bound, in closed loop with a hand.
 //!
-//! Theory section 4, step 5: with `beta` the energy of device and hand at the start, every torque
+//! Equation 28: with `beta` the energy of device and hand at the start, every torque
 //! obeys `F^2 <= 4 delta beta / T`, and the environment's motion is square-summable:
 //! `(K_vc T / 2 - alpha) * sum v_E^2 <= beta / T`. An oscillation that lasts breaks the second, one
 //! that grows breaks both.

@@ -7,6 +7,7 @@ mod closed_forms;
 mod contact;
 mod continuous;
 mod decision;
+mod documents;
 mod emulated;
 mod every_float;
 mod exact;

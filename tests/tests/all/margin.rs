@@ -62,8 +62,8 @@ fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene
     }
 }
 
-/// A controller `C` is worst near rest here: there it takes `T (C(1) / 2 - C'(1))` (theory-lag,
-/// section 4, for an ideal hold). Behind the coupling of 44 N m/rad `C` is `22 / (z + 1/2)` for a
+/// A controller `C` is worst near rest here: there it takes `T (C(1) / 2 - C'(1))` (theory,
+/// section 4.1). Behind the coupling of 44 N m/rad `C` is `22 / (z + 1/2)` for a
 /// spring of 22 N m/rad that is one sample late, and constant for one that is not late.
 #[test]
 fn the_margin_of_a_spring_is_what_its_controller_leaves_near_rest() {
