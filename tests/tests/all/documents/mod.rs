@@ -1,5 +1,6 @@
 //! The documents and the code: what one says of the other is so.
 
+mod protocol;
 mod theory;
 
 use std::fs;
@@ -40,12 +41,21 @@ fn regex(pattern: &str) -> Regex {
     Regex::new(pattern).expect("a regular expression")
 }
 
-/// The cells of a table's rows whose first cell matches.
-fn rows(text: &str, first: &str) -> Vec<Vec<String>> {
-    let first = regex(&format!("^(?:{first})$"));
-    let cells = |line: &str| -> Option<Vec<String>> {
-        let inside = line.strip_prefix('|')?.strip_suffix('|')?;
-        Some(inside.split('|').map(|cell| cell.trim().to_owned()).collect())
+/// The rows of the first table under a heading, cell by cell, without the quotes of code.
+fn table(text: &str, heading: &str) -> Vec<Vec<String>> {
+    let mut lines = text.lines().skip_while(|line| *line != heading);
+    assert!(lines.next().is_some(), "there is no `{heading}`");
+    let under = lines.take_while(|line| !line.starts_with('#'));
+    let rows = under.skip_while(|line| !line.starts_with('|')).take_while(|l| l.starts_with('|'));
+    let cells = |line: &str| {
+        let cells = line.trim_matches('|').split('|');
+        cells.map(|cell| cell.trim().replace('`', "")).collect()
     };
-    text.lines().filter_map(cells).filter(|cells| first.is_match(&cells[0])).collect()
+    // Behind the names of the columns and the line under them.
+    rows.skip(2).map(cells).collect()
+}
+
+/// A column of a table.
+fn column(table: &[Vec<String>], number: usize) -> Vec<&str> {
+    table.iter().map(|row| &*row[number]).collect()
 }

@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+"""A client of a haptic board: firmware/PROTOCOL.md in Python's standard library.
+
+    client.py PORT status | get | arm | disarm
+    client.py PORT set NAME=VALUE [NAME=VALUE ...]
+    client.py PORT stream TICKS EVERY
+
+PORT is unix:PATH, tcp://HOST:PORT, or a serial port such as /dev/ttyACM0 (that one needs pyserial).
+Answers are JSON, one object a line. Exit status: 0 done, 1 refused, 2 anything else.
+"""
+
+import json
+import random
+import socket
+import struct
+import sys
+import time
+import zlib
+
+PROTOCOL = 1
+BAUD = 460800
+
+STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
+LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
+FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 4: "underrun", 5: "link-lost",
+          6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick"}
+# The parameters that can be changed, by their numbers on the wire.
+PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
+              11: "residual", 15: "torque_limit"}
+
+# Messages to the board and to the host, by number.
+HELLO, GET, STATUS, SET, ARM, DISARM, STREAM = range(7)
+TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "telemetry"]
+
+# The fields of the messages in order. A field more in the protocol is a line more here.
+DISCARDED = [("broken", "u"), ("too_long", "u"), ("checksum", "u"), ("unknown", "u")]
+FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
+FIELDS = {
+    "welcome": [("protocol", "u"), ("program", "text")],
+    "board": [("period", "f64"), ("timer_counts", "u"), ("counts_per_turn", "f64"),
+              ("full_scale_torque", "f64"), ("energy_step", "f64")],
+    "running": [("sets", "u"), ("margin", ("option", "f64")),
+                ("values", ("list", [("parameter", "u"), ("value", "f64")]))],
+    "status": [
+        ("state", "u"),
+        ("fault", ("option", FAULT)),
+        ("link_lost", "bool"),
+        ("tick", "u"),
+        ("count", "i"),
+        ("sets", "u"),
+        ("missed", "u"),
+        ("worst_slack", "u"),
+        ("energy", "i"),
+        ("worst_deficit", "i"),
+        ("dropped", "u"),
+        ("thinned", "u"),
+        ("discarded", DISCARDED),
+        ("stack_left", ("option", "u")),
+    ],
+    "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],
+    "telemetry": [("ticks", ("list", [("later", "u"), ("moved", "i"), ("code", "u"),
+                                      ("limit", "u"), ("state", "u"), ("slack", "u")]))],
+}
+
+
+class Refused(Exception):
+    """The board's sentence."""
+
+
+def varint(number):
+    out = bytearray()
+    while number > 0x7F:
+        out.append(number & 0x7F | 0x80)
+        number >>= 7
+    out.append(number)
+    return bytes(out)
+
+
+def frame(message):
+    """Checksum behind, COBS around, a zero on either side."""
+    checked = message + struct.pack("<I", zlib.crc32(message))
+    out = bytearray([0])
+    for piece in checked.split(b"\0"):
+        while len(piece) >= 254:
+            out += b"\xff" + piece[:254]
+            piece = piece[254:]
+        out.append(len(piece) + 1)
+        out += piece
+    return bytes(out + b"\0")
+
+
+def unframe(encoded):
+    """The message between two zeros; None where it is none."""
+    checked = bytearray()
+    while encoded:
+        length, encoded = encoded[0], encoded[1:]
+        if len(encoded) < length - 1:
+            return None
+        checked += encoded[: length - 1]
+        encoded = encoded[length - 1 :]
+        if length < 255 and encoded:
+            checked.append(0)
+    message, checksum = bytes(checked[:-4]), bytes(checked[-4:])
+    return message if message and checksum == struct.pack("<I", zlib.crc32(message)) else None
+
+
+class Reader:
+    """Takes values from a message, the first byte first."""
+
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, count):
+        piece = self.data[self.at : self.at + count]
+        if len(piece) < count:
+            raise ValueError("the message ends too early: another version of the protocol?")
+        self.at += count
+        return piece
+
+    def value(self, kind):
+        if isinstance(kind, list):
+            return {name: self.value(of) for name, of in kind}
+        if isinstance(kind, tuple):
+            what, of = kind
+            if what == "option":
+                return self.value(of) if self.value("bool") else None
+            return [self.value(of) for _ in range(self.value("u"))]
+        if kind == "f64":
+            return struct.unpack("<d", self.take(8))[0]
+        if kind == "bool":
+            return self.take(1) != b"\0"
+        if kind == "text":
+            return self.take(self.value("u")).decode()
+        number = shift = 0
+        while True:
+            byte = self.take(1)[0]
+            number |= (byte & 0x7F) << shift
+            shift += 7
+            if byte < 0x80:
+                break
+        return number if kind == "u" else (number >> 1) ^ -(number & 1)
+
+
+def decode(message):
+    """Name and content of a message to the host."""
+    reader = Reader(message)
+    name = TO_HOST[reader.value("u")]
+    if name == "answer":
+        content = {"id": reader.value("u"), "refused": None}
+        if reader.value("u"):
+            content["refused"] = reader.value("text")
+    else:
+        content = reader.value(FIELDS[name])
+    if reader.at != len(message):
+        raise ValueError(f"{name} has bytes left over: another version of the protocol?")
+    return name, content
+
+
+class Board:
+    """A board that has said who it is."""
+
+    def __init__(self, port):
+        self.read, self.write = connect(port)
+        self.received = b""
+        # An answer to somebody before us is not taken for ours.
+        self.id = random.randrange(1 << 16)
+        self.remembered = None
+        welcome = self.ask([HELLO], "welcome")
+        if welcome["protocol"] != PROTOCOL:
+            raise ValueError(f"the board speaks version {welcome['protocol']}, not {PROTOCOL}")
+        self.program = welcome["program"]
+        # What was `remembered` comes in between, and `receive` keeps it.
+        self.facts = self.receive("board", time.monotonic() + 3)
+
+    def receive(self, wanted, until, matches=lambda content: True):
+        """The next message of this name before the time is up; None without one."""
+        while True:
+            while b"\0" in self.received:
+                encoded, self.received = self.received.split(b"\0", 1)
+                message = unframe(encoded)
+                if message is None:
+                    continue
+                name, content = decode(message)
+                if name == "remembered":
+                    self.remembered = content
+                if name == wanted and matches(content):
+                    return content
+            if time.monotonic() >= until:
+                return None
+            self.received += self.read()
+
+    def ask(self, message, wanted, again=0.25, end=3.0, matches=lambda content: True):
+        """Asks until there is an answer: bytes get lost on a line."""
+        over = time.monotonic() + end
+        while time.monotonic() < over:
+            self.write(frame(bytes(message)))
+            content = self.receive(wanted, min(time.monotonic() + again, over), matches)
+            if content is not None:
+                return content
+        raise TimeoutError(f"no answer within {end} s")
+
+    def request(self, kind, payload=b""):
+        """Waits until it is done; the board certifies and fades in the meantime."""
+        self.id = (self.id + 1) % (1 << 16)
+        message = bytes([kind]) + varint(self.id) + payload
+        mine = lambda content: content["id"] == self.id
+        answer = self.ask(message, "answer", again=2.0, end=10.0, matches=mine)
+        if answer["refused"] is not None:
+            raise Refused(answer["refused"])
+
+    def status(self):
+        status = self.ask([STATUS], "status")
+        status["state"] = STATES[status["state"]]
+        return status | {"fault": named(status["fault"])}
+
+    def running(self):
+        running = self.ask([GET], "running")
+        values = {PARAMETERS[pair["parameter"]]: pair["value"] for pair in running["values"]}
+        return running | {"values": values}
+
+    def set(self, changes):
+        numbers = {name: number for number, name in PARAMETERS.items()}
+        pairs = [bytes([numbers[name]]) + struct.pack("<d", value) for name, value in changes]
+        self.request(SET, varint(len(pairs)) + b"".join(pairs))
+
+    def stream(self, ticks, every):
+        """So many ticks with angle in rad and the motor's torque in N m."""
+        self.write(frame(bytes([STREAM, 1]) + varint(every)))
+        scale = self.facts["full_scale_torque"] / 2047
+        turn = 6.283185307179586 / self.facts["counts_per_turn"]
+        while ticks > 0:
+            batch = self.receive("telemetry", time.monotonic() + 3)
+            if batch is None:
+                raise TimeoutError("the stream has ended")
+            tick = count = 0
+            for one in batch["ticks"][:ticks]:
+                tick = (tick + one["later"]) % (1 << 32)
+                count = (count + one["moved"] + (1 << 31)) % (1 << 32) - (1 << 31)
+                yield {"tick": tick, "angle": count * turn, "torque": (one["code"] - 2048) * scale,
+                       "limit": LIMITS[one["limit"]], "state": STATES[one["state"]],
+                       "slack": one["slack"]}
+            ticks -= len(batch["ticks"])
+        self.write(frame(bytes([STREAM, 0])))
+
+
+def named(fault):
+    return fault and fault | {"name": FAULTS.get(fault["code"], "unknown")}
+
+
+def connect(port):
+    """What reads bytes, waiting 50 ms at most, and what writes them."""
+    if port.startswith(("unix:", "tcp://")):
+        if port.startswith("unix:"):
+            line = socket.socket(socket.AF_UNIX)
+            line.connect(port.removeprefix("unix:"))
+        else:
+            host, number = port.removeprefix("tcp://").rsplit(":", 1)
+            line = socket.create_connection((host, int(number)))
+        line.settimeout(0.05)
+
+        def read():
+            try:
+                received = line.recv(4096)
+            except TimeoutError:
+                return b""
+            if not received:
+                raise ConnectionError("the board has gone")
+            return received
+
+        return read, line.sendall
+    import serial  # pip install pyserial
+
+    line = serial.Serial(port, BAUD, timeout=0.05)
+    return lambda: line.read(max(1, line.in_waiting)), line.write
+
+
+def main(arguments):
+    try:
+        port, command, *rest = arguments
+        board = Board(port)
+        if command == "set":
+            pairs = [pair.split("=") for pair in rest]
+            board.set([(name, float(value)) for name, value in pairs])
+        elif command in ("arm", "disarm"):
+            board.request(ARM if command == "arm" else DISARM)
+        elif command == "stream":
+            for tick in board.stream(int(rest[0]), int(rest[1])):
+                print(json.dumps(tick))
+            return 0
+        elif command not in ("status", "get"):
+            raise ValueError(f"there is no command {command}")
+        answer = board.running() if command in ("get", "set") else board.status()
+        print(json.dumps({"program": board.program, **answer}))
+        return 0
+    except Refused as refusal:
+        print(refusal, file=sys.stderr)
+        return 1
+    except (ValueError, KeyError, IndexError, OSError) as error:
+        print(error, __doc__, sep="\n\n", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

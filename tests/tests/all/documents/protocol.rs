@@ -1,0 +1,185 @@
+//! `firmware/PROTOCOL.md` is the protocol: its tables are the types of the messages, its numbers the
+//! constants, and the client in Python has both.
+
+use firmware::board::BAUD;
+use firmware::cycle::State;
+use firmware::fault::Fault;
+use firmware::torque::LimitReason;
+use firmware::tuning::TUNABLE;
+use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
+use firmware::wire::telemetry::BATCH;
+use firmware::wire::{PROTOCOL, encode, largest_frame};
+
+use super::{column, read, regex, table};
+
+const DOCUMENT: &str = "firmware/PROTOCOL.md";
+const MESSAGES: &str = "firmware/src/wire/message.rs";
+
+/// What is in the braces of a type in a source file.
+fn body(path: &str, kind: &str, name: &str) -> String {
+    let source = read(path);
+    let of = regex(&format!(r"(?s)\n(?:pub )?{kind} {name}(?:<S>)? \{{\n(.*?)\n\}}"));
+    let found = of.captures(&source).unwrap_or_else(|| panic!("{path} has no {kind} {name}"));
+    found[1].to_owned()
+}
+
+/// The fields of a struct in a source file in order, each with its type.
+fn fields(path: &str, name: &str) -> Vec<(String, String)> {
+    let field = regex(r"(?m)^    (?:pub )?(\w+): (.+),$");
+    let body = body(path, "struct", name);
+    field.captures_iter(&body).map(|field| (field[1].to_owned(), field[2].to_owned())).collect()
+}
+
+/// The variants of an enumeration in order, each with its fields as one text.
+fn variants(path: &str, name: &str) -> Vec<(String, String)> {
+    let variant = regex(r"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)^    \})?,$");
+    let body = body(path, "enum", name);
+    let fields = |variant: &regex::Captures<'_>| match (variant.get(2), variant.get(3)) {
+        (Some(tuple), _) => tuple.as_str().to_owned(),
+        (_, Some(named)) => {
+            let field = regex(r"(?m)^        (\w+): (.+),$");
+            let named = field.captures_iter(named.as_str());
+            named
+                .map(|field| format!("{}: {}", &field[1], &field[2]))
+                .collect::<Vec<_>>()
+                .join(", ")
+        }
+        _ => String::new(),
+    };
+    variant.captures_iter(&body).map(|one| (one[1].to_owned(), fields(&one))).collect()
+}
+
+#[test]
+fn every_field_of_every_message_is_there_in_order() {
+    let document = read(DOCUMENT);
+    for (path, name) in [
+        (MESSAGES, "Board"),
+        (MESSAGES, "Running"),
+        (MESSAGES, "Status"),
+        (MESSAGES, "FaultCode"),
+        (MESSAGES, "Remembered"),
+        ("firmware/src/wire/decoder.rs", "Discarded"),
+        ("firmware/src/wire/telemetry.rs", "Packed"),
+    ] {
+        let table = table(&document, &format!("### {name}"));
+        let said: Vec<_> = table.iter().map(|row| (row[0].clone(), row[1].clone())).collect();
+        assert_eq!(said, fields(path, name), "{name}");
+        assert!(table.iter().all(|row| !row[2].is_empty()), "{name}: a field without a meaning");
+    }
+    let batch = fields("firmware/src/wire/telemetry.rs", "Batch");
+    let [(name, kind)] = &batch[..] else { panic!("{batch:?}") };
+    assert!(document.contains(&format!("One field, `{name}: {kind}`")));
+    let changes =
+        regex(r"pub type Changes = (.+);").captures(&read(MESSAGES)).unwrap()[1].to_owned();
+    assert!(document.contains(&format!("`Changes` is `{changes}`")));
+}
+
+#[test]
+fn every_variant_is_there_with_its_number() {
+    let document = read(DOCUMENT);
+    for (path, name, heading, fields) in [
+        (MESSAGES, "ToBoard", "## To the board", Some(2)),
+        (MESSAGES, "ToHost", "## To the host", Some(2)),
+        (MESSAGES, "Outcome", "### Outcome", None),
+        ("firmware/src/cycle/state.rs", "State", "### State", None),
+        ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),
+        ("firmware/src/certificate/parameter.rs", "Parameter", "### Parameter", None),
+    ] {
+        let table = table(&document, heading);
+        let variants = variants(path, name);
+        let numbers: Vec<_> = (0..variants.len()).map(|number| number.to_string()).collect();
+        assert_eq!(column(&table, 0), numbers, "{name}");
+        let names: Vec<_> = variants.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(column(&table, 1), names, "{name}");
+        if let Some(place) = fields {
+            let fields: Vec<_> = variants.iter().map(|(_, fields)| fields.as_str()).collect();
+            assert_eq!(column(&table, place), fields, "{name}");
+        }
+    }
+}
+
+#[test]
+fn parameters_have_the_names_and_units_of_the_program() {
+    for row in table(&read(DOCUMENT), "### Parameter") {
+        let [_, variant, name, unit] = &row[..] else { panic!("{row:?}") };
+        let tunable = TUNABLE.iter().find(|(_, parameter)| format!("{parameter:?}") == *variant);
+        assert_eq!(tunable.map_or("", |(name, _)| name), name, "{variant}");
+        if let Some((_, parameter)) = tunable {
+            assert_eq!(parameter.name_and_unit().1, unit, "{variant}");
+        }
+    }
+}
+
+/// All faults with their codes.
+pub fn faults() -> Vec<(u32, Fault)> {
+    (1..).map_while(|code| Some((code, Fault::decode(code, [1, 2])?))).collect()
+}
+
+#[test]
+fn every_fault_is_there_with_its_code_and_its_numbers() {
+    let table = table(&read(DOCUMENT), "### Faults");
+    assert_eq!(table.len(), faults().len());
+    for (row, (code, fault)) in table.iter().zip(faults()) {
+        assert_eq!(row[..2], [code.to_string(), fault.as_str().to_owned()]);
+        let (_, numbers) = fault.encode();
+        assert_eq!(
+            numbers.map(|number| number != 0),
+            [2, 3].map(|i| !row[i].is_empty()),
+            "{row:?}"
+        );
+    }
+}
+
+#[test]
+fn limits_are_the_constants() {
+    let table = table(&read(DOCUMENT), "## Limits");
+    let said: Vec<_> = table.iter().map(|row| (&*row[0], row[1].parse().unwrap())).collect();
+    let constants = [
+        ("PROTOCOL", usize::from(PROTOCOL)),
+        ("BAUD", BAUD as usize),
+        ("MAX_CHANGES", MAX_CHANGES),
+        ("LONGEST_TO_BOARD", LONGEST_TO_BOARD),
+        ("LONGEST_TO_HOST", LONGEST_TO_HOST),
+        ("largest_frame(LONGEST_TO_BOARD)", largest_frame(LONGEST_TO_BOARD)),
+        ("largest_frame(LONGEST_TO_HOST)", largest_frame(LONGEST_TO_HOST)),
+        ("BATCH", BATCH),
+    ];
+    assert_eq!(said, constants);
+}
+
+#[test]
+fn the_frame_of_the_example_is_the_one_that_is_sent() {
+    let document = read(DOCUMENT);
+    let shown = document.split("<!-- hello -->\n```text\n").nth(1).unwrap().lines().next().unwrap();
+    let mut buffer = [0; 16];
+    let frame = encode(&ToBoard::Hello, &mut buffer).unwrap();
+    let hex: Vec<_> = frame.iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(shown, hex.join(" "));
+}
+
+/// What the client shows by name it has from tables of its own.
+#[test]
+fn the_client_in_python_has_the_same_tables() {
+    let client = read("analysis/examples/client.py");
+    // Debug writes a list of words as Python does.
+    let states = format!("{:?}", State::ALL.map(State::as_str));
+    let limits = format!("{:?}", LimitReason::ALL.map(LimitReason::as_str));
+    for line in [
+        format!("\nPROTOCOL = {PROTOCOL}\nBAUD = {BAUD}\n"),
+        format!("\nSTATES = {states}\n"),
+        format!("\nLIMITS = {limits}\n"),
+    ] {
+        assert!(client.contains(&line), "not in the client: {line}");
+    }
+    let dictionary = |name: &str| -> Vec<(u32, String)> {
+        let body = regex(&format!(r"(?s)\n{name} = \{{(.*?)\}}")).captures(&client).unwrap();
+        let entries = regex(r#"(\d+): "([^"]+)""#);
+        let entries = entries.captures_iter(&body[1]);
+        entries.map(|entry| (entry[1].parse().unwrap(), entry[2].to_owned())).collect()
+    };
+    let named = |(code, fault): (u32, Fault)| (code, fault.as_str().to_owned());
+    assert_eq!(dictionary("FAULTS"), faults().into_iter().map(named).collect::<Vec<_>>());
+    let mut tunable = TUNABLE.map(|(name, parameter)| (parameter as u32, name.to_owned()));
+    tunable.sort();
+    assert_eq!(dictionary("PARAMETERS"), tunable);
+}
