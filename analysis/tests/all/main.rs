@@ -9,6 +9,7 @@ mod device_files;
 mod haptic;
 mod identify_target;
 mod pictures;
+mod python_client;
 mod readme;
 mod reference;
 mod report;

@@ -51,6 +51,35 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     output
 }
 
+/// A program that a test needs beside the project, which is the name of its package, too. Where it is
+/// missing it is installed, as the project's other tools are, by root on Debian.
+///
+/// # Panics
+/// Elsewhere, with what to install.
+pub fn tool(name: &str) -> &str {
+    let is_there =
+        || Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
+    if is_there() {
+        return name;
+    }
+    let apt = |arguments: &[&str]| {
+        Command::new("apt-get")
+            .args(["-o", "DPkg::Lock::Timeout=600"])
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .output()
+            .is_ok_and(|output| output.status.success())
+    };
+    let is_ours = Path::new("/etc/debian_version").exists() && nix::unistd::geteuid().is_root();
+    let install = || apt(&["install", "-y", "--no-install-recommends", name]);
+    let installed = is_ours && (install() || apt(&["update"]) && install());
+    assert!(
+        installed && is_there(),
+        "this test runs {name}: install it (Debian: apt install {name})"
+    );
+    name
+}
+
 /// The one JSON object that is an answer.
 pub fn answer(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))

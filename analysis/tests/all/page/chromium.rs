@@ -5,43 +5,15 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::common::tool;
+
 /// Longest that a page may take, browser's start included, on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// The browser's name. Where it is missing it is installed, as the project's other tools are, by
-/// root on Debian.
-///
-/// # Panics
-/// Elsewhere, with what to install.
-pub fn find() -> &'static str {
-    const NAME: &str = "chromium";
-    let is_there =
-        || Command::new(NAME).arg("--version").output().is_ok_and(|o| o.status.success());
-    if is_there() {
-        return NAME;
-    }
-    let apt = |arguments: &[&str]| {
-        Command::new("apt-get")
-            .args(["-o", "DPkg::Lock::Timeout=600"])
-            .args(arguments)
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .output()
-            .is_ok_and(|output| output.status.success())
-    };
-    let is_ours = Path::new("/etc/debian_version").exists() && nix::unistd::geteuid().is_root();
-    let install = || apt(&["install", "-y", "--no-install-recommends", NAME]);
-    let installed = is_ours && (install() || apt(&["update"]) && install());
-    assert!(
-        installed && is_there(),
-        "this test looks at pages with {NAME}: install it (Debian: apt install {NAME})"
-    );
-    NAME
-}
 
 /// The page as it is after its scripts have run, in a window so many pixels wide.
 pub fn dom(page: &Path, width: u32) -> String {
     let profile = tempfile::tempdir().unwrap();
-    let mut child = Command::new(find())
+    let mut child = Command::new(tool("chromium"))
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
         .arg("--disable-dev-shm-usage")

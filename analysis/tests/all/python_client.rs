@@ -1,0 +1,202 @@
+//! The client in Python, which is written from `firmware/PROTOCOL.md`, against the messages of the
+//! firmware and against a board that is a process.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Output, Stdio};
+
+use crate::common::{answer, program, root, tool};
+use firmware::certificate::Parameter;
+use firmware::cycle::{Frame, State};
+use firmware::dac::DacCode;
+use firmware::fault::Fault;
+use firmware::torque::LimitReason;
+use firmware::wire::message::{
+    Board, Changes, Outcome, Remembered, Running, Status, ToBoard, ToHost,
+};
+use firmware::wire::telemetry::Batch;
+use firmware::wire::{Decoder, Discarded, PROTOCOL, encode};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// Runs Python beside the client.
+fn python(arguments: &[&str]) -> Output {
+    Command::new(tool("python3"))
+        .args(arguments)
+        .current_dir(root().join("analysis/examples"))
+        // Leaves nothing behind in the repository.
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+/// What a few lines of Python print of their arguments.
+fn printed(code: &str, arguments: &[String]) -> Value {
+    let arguments = arguments.iter().map(String::as_str);
+    let output = python(&["-c", code].into_iter().chain(arguments).collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    answer(&output)
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn framed(message: &impl Serialize) -> String {
+    let mut buffer = [0; 2000];
+    hex(encode(message, &mut buffer).unwrap())
+}
+
+const DECODE: &str = "import client, json, sys; print(json.dumps([client.decode(client.unframe(\
+                      bytes.fromhex(frame)[1:-1])) for frame in sys.argv[1:]]))";
+
+fn fault() -> Fault {
+    Fault::EncoderJump { counts: 5000, largest: 979 }
+}
+
+fn status() -> Status {
+    Status {
+        state: State::Settling,
+        fault: Some(fault().into()),
+        link_lost: true,
+        tick: u32::MAX,
+        count: -70_000_000_000,
+        sets: 3,
+        missed: 4,
+        worst_slack: 170_000,
+        energy: i64::MIN,
+        worst_deficit: i64::MAX,
+        dropped: 5,
+        thinned: 6,
+        discarded: Discarded { broken: 7, too_long: 8, checksum: 9, unknown: 10 },
+        stack_left: Some(2048),
+    }
+}
+
+#[test]
+fn reads_every_message_to_the_host() {
+    let frame = |tick, count, code| {
+        let (limit, state) = (LimitReason::Ramp, State::FadingOut);
+        Frame { tick, count, code: DacCode::new(code).unwrap(), limit, state, slack: 79 }
+    };
+    let mut batch = Batch::new();
+    batch.push(frame(u32::MAX, -40, 4095)).unwrap();
+    batch.push(frame(1, i32::MAX, 0)).unwrap();
+    let mut values = Changes::new();
+    values.push((Parameter::TorqueLimit, 0.1)).unwrap();
+    let numbers = Board {
+        period: 0.001,
+        timer_counts: 170_000,
+        counts_per_turn: 61_440.0,
+        full_scale_torque: 2.0,
+        energy_step: 0.25,
+    };
+    let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
+    let running = Running { sets: 2, margin: None, values };
+    let refused = Outcome::Refused("no \u{3b1}");
+    let messages = [
+        ToHost::Welcome { protocol: PROTOCOL, program: "damper_wall" },
+        ToHost::Board(numbers),
+        ToHost::Running(running),
+        ToHost::Status(status()),
+        ToHost::Answer { id: 65_535, outcome: refused },
+        ToHost::Answer { id: 0, outcome: Outcome::Done },
+        ToHost::Remembered(remembered),
+        ToHost::Telemetry(batch),
+    ];
+    let code = json!({"code": 2, "first": 5000, "second": 979});
+    let read = json!([
+        ["welcome", {"protocol": PROTOCOL, "program": "damper_wall"}],
+        ["board", {"period": 0.001, "timer_counts": 170_000, "counts_per_turn": 61_440.0,
+                   "full_scale_torque": 2.0, "energy_step": 0.25}],
+        ["running", {"sets": 2, "margin": null, "values": [{"parameter": 15, "value": 0.1}]}],
+        ["status", {"state": 4, "fault": code, "link_lost": true, "tick": u32::MAX,
+                    "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,
+                    "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
+                    "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
+                    "stack_left": 2048}],
+        ["answer", {"id": 65_535, "refused": "no \u{3b1}"}],
+        ["answer", {"id": 0, "refused": null}],
+        ["remembered", {"fault": code, "tick": 300, "count": -1}],
+        ["telemetry", {"ticks": [
+            {"later": u32::MAX, "moved": -40, "code": 4095, "limit": 5, "state": 3, "slack": 79},
+            {"later": 2, "moved": i32::MAX.wrapping_add(40), "code": 0, "limit": 5, "state": 3,
+             "slack": 79}]}],
+    ]);
+    assert_eq!(printed(DECODE, &messages.map(|message| framed(&message))), read);
+}
+
+#[test]
+fn frames_are_those_of_the_board() {
+    let code = "import client, json, sys; print(json.dumps([[client.frame(\
+                client.unframe(bytes.fromhex(frame)[1:-1])).hex(), client.unframe(bytes.fromhex(\
+                frame)[1:-3]) is None] for frame in sys.argv[1:]]))";
+    // Around the length of a block, ended by a zero of the length or of the end.
+    let long = (240..260).flat_map(|length| [(length, 1), (length, 0)]);
+    let mut messages: Vec<Vec<u8>> = long.map(|(length, first)| vec![first; length]).collect();
+    messages.extend([vec![], vec![0], vec![1, 0, 2, 0]]);
+    let frames: Vec<String> = messages.iter().map(framed).collect();
+    let found = printed(code, &frames);
+    for (frame, found) in frames.iter().zip(found.as_array().unwrap()) {
+        assert_eq!(found, &json!([frame, true]));
+    }
+}
+
+#[test]
+fn what_it_sends_is_a_message_to_the_board() {
+    let code = "import client, json
+class Told(client.Board):
+    def __init__(self): self.sent, self.id = [], 299
+    def ask(self, message, *_, **__):
+        self.sent.append(client.frame(message).hex())
+        return {'id': self.id, 'refused': None}
+board = Told()
+board.set([('stiffness', 12.5), ('torque_limit', -1)])
+board.request(client.ARM)
+print(json.dumps(board.sent))";
+    let sent = printed(code, &[]);
+    let mut decoder = Decoder::<200>::new();
+    let mut hear = |frame: &Value| -> Option<ToBoard> {
+        let digits = frame.as_str().unwrap().as_bytes();
+        let byte = |two: &[u8]| u8::from_str_radix(std::str::from_utf8(two).unwrap(), 16).unwrap();
+        digits.chunks(2).find_map(|two| decoder.push(byte(two)))
+    };
+    let changes = [(Parameter::Stiffness, 12.5), (Parameter::TorqueLimit, -1.0)];
+    let changes = Changes::from_slice(&changes).unwrap();
+    assert_eq!(hear(&sent[0]), Some(ToBoard::Set { id: 300, changes }));
+    assert_eq!(hear(&sent[1]), Some(ToBoard::Arm { id: 301 }));
+}
+
+#[test]
+fn talks_to_a_board() {
+    let folder = tempfile::tempdir().unwrap();
+    let port = format!("unix:{}", folder.path().join("board").display());
+    let mut twin = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    assert_eq!(said.next().unwrap().unwrap(), format!("damper_wall listens on {port}"));
+    let ask = |arguments: &[&str]| python(&[&["client.py", &port], arguments].concat());
+    let running = answer(&ask(&["set", "stiffness=12.5", "damping=0.002"]));
+    assert_eq!((&running["program"], &running["sets"]), (&"damper_wall".into(), &1.into()));
+    assert_eq!(running["values"]["stiffness"], 12.5);
+    let refused = ask(&["set", "stiffness=300"]);
+    assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+    assert!(String::from_utf8_lossy(&refused.stderr).starts_with("rejected: "), "{refused:?}");
+    let status = answer(&ask(&["disarm"]));
+    assert_eq!((&status["state"], &status["sets"]), (&"disarmed".into(), &1.into()));
+    assert_eq!(answer(&ask(&["arm"]))["fault"], Value::Null);
+    let stream = ask(&["stream", "30", "7"]);
+    let ticks: Vec<Value> =
+        stream.stdout.lines().map(|line| serde_json::from_str(&line.unwrap()).unwrap()).collect();
+    assert_eq!(ticks.len(), 30, "{stream:?}");
+    let later =
+        |pair: &[Value]| pair[1]["tick"].as_u64().unwrap() - pair[0]["tick"].as_u64().unwrap();
+    assert!(ticks.windows(2).all(|pair| later(pair) == 7), "{ticks:?}");
+    for wrong in [&["fly"][..], &["set", "stifness=3"], &["set", "stiffness"]] {
+        assert_eq!(ask(wrong).status.code(), Some(2), "{wrong:?}");
+    }
+    twin.kill().unwrap();
+    twin.wait().unwrap();
+}
