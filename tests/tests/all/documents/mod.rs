@@ -2,6 +2,7 @@
 
 mod protocol;
 mod theory;
+mod troubleshooting;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -18,7 +18,7 @@ const MESSAGES: &str = "firmware/src/wire/message.rs";
 /// What is in the braces of a type in a source file.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
-    let of = regex(&format!(r"(?s)\n(?:pub )?{kind} {name}(?:<S>)? \{{\n(.*?)\n\}}"));
+    let of = regex(&format!(r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<S>)? \{{\n(.*?)\n\}}"));
     let found = of.captures(&source).unwrap_or_else(|| panic!("{path} has no {kind} {name}"));
     found[1].to_owned()
 }
@@ -31,7 +31,7 @@ fn fields(path: &str, name: &str) -> Vec<(String, String)> {
 }
 
 /// The variants of an enumeration in order, each with its fields as one text.
-fn variants(path: &str, name: &str) -> Vec<(String, String)> {
+pub fn variants(path: &str, name: &str) -> Vec<(String, String)> {
     let variant = regex(r"(?ms)^    (\w+)(?: = \d+)?(?:\((.*?)\)| \{(.*?)^    \})?,$");
     let body = body(path, "enum", name);
     let fields = |variant: &regex::Captures<'_>| match (variant.get(2), variant.get(3)) {
