@@ -4,6 +4,16 @@ use std::path::Path;
 
 use crate::common::{answer, haptic, program, read, root};
 
+/// The documents that name commands of the program.
+const DOCUMENTS: [&str; 6] = [
+    "README.md",
+    "firmware/boards.md",
+    "firmware/PROTOCOL.md",
+    "firmware/THEORY.md",
+    "firmware/TROUBLESHOOTING.md",
+    "tests/board/faults.md",
+];
+
 /// The fenced block behind `<!-- name -->` in the README.
 fn block(readme: &str, name: &str) -> String {
     let (_, rest) = readme.split_once(&format!("<!-- {name} -->\n```")).expect("a marked block");
@@ -67,4 +77,56 @@ fn what_is_flashed_does_on_a_virtual_board_what_the_readme_shows() {
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let printed = String::from_utf8(run.stdout).unwrap();
     assert_eq!(without_instructions(&printed), without_instructions(shown));
+}
+
+/// What the program says of a command, as far as its words name one.
+fn help(words: &str) -> String {
+    let (mut path, mut said) = (Vec::new(), None);
+    for word in words.split_whitespace() {
+        path.push(word);
+        let output = haptic(&[&path[..], &["--help"]].concat());
+        if !output.status.success() {
+            break;
+        }
+        let help = String::from_utf8(output.stdout).unwrap();
+        let has_more = help.contains("Commands:");
+        said = Some(help);
+        if !has_more {
+            break;
+        }
+    }
+    said.unwrap_or_else(|| panic!("there is no `haptic {words}`"))
+}
+
+/// The options that a text names.
+fn options(text: &str) -> impl Iterator<Item = &str> {
+    let is_part = |c: char| c == '-' || c.is_ascii_lowercase();
+    let words = text.split(move |c| !is_part(c));
+    words.filter(|word| word.starts_with("--") && word.len() > 2)
+}
+
+#[test]
+fn commands_and_options_that_documents_name_are_there() {
+    let mut count = 0;
+    for document in DOCUMENTS {
+        for line in read(root().join(document)).lines() {
+            let after = |word| line.split_once(word).map(|(_, after)| after);
+            let Some(after) = after("cargo haptic ").or_else(|| after("`haptic ")) else {
+                continue;
+            };
+            let words = after.split(['`', '#', '>']).next().unwrap();
+            // `haptic` alone, or a word in place of which any command stands.
+            if !words.starts_with(|c: char| c.is_ascii_lowercase()) {
+                continue;
+            }
+            let help = help(words);
+            // In a table, the answer to a command names options of it, too.
+            let said = if line.starts_with('|') { line } else { words };
+            for option in options(said) {
+                assert!(help.contains(option), "{document}: no {option} in `haptic {words}`");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 30, "only {count} options were seen");
 }

@@ -89,6 +89,21 @@ fn toolchain() -> Toolchain {
     prepare(Tools::Compiler, |step| eprintln!("{step}")).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// What the compiler says of a program for no board in particular.
+#[test]
+fn where_no_board_is_named_the_compiler_names_all_of_them() {
+    let source = include_str!("../../../firmware/src/board/mod.rs");
+    let messages: Vec<_> = source.split("compile_error!(").skip(1).collect();
+    assert_eq!(messages.len(), 2);
+    for message in messages {
+        let message = message.split(");").next().unwrap();
+        for board in Board::ALL {
+            assert!(message.contains(&board.to_string()), "{board} is not in {message}");
+        }
+        assert!(message.contains("board-qemu,log"), "{message}");
+    }
+}
+
 #[test]
 fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();

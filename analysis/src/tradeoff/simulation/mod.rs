@@ -25,7 +25,7 @@ pub static SUBJECT: Subject = Subject {
     title: "Simulation: methods of integration by their steps in a sample of 1 ms",
     cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
     errors: &[
-        // As exact as `tests/simulation_reference.rs` finds the reference to be, in sixty digits.
+        // As exact as `analysis/tests/all/simulation_reference.rs` finds the reference to be, in sixty digits.
         Axis::least(&["angle_error"], "largest error of the angle (part of its largest)")
             .floored(1e-12, "no error seen"),
         // As exact as the borders of stability are found.
