@@ -1,7 +1,8 @@
 //! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
 //! A [`mod@file`] says what is asked, [`verdict`] what the certificate answers, [`batch`] both for
-//! many scenes. The other modules are in groups by what they are about, with a line above each group.
+//! many scenes. The other modules are in groups by what they are about, with a line above each group. "Theory" and "equation" are those
+//! of `firmware/THEORY.md`.
 
 pub mod command;
 

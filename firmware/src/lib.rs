@@ -2,6 +2,9 @@
 //!
 //! The modules are in the order of the data's path: counts come in at [`encoder`], leave at
 //! [`dac`]; [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
+//!
+//! "Theory, section 4" and "equation 17" are those of `THEORY.md` beside this folder, "the paper" the
+//! one that it names.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
 // A rejection carries all its numbers, and there is no heap to put them on.

@@ -4,8 +4,10 @@ mod protocol;
 mod theory;
 mod troubleshooting;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use regex::Regex;
 
@@ -38,8 +40,16 @@ fn sources(folder: &str) -> Vec<(String, String)> {
     found
 }
 
+/// Each is compiled once: that takes longer than to search a file.
 fn regex(pattern: &str) -> Regex {
-    Regex::new(pattern).expect("a regular expression")
+    static COMPILED: Mutex<BTreeMap<String, Regex>> = Mutex::new(BTreeMap::new());
+    let mut compiled = COMPILED.lock().expect("nobody panics below");
+    let known = compiled.get(pattern).cloned();
+    known.unwrap_or_else(|| {
+        let new = Regex::new(pattern).expect("a regular expression");
+        compiled.insert(pattern.to_owned(), new.clone());
+        new
+    })
 }
 
 /// The rows of the first table under a heading, cell by cell, without the quotes of code.
