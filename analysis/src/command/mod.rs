@@ -13,6 +13,7 @@ pub mod flash;
 pub mod identify;
 pub mod report;
 pub mod run;
+pub mod schema;
 pub mod scope;
 pub mod simulate;
 pub mod stability;
@@ -92,6 +93,8 @@ pub enum Command {
     Advise(advise::Arguments),
     /// In which passive hand does a scene oscillate?
     WorstHand(worst_hand::Arguments),
+    /// What may a scene file say? Prints a JSON schema, an example, or the reference of its keys.
+    Schema(schema::Arguments),
     /// Where do other methods fail, and what did the certificate say before?
     Failures(failures::Arguments),
 }
@@ -306,6 +309,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Design(arguments) => design::run(&arguments),
         Command::Advise(arguments) => advise::run(&arguments),
         Command::WorstHand(arguments) => worst_hand::run(&arguments),
+        Command::Schema(arguments) => schema::run(&arguments),
         Command::Failures(arguments) => failures::run(&arguments),
     };
     match answer {

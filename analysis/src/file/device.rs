@@ -2,8 +2,9 @@
 
 use firmware::scene::Device;
 
+use super::faults::{Faults, Read, Reported, all};
 use super::key::{self, Key};
-use super::problem::{Fault, Problem};
+use super::problem::Problem;
 use super::scene;
 use super::section::{Found, Section};
 use super::tree::{Node, Span};
@@ -29,38 +30,43 @@ pub struct DeviceFile {
 }
 
 /// A file of a device is a table, like that of a scene.
-const ROOT: Key =
-    Key { path: "", unit: "", bound: key::Bound::Other("a table of [device] and perhaps `name`") };
+const ROOT: Key = Key::root("a table of [device] and perhaps `name`");
 
 /// Reads a device file, or the device of a scene file, which is checked as a whole.
-pub fn read(text: &str, root: Node) -> Result<DeviceFile, Fault> {
-    let mut top = Section::new(text, "a device's file", &ROOT, root.clone())?;
+pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
+    let mut top = Section::new(source, "a device's file", &ROOT, root.clone())?;
     if [key::SERVO, key::ENVIRONMENT].iter().any(|key| top.has(key)) {
-        let scene = scene::read(text, root, Purpose::Simulate)?;
+        let scene = scene::read(source, root, Purpose::Simulate)?;
         return Ok(DeviceFile { name: Some(scene.name), chain: scene.chain });
     }
-    let name = top.text(&key::NAME)?.map(|found| found.value);
-    let (chain, ..) = device(top.needed_table(&key::DEVICE)?, Purpose::Simulate)?;
-    top.finish()?;
-    Ok(DeviceFile { name, chain })
+    let name = top.text(&key::NAME);
+    let table = top.needed_table(&key::DEVICE);
+    top.finish();
+    let (chain, ..) = table.and_then(|table| device(table, Purpose::Simulate))?;
+    Ok(DeviceFile { name: name?.map(|found| found.value), chain })
 }
 
 /// Reads `[device]`: the chain, the rigid body that stands for it in a certificate, and the dry
 /// friction of the motor's mass.
-pub fn device(
-    mut section: Section<'_>,
-    purpose: Purpose,
-) -> Result<(Chain, Device, Option<f64>), Fault> {
-    let friction = section.optional(&key::DEVICE_FRICTION)?;
-    let masses = section.tables(&key::MASS)?;
-    let is_rigid = masses.is_none();
+pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<(Chain, Device, Option<f64>)> {
+    let friction = section.optional(&key::DEVICE_FRICTION);
+    let masses = section.tables(&key::MASS);
+    let is_rigid = matches!(masses, Ok(None));
     let chain = match masses {
-        None => rigid(&mut section)?,
-        Some(masses) => masses_and_links(&mut section, masses)?,
+        Ok(None) => rigid(&mut section),
+        Ok(Some(masses)) => masses_and_links(&mut section, masses),
+        Err(reported) => {
+            let unread = [&key::INERTIA, &key::DEVICE_DAMPING, &key::LINK];
+            unread.into_iter().for_each(|key| section.skip(key));
+            Err(reported)
+        }
     };
-    let declared = section.found(&key::PASSIVITY)?;
-    let encoder = section.text(&key::ENCODER)?;
-    let lag = section.found(&key::ACTUATOR_LAG)?;
+    let declared = section.found(&key::PASSIVITY);
+    let encoder = section.text(&key::ENCODER);
+    let lag = section.found(&key::ACTUATOR_LAG);
+    section.finish();
+    let (friction, chain, declared) = (friction?, chain?, declared?);
+    let (encoder, lag) = (encoder?, lag?);
     let chain = placed(&section, chain, encoder.as_ref())?;
     let chain = match &lag {
         None => chain,
@@ -77,32 +83,32 @@ pub fn device(
         _ => (&key::DEVICE, section.span()),
     };
     let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
-    section.finish()?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
     Ok((chain, device, friction))
 }
 
-fn rigid(section: &mut Section<'_>) -> Result<Chain, Fault> {
-    let inertia = section.number(&key::INERTIA)?;
-    let damping = section.number(&key::DEVICE_DAMPING)?;
-    chain(section, &key::DEVICE, section.span(), vec![Mass { inertia, damping }], Vec::new())
+fn rigid(section: &mut Section<'_>) -> Read<Chain> {
+    let inertia = section.number(&key::INERTIA);
+    let damping = section.number(&key::DEVICE_DAMPING);
+    let mass = Mass { inertia: inertia?, damping: damping? };
+    chain(section, &key::DEVICE, section.span(), vec![mass], Vec::new())
 }
 
 fn masses_and_links(
     section: &mut Section<'_>,
     masses: Found<Vec<Section<'_>>>,
-) -> Result<Chain, Fault> {
-    for key in [&key::INERTIA, &key::DEVICE_DAMPING] {
-        if let Some(Found { span, .. }) = section.found(key)? {
-            let reason = format!("stands beside [[{}]], which has its own", key::MASS.path);
-            return Err(section.conflict(key, span, reason));
-        }
-    }
+) -> Read<Chain> {
+    let alone = [&key::INERTIA, &key::DEVICE_DAMPING].map(|key| {
+        let Some(Found { span, .. }) = section.found(key)? else { return Ok(()) };
+        let reason = format!("stands beside [[{}]], which has its own", key::MASS.path);
+        Err(section.conflict(key, span, reason))
+    });
+    let links = section.tables(&key::LINK)?;
     let (count, mass_span) = (masses.value.len(), masses.span);
     if count == 0 || count > MAX_MASSES {
         return Err(section.out_of_bounds(&key::MASS, key::MASS.path, &mass_span));
     }
-    let links = section.tables(&key::LINK)?;
+    let masses = all(masses.value.into_iter().map(mass));
     let (links, link_span) =
         links.map_or((Vec::new(), None), |links| (links.value, Some(links.span)));
     if links.len() + 1 != count {
@@ -112,27 +118,29 @@ fn masses_and_links(
             None => section.missing(&key::LINK),
         });
     }
-    let masses = masses.value.into_iter().map(mass).collect::<Result<_, _>>()?;
-    let links = links.into_iter().map(link).collect::<Result<_, _>>()?;
-    chain(section, &key::MASS, mass_span, masses, links)
+    let links = all(links.into_iter().map(link));
+    all(alone.into_iter())?;
+    chain(section, &key::MASS, mass_span, masses?, links?)
 }
 
-fn mass(mut section: Section<'_>) -> Result<Mass, Fault> {
-    let inertia = section.number(&key::MASS_INERTIA)?;
-    let damping = section.optional(&key::MASS_DAMPING)?.unwrap_or(0.0);
-    section.finish()?;
-    Ok(Mass { inertia, damping })
+fn mass(mut section: Section<'_>) -> Read<Mass> {
+    let inertia = section.number(&key::MASS_INERTIA);
+    let damping = section.number(&key::MASS_DAMPING);
+    section.finish();
+    Ok(Mass { inertia: inertia?, damping: damping? })
 }
 
-fn link(mut section: Section<'_>) -> Result<Link, Fault> {
-    let stiffness = section.found(&key::LINK_STIFFNESS)?;
-    let stiffness = stiffness.ok_or_else(|| section.missing(&key::LINK_STIFFNESS))?;
-    let damping = section.optional(&key::LINK_DAMPING)?.unwrap_or(0.0);
+fn link(mut section: Section<'_>) -> Read<Link> {
+    let stiffness = section.found(&key::LINK_STIFFNESS);
+    let stiffness = stiffness
+        .and_then(|found| found.ok_or_else(|| section.missing(&key::LINK_STIFFNESS)));
+    let damping = section.number(&key::LINK_DAMPING);
+    section.finish();
+    let (stiffness, damping) = (stiffness?, damping?);
     if stiffness.value == 0.0 && damping == 0.0 {
         let reason = "and no damping connect nothing".to_owned();
         return Err(section.conflict(&key::LINK_STIFFNESS, stiffness.span, reason));
     }
-    section.finish()?;
     Ok(Link { stiffness: stiffness.value, damping })
 }
 
@@ -144,15 +152,11 @@ fn chain(
     span: Span,
     masses: Vec<Mass>,
     links: Vec<Link>,
-) -> Result<Chain, Fault> {
+) -> Read<Chain> {
     Chain::new(masses, links).map_err(|error| section.conflict(key, span, error.to_string()))
 }
 
-fn placed(
-    section: &Section<'_>,
-    chain: Chain,
-    encoder: Option<&Found<String>>,
-) -> Result<Chain, Fault> {
+fn placed(section: &Section<'_>, chain: Chain, encoder: Option<&Found<String>>) -> Read<Chain> {
     let Some(Found { value, span }) = encoder else { return Ok(chain) };
     let place = [EncoderPlace::Motor, EncoderPlace::Hand].into_iter().find(|at| at.word() == value);
     match place {
@@ -171,7 +175,7 @@ fn passivity(
     (key, span): (&'static Key, Span),
     declared: Option<Found<f64>>,
     is_rigid: bool,
-) -> Result<Option<f64>, Fault> {
+) -> Read<Option<f64>> {
     if let Some(Found { value, span }) = &declared
         && is_rigid
         && *value > chain.damping()
@@ -204,7 +208,7 @@ fn no_passivity(
     key: &'static Key,
     span: Span,
     reason: NoPassivity,
-) -> Fault {
+) -> Reported {
     let value = section.written(&span);
-    Fault { span, problem: Problem::NoPassivity { key: key.path, value, reason } }
+    section.report(span, Problem::NoPassivity { key: key.path, value, reason })
 }

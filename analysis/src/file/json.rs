@@ -4,6 +4,7 @@ use jsonc_parser::ast::{self, ObjectPropName};
 use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 
+use super::faults::{Faults, Read, all};
 use super::problem::{Fault, Problem};
 use super::tree::{Entry, Node, Span, Value};
 
@@ -22,15 +23,15 @@ const STRICT: ParseOptions = ParseOptions {
 };
 
 /// Parses one JSON value.
-pub fn parse(text: &str) -> Result<Node, Fault> {
+pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
     let parsed = parse_to_ast(text, &CollectOptions::default(), &STRICT).map_err(|error| {
         let range = error.range();
         let problem = Problem::syntax("JSON", &error.kind().to_string());
-        Fault { span: range.start..range.end, problem }
+        faults.report(Fault { span: range.start..range.end, problem })
     })?;
     match parsed.value {
-        Some(value) => node(value),
-        None => Err(Fault { span: 0..0, problem: Problem::Empty }),
+        Some(value) => node(value, faults),
+        None => Err(faults.report(Fault { span: 0..0, problem: Problem::Empty })),
     }
 }
 
@@ -39,7 +40,7 @@ fn span(value: &impl Ranged) -> Span {
     range.start..range.end
 }
 
-fn node(value: ast::Value<'_>) -> Result<Node, Fault> {
+fn node(value: ast::Value<'_>, faults: &Faults) -> Read<Node> {
     let span = span(&value);
     let value = match value {
         ast::Value::StringLit(text) => Value::Text(text.value.into_owned()),
@@ -47,26 +48,26 @@ fn node(value: ast::Value<'_>) -> Result<Node, Fault> {
         ast::Value::BooleanLit(boolean) => Value::Boolean(boolean.value),
         ast::Value::NullKeyword(_) => Value::Other("null"),
         ast::Value::Array(list) => {
-            Value::List(list.elements.into_iter().map(node).collect::<Result<_, _>>()?)
+            Value::List(all(list.elements.into_iter().map(|element| node(element, faults)))?)
         }
-        ast::Value::Object(object) => table(object)?,
+        ast::Value::Object(object) => table(object, faults)?,
     };
     Ok(Node { span, value })
 }
 
-fn table(object: ast::Object<'_>) -> Result<Value, Fault> {
+fn table(object: ast::Object<'_>, faults: &Faults) -> Read<Value> {
     let mut names = std::collections::HashSet::new();
-    let mut entries = Vec::with_capacity(object.properties.len());
-    for property in object.properties {
+    let entries = object.properties.into_iter().map(|property| {
         let span = match &property.name {
             ObjectPropName::String(name) => span(name),
             ObjectPropName::Word(name) => span(name),
         };
         let name = property.name.into_string();
+        let node = node(property.value, faults);
         if !names.insert(name.clone()) {
-            return Err(Fault { span, problem: Problem::duplicate(&name) });
+            return Err(faults.report(Fault { span, problem: Problem::duplicate(&name) }));
         }
-        entries.push(Entry { name, span, node: node(property.value)? });
-    }
-    Ok(Value::Table(entries))
+        Ok(Entry { name, span, node: node? })
+    });
+    all(entries).map(Value::Table)
 }

@@ -19,6 +19,9 @@ const SHOWN_LINE: usize = 160;
 /// What is wrong, without the place.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
+    /// No file was named.
+    #[error("the name of the file is empty; `-` is standard input")]
+    NoName,
     /// The file could not be read.
     #[error("the file cannot be read: {0}")]
     Unreadable(String),
@@ -149,6 +152,9 @@ pub struct Fault {
     pub problem: Problem,
 }
 
+/// Most problems of a file that are told; a text of another kind has one in each line.
+const MOST: usize = 20;
+
 /// A bad file: which, where, and what is wrong with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileError {
@@ -162,12 +168,24 @@ pub struct FileError {
     pub problem: Box<Problem>,
     /// The line and the bytes in it that the problem is about, if it is short enough to show.
     shown: Option<Box<(String, Span)>>,
+    /// The file's other problems, further down.
+    pub rest: Vec<FileError>,
+    /// How many more there are, which are not told.
+    pub untold: usize,
 }
 
 impl FileError {
-    /// Places a fault in the text that it was found in, whose first line is line `first_line` of
-    /// the file.
-    pub fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
+    /// Places faults, in their order, in the text that they were found in, whose first line is line
+    /// `first_line` of the file; nothing where there are none.
+    pub fn of(file: &str, text: &str, first_line: usize, faults: Vec<Fault>) -> Option<Self> {
+        let untold = faults.len().saturating_sub(MOST);
+        let mut placed =
+            faults.into_iter().take(MOST).map(|fault| Self::new(file, text, first_line, fault));
+        let first = placed.next()?;
+        Some(Self { rest: placed.collect(), untold, ..first })
+    }
+
+    fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
         let start = floor(text, fault.span.start);
         let before = &text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -183,17 +201,32 @@ impl FileError {
             column: 1 + text[line_start..start].chars().count(),
             problem: Box::new(fault.problem),
             shown: shown.filter(|(line, _)| !line.trim().is_empty()).map(Box::new),
+            rest: Vec::new(),
+            untold: 0,
         }
     }
 
     /// A problem with a file as a whole, without any of its text.
     pub fn whole(file: &str, line: usize, column: usize, problem: Problem) -> Self {
-        Self { file: excerpt_path(file), line, column, problem: Box::new(problem), shown: None }
+        let (file, problem) = (excerpt_path(file), Box::new(problem));
+        Self { file, line, column, problem, shown: None, rest: Vec::new(), untold: 0 }
     }
 
-    /// The message with the line of the file below it, as compilers print it.
+    /// Each message with the line of the file below it, as compilers print it.
     pub fn report(&self, colour: bool) -> String {
-        let title = self.to_string();
+        let each = std::iter::once(self).chain(&self.rest);
+        let mut parts: Vec<String> = each.map(|error| error.report_alone(colour)).collect();
+        parts.extend(self.and_more());
+        parts.join("\n\n")
+    }
+
+    /// How many problems are not told.
+    fn and_more(&self) -> Option<String> {
+        (self.untold > 0).then(|| format!("{}: and {} more problems", self.file, self.untold))
+    }
+
+    fn report_alone(&self, colour: bool) -> String {
+        let title = self.sentence();
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let group = match self.shown.as_deref() {
             None => Level::ERROR
@@ -210,9 +243,25 @@ impl FileError {
     }
 }
 
+impl FileError {
+    /// The first problem with its place. A file that could not be read has none.
+    fn sentence(&self) -> String {
+        let Self { file, line, column, problem, .. } = self;
+        match **problem {
+            Problem::NoName => problem.to_string(),
+            Problem::Unreadable(_) if (*line, *column) == (1, 1) => format!("{file}: {problem}"),
+            _ => format!("{file}:{line}:{column}: {problem}"),
+        }
+    }
+}
+
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.problem)
+        f.write_str(&self.sentence())?;
+        for error in &self.rest {
+            write!(f, "\n{}", error.sentence())?;
+        }
+        self.and_more().map_or(Ok(()), |more| write!(f, "\n{more}"))
     }
 }
 

@@ -5,8 +5,9 @@ use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wal
 use firmware::scene::{Coupling, Scene, Timing};
 
 use super::device::{self, Purpose};
+use super::faults::{Faults, Read};
 use super::key::{self, Key};
-use super::problem::Fault;
+use super::kind::Kind;
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
 use super::tree::{Node, Value};
@@ -44,116 +45,146 @@ impl SceneFile {
 }
 
 /// Reads the tables of a parsed file.
-pub fn read(text: &str, root: Node, purpose: Purpose) -> Result<SceneFile, Fault> {
-    let mut top = Section::new(text, "a scene", &ROOT, root)?;
-    let name = top.needed_text(&key::NAME)?.value;
-    let (chain, device, friction) = device::device(top.needed_table(&key::DEVICE)?, purpose)?;
-    let timing = timing(top.needed_table(&key::SERVO)?)?;
-    let coupling = top.table(&key::COUPLING)?.map_or(Ok(Coupling::Rigid), coupling)?;
-    let environment = environment(top.needed_table(&key::ENVIRONMENT)?)?;
-    let simulation = top.table(&key::SIMULATION)?;
-    let rubs = friction.unwrap_or(0.0);
-    let simulation = simulation.map(|table| simulation::simulation(table, timing.period, rubs));
-    let simulation = simulation.transpose()?;
-    let hand = top.table(&key::HUMAN)?.map(simulation::hand).transpose()?;
-    let [torque_limit, encoder_step, full_scale] =
-        top.table(&key::LIMITS)?.map_or(Ok([None; 3]), limits)?;
-    top.finish()?;
+pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<SceneFile> {
+    let mut top = Section::new(source, "a scene", &ROOT, root)?;
+    let name = top.needed_text(&key::NAME);
+    let [device, servo, environment] =
+        [&key::DEVICE, &key::SERVO, &key::ENVIRONMENT].map(|key| top.needed_table(key));
+    let [coupling, simulation, human, limits] =
+        [&key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS].map(|key| top.table(key));
+    top.finish();
+    let device = device.and_then(|table| device::device(table, purpose));
+    let timing = servo.and_then(timing_of);
+    let coupling = coupling.and_then(|table| table.map_or(Ok(Coupling::Rigid), coupling_of));
+    let environment = environment.and_then(environment_of);
+    // Of a servo that could not be read, any latency is short enough.
+    let period = timing.map_or(f64::INFINITY, |timing| timing.period);
+    let rubs = device.as_ref().map_or(0.0, |(.., friction)| friction.unwrap_or(0.0));
+    let simulation = simulation
+        .and_then(|table| table.map(|it| simulation::simulation(it, period, rubs)).transpose());
+    let hand = human.and_then(|table| table.map(simulation::hand).transpose());
+    let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), limits_of));
+    let (name, (chain, device, friction)) = (name?.value, device?);
+    let [torque_limit, encoder_step, full_scale] = limits?;
+    let (timing, coupling, environment) = (timing?, coupling?, environment?);
     let scene = Scene { device, timing, coupling, environment, torque_limit };
+    let (simulation, hand) = (simulation?, hand?);
     Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction })
 }
 
 /// The file as a whole: it has no name, and must be a table.
-const ROOT: Key = Key {
-    path: "",
-    unit: "",
-    bound: key::Bound::Other("a table of `name`, [device], [servo] and [environment]"),
-};
+const ROOT: Key = Key::root("a table of `name`, [device], [servo] and [environment]");
 
-fn timing(mut section: Section<'_>) -> Result<Timing, Fault> {
-    let period = section.number(&key::PERIOD)?;
-    let worst = section.found(&key::WORST_PERIOD)?;
+fn timing_of(mut section: Section<'_>) -> Read<Timing> {
+    let period = section.number(&key::PERIOD);
+    let worst = section.found(&key::WORST_PERIOD);
+    section.finish();
+    let (period, worst) = (period?, worst?);
     if let Some(Found { value, span }) = &worst
         && *value < period
     {
         let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
         return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
     }
-    section.finish()?;
     Ok(Timing { period, worst_period: worst.map(|found| found.value) })
 }
 
-fn coupling(mut section: Section<'_>) -> Result<Coupling, Fault> {
-    let stiffness = section.number(&key::COUPLING_STIFFNESS)?;
-    section.finish()?;
-    Ok(Coupling::Spring { stiffness })
+fn coupling_of(mut section: Section<'_>) -> Read<Coupling> {
+    let stiffness = section.number(&key::COUPLING_STIFFNESS);
+    section.finish();
+    Ok(Coupling::Spring { stiffness: stiffness? })
 }
 
-fn limits(mut section: Section<'_>) -> Result<[Option<f64>; 3], Fault> {
-    let keys = [&key::TORQUE_LIMIT, &key::ENCODER_STEP, &key::FULL_SCALE];
-    let mut found = [None; 3];
-    for (place, key) in found.iter_mut().zip(keys) {
-        *place = section.optional(key)?;
-    }
-    section.finish()?;
-    Ok(found)
+fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
+    let [torque, encoder, full_scale] =
+        [&key::TORQUE_LIMIT, &key::ENCODER_STEP, &key::FULL_SCALE].map(|key| section.optional(key));
+    section.finish();
+    Ok([torque?, encoder?, full_scale?])
 }
 
-fn environment(mut section: Section<'_>) -> Result<Environment, Fault> {
-    let kind = section.needed_text(&key::TYPE)?;
-    section.retitle(format!("a {} [environment]", super::problem::excerpt(&kind.value)));
-    let environment = match kind.value.as_str() {
-        "delayed-spring" => Environment::DelayedSpring(spring(&mut section)?),
-        "damper-wall" => Environment::DamperWall(wall(&mut section)?),
-        "free-mode" => Environment::FreeMode {
-            residual: section.number(&key::RESIDUAL)?,
-            delay: whole(section.optional(&key::DELAY_SAMPLES)?),
-        },
-        "free-mode-wall" => Environment::FreeModeWall {
-            residual: section.number(&key::RESIDUAL)?,
-            wall: wall(&mut section)?,
-        },
-        "rational" => Environment::Rational(rational(&mut section)?),
-        _ => return Err(section.out_of_bounds(&key::TYPE, key::TYPE.path, &kind.span)),
+fn environment_of(mut section: Section<'_>) -> Read<Environment> {
+    let name = section.needed_text(&key::TYPE);
+    let kind = name.and_then(|Found { value, span }| match Kind::find(&value) {
+        Some(kind) => Ok(kind),
+        None => Err(section.out_of_bounds(&key::TYPE, key::TYPE.path, &span)),
+    });
+    let environment = match kind {
+        Ok(kind) => {
+            section.specialize(format!("a {} [environment]", kind.name), kind.needed);
+            of_kind(kind, &mut section)
+        }
+        Err(reported) => {
+            // Of what type it was to be is not known: a key of any is a good one.
+            let keys = key::ALL.iter().filter(|key| key.table() == key::ENVIRONMENT.path);
+            keys.for_each(|key| section.skip(key));
+            Err(reported)
+        }
     };
-    section.finish()?;
-    Ok(environment)
+    section.finish();
+    environment
 }
 
-fn spring(section: &mut Section<'_>) -> Result<Wall, Fault> {
-    let stiffness = section.number(&key::STIFFNESS)?;
-    let delay = whole(Some(section.number(&key::DELAY_SAMPLES)?));
+fn of_kind(kind: &Kind, section: &mut Section<'_>) -> Read<Environment> {
+    match kind.name {
+        "delayed-spring" => spring(section).map(Environment::DelayedSpring),
+        "damper-wall" => wall(section).map(Environment::DamperWall),
+        "free-mode" => {
+            let residual = section.number(&key::RESIDUAL);
+            let delay = section.whole(&key::DELAY_SAMPLES);
+            Ok(Environment::FreeMode { residual: residual?, delay: delay? })
+        }
+        "free-mode-wall" => {
+            let residual = section.number(&key::RESIDUAL);
+            let wall = wall(section);
+            Ok(Environment::FreeModeWall { residual: residual?, wall: wall? })
+        }
+        // The last of the table of types.
+        _ => rational(section).map(Environment::Rational),
+    }
+}
+
+fn spring(section: &mut Section<'_>) -> Read<Wall> {
+    let stiffness = section.number(&key::STIFFNESS);
+    let delay = section.whole(&key::DELAY_SAMPLES);
+    let (stiffness, delay) = (stiffness?, delay?);
     Ok(Wall { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false })
 }
 
-fn wall(section: &mut Section<'_>) -> Result<Wall, Fault> {
+fn wall(section: &mut Section<'_>) -> Read<Wall> {
+    let [stiffness, damping, face] =
+        [&key::STIFFNESS, &key::DAMPING, &key::FACE].map(|key| section.number(key));
+    let filter = section.optional(&key::FILTER);
+    let delay = section.whole(&key::DELAY_SAMPLES);
+    let one_sided = section.boolean(&key::ONE_SIDED);
     Ok(Wall {
-        stiffness: section.number(&key::STIFFNESS)?,
-        damping: section.number(&key::DAMPING)?,
-        filter: section.optional(&key::FILTER)?,
-        delay: whole(Some(section.number(&key::DELAY_SAMPLES)?)),
-        face: section.optional(&key::FACE)?.unwrap_or(0.0),
-        one_sided: section.boolean(&key::ONE_SIDED)?.unwrap_or(false),
+        stiffness: stiffness?,
+        damping: damping?,
+        filter: filter?,
+        delay: delay?,
+        face: face?,
+        one_sided: one_sided?.unwrap_or(false),
     })
 }
 
-fn rational(section: &mut Section<'_>) -> Result<Rational, Fault> {
-    let numerator = polynomial(section, &key::NUMERATOR)?;
-    let denominator = polynomial(section, &key::DENOMINATOR)?;
-    let delay = whole(section.optional(&key::DELAY_SAMPLES)?);
-    let unit_zeros = section.found(&key::UNIT_ZEROS)?;
-    if let Some(Found { value, span }) = &unit_zeros
-        && numerator.as_slice().len() - 1 + whole(Some(*value)) > MAX_DEGREE
+fn rational(section: &mut Section<'_>) -> Read<Rational> {
+    let numerator = polynomial(section, &key::NUMERATOR);
+    let denominator = polynomial(section, &key::DENOMINATOR);
+    let delay = section.whole(&key::DELAY_SAMPLES);
+    let unit_zeros = section.found(&key::UNIT_ZEROS);
+    let (numerator, denominator) = (numerator?, denominator?);
+    let (delay, unit_zeros) = (delay?, unit_zeros?);
+    let zeros = unit_zeros.as_ref().map_or(0, |found| found.value as usize);
+    if let Some(Found { span, .. }) = unit_zeros
+        && numerator.as_slice().len() - 1 + zeros > MAX_DEGREE
     {
         let reason = format!("makes the numerator's degree more than {MAX_DEGREE}");
-        return Err(section.conflict(&key::UNIT_ZEROS, span.clone(), reason));
+        return Err(section.conflict(&key::UNIT_ZEROS, span, reason));
     }
-    let unit_zeros = whole(unit_zeros.map(|found| found.value));
-    Ok(Rational { numerator, denominator, delay, unit_zeros })
+    Ok(Rational { numerator, denominator, delay, unit_zeros: zeros })
 }
 
 /// Descending coefficients without leading zeros; a denominator must have one that is not zero.
-fn polynomial(section: &mut Section<'_>, key: &Key) -> Result<Coefficients, Fault> {
+fn polynomial(section: &mut Section<'_>, key: &Key) -> Read<Coefficients> {
     let Some(Found { value, span }) = section.list(key)? else {
         return Err(section.missing(key));
     };
@@ -166,11 +197,6 @@ fn polynomial(section: &mut Section<'_>, key: &Key) -> Result<Coefficients, Faul
     let coefficients =
         if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
     coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))
-}
-
-/// A number whose bound is [`key::Bound::Whole`]; zero where it was left out.
-fn whole(value: Option<f64>) -> usize {
-    value.map_or(0, |value| value as usize)
 }
 
 /// Whether a parsed file has nothing in it.

@@ -1,6 +1,8 @@
-//! Taking a table apart, key by key: whatever is not asked for is unknown.
+//! Taking a table apart, key by key: whatever is not asked for is unknown. What is wrong is reported,
+//! and reading goes on, so that somebody who mends a file hears of everything at once.
 
-use super::key::Key;
+use super::faults::{Faults, Read, Reported, all};
+use super::key::{Key, Presence};
 use super::problem::{Fault, Problem, excerpt};
 use super::tree::{Entry, Node, Span, Value};
 
@@ -11,11 +13,13 @@ const ALIKE: f64 = 0.9;
 /// A table of the file that is being read.
 pub struct Section<'t> {
     text: &'t str,
+    faults: &'t Faults,
     path: &'static str,
     title: String,
     span: Span,
     entries: Vec<Entry>,
     asked: Vec<&'static str>,
+    needed: &'static [&'static Key],
 }
 
 /// A value and where it stood.
@@ -28,44 +32,55 @@ pub struct Found<T> {
 
 impl<'t> Section<'t> {
     /// Starts on a node that must be a table; `title` is what messages call it.
-    pub fn new(text: &'t str, title: &str, key: &Key, node: Node) -> Result<Self, Fault> {
+    pub fn new(
+        (text, faults): (&'t str, &'t Faults),
+        title: &str,
+        key: &Key,
+        node: Node,
+    ) -> Read<Self> {
         let title = title.to_owned();
         match node.value {
             Value::Table(entries) => {
                 let (path, span, asked) = (key.path, node.span, Vec::new());
-                Ok(Self { text, path, title, span, entries, asked })
+                Ok(Self { text, faults, path, title, span, entries, asked, needed: &[] })
             }
-            other => Err(wrong_kind(text, key, &node.span, &other)),
+            other => Err(faults.report(wrong_kind(text, key, &node.span, &other))),
         }
     }
 
-    /// From here on messages call the table this, since its kind is known.
-    pub fn retitle(&mut self, title: String) {
-        self.title = title;
+    /// From here on messages call the table this, since its kind is known, and these keys must be
+    /// there.
+    pub fn specialize(&mut self, title: String, needed: &'static [&'static Key]) {
+        (self.title, self.needed) = (title, needed);
+    }
+
+    /// Leaves out a key that cannot be read because of what was reported: it may be a good one.
+    pub fn skip(&mut self, key: &Key) {
+        self.take(key);
     }
 
     /// The table of that key, if there is one.
-    pub fn table(&mut self, key: &Key) -> Result<Option<Self>, Fault> {
+    pub fn table(&mut self, key: &Key) -> Read<Option<Self>> {
         let title = format!("[{}]", key.path);
-        self.take(key).map(|node| Self::new(self.text, &title, key, node)).transpose()
+        self.take(key).map(|node| Self::new((self.text, self.faults), &title, key, node)).transpose()
     }
 
     /// The table of that key, which must be there.
-    pub fn needed_table(&mut self, key: &Key) -> Result<Self, Fault> {
+    pub fn needed_table(&mut self, key: &Key) -> Read<Self> {
         self.table(key)?.ok_or_else(|| self.missing(key))
     }
 
     /// The tables of that key in their order with the place of the whole list, if it is there.
-    pub fn tables(&mut self, key: &Key) -> Result<Option<Found<Vec<Self>>>, Fault> {
+    pub fn tables(&mut self, key: &Key) -> Read<Option<Found<Vec<Self>>>> {
         let Some(Node { span, value }) = self.take(key) else { return Ok(None) };
         let Value::List(items) = value else {
-            return Err(wrong_kind(self.text, key, &span, &value));
+            return Err(self.wrong_kind(key, &span, &value));
         };
         let numbered = |(index, node): (usize, Node)| {
             let title = format!("[[{}]] number {}", key.path, index + 1);
-            Self::new(self.text, &title, key, node)
+            Self::new((self.text, self.faults), &title, key, node)
         };
-        let value = items.into_iter().enumerate().map(numbered).collect::<Result<_, _>>()?;
+        let value = all(items.into_iter().enumerate().map(numbered))?;
         Ok(Some(Found { value, span }))
     }
 
@@ -85,50 +100,60 @@ impl<'t> Section<'t> {
     }
 
     /// The number of that key with its place, if it is there.
-    pub fn found(&mut self, key: &Key) -> Result<Option<Found<f64>>, Fault> {
+    pub fn found(&mut self, key: &Key) -> Read<Option<Found<f64>>> {
         let Some(node) = self.take(key) else { return Ok(None) };
         let value = self.number_of(key, key.path, &node)?;
         Ok(Some(Found { value, span: node.span }))
     }
 
     /// The number of that key, if it is there.
-    pub fn optional(&mut self, key: &Key) -> Result<Option<f64>, Fault> {
+    pub fn optional(&mut self, key: &Key) -> Read<Option<f64>> {
         Ok(self.found(key)?.map(|found| found.value))
     }
 
-    /// The number of that key, which must be there.
-    pub fn number(&mut self, key: &Key) -> Result<f64, Fault> {
-        self.optional(key)?.ok_or_else(|| self.missing(key))
+    /// The number of that key. Where it is left out, it is the key's default, if that has one.
+    pub fn number(&mut self, key: &Key) -> Read<f64> {
+        let is_needed = self.needed.contains(&key);
+        match (self.optional(key)?, key.presence) {
+            (Some(value), _) => Ok(value),
+            (None, Presence::Default(value)) if !is_needed => Ok(value),
+            (None, _) => Err(self.missing(key)),
+        }
+    }
+
+    /// The whole number of that key, in the same way.
+    pub fn whole(&mut self, key: &Key) -> Read<usize> {
+        Ok(self.number(key)? as usize)
     }
 
     /// The string of that key with its place, which must be there.
-    pub fn needed_text(&mut self, key: &Key) -> Result<Found<String>, Fault> {
+    pub fn needed_text(&mut self, key: &Key) -> Read<Found<String>> {
         self.text(key)?.ok_or_else(|| self.missing(key))
     }
 
     /// The string of that key with its place, if it is there.
-    pub fn text(&mut self, key: &Key) -> Result<Option<Found<String>>, Fault> {
+    pub fn text(&mut self, key: &Key) -> Read<Option<Found<String>>> {
         match self.take(key) {
             None => Ok(None),
             Some(Node { span, value: Value::Text(value) }) => Ok(Some(Found { value, span })),
-            Some(node) => Err(wrong_kind(self.text, key, &node.span, &node.value)),
+            Some(node) => Err(self.wrong_kind(key, &node.span, &node.value)),
         }
     }
 
     /// The truth value of that key, if it is there.
-    pub fn boolean(&mut self, key: &Key) -> Result<Option<bool>, Fault> {
+    pub fn boolean(&mut self, key: &Key) -> Read<Option<bool>> {
         match self.take(key) {
             None => Ok(None),
             Some(Node { value: Value::Boolean(value), .. }) => Ok(Some(value)),
-            Some(node) => Err(wrong_kind(self.text, key, &node.span, &node.value)),
+            Some(node) => Err(self.wrong_kind(key, &node.span, &node.value)),
         }
     }
 
     /// The finite numbers of that key with their place, if it is there.
-    pub fn list(&mut self, key: &Key) -> Result<Option<Found<Vec<f64>>>, Fault> {
+    pub fn list(&mut self, key: &Key) -> Read<Option<Found<Vec<f64>>>> {
         let Some(node) = self.take(key) else { return Ok(None) };
         let Value::List(items) = &node.value else {
-            return Err(wrong_kind(self.text, key, &node.span, &node.value));
+            return Err(self.wrong_kind(key, &node.span, &node.value));
         };
         let item = |(index, item): (usize, &Node)| {
             let path = format!("{}[{index}]", key.path);
@@ -143,46 +168,51 @@ impl<'t> Section<'t> {
                         found: value.kind(),
                         bound: "a finite number".to_owned(),
                     };
-                    Err(Fault { span: span.clone(), problem })
+                    Err(self.report(span.clone(), problem))
                 }
             }
         };
-        let value = items.iter().enumerate().map(item).collect::<Result<_, _>>()?;
+        let value = all(items.iter().enumerate().map(item))?;
         Ok(Some(Found { value, span: node.span }))
     }
 
-    /// The fault of a key whose value is out of its bound.
-    pub fn out_of_bounds(&self, key: &Key, path: &str, span: &Span) -> Fault {
+    /// Reports a key whose value is out of its bound.
+    pub fn out_of_bounds(&self, key: &Key, path: &str, span: &Span) -> Reported {
         let value = &self.text[span.clone()];
-        let problem = Problem::out_of_bounds(path, value, key.bound, key.unit);
-        Fault { span: span.clone(), problem }
+        self.report(span.clone(), Problem::out_of_bounds(path, value, key.bound, key.unit))
     }
 
-    /// The fault of a key that contradicts another one, or a rule.
-    pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Fault {
+    /// Reports a key that contradicts another one, or a rule.
+    pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Reported {
         let value = excerpt(&self.text[span.clone()]);
-        Fault { span, problem: Problem::Conflict { key: key.path, value, reason } }
+        self.report(span, Problem::Conflict { key: key.path, value, reason })
     }
 
-    /// The fault of a key that is not there, or of the slip that was written in its place.
-    pub fn missing(&self, key: &Key) -> Fault {
-        let slip = self.entries.iter().find(|entry| alike(&entry.name, key.name()));
-        match slip {
-            Some(entry) => self.unknown(entry),
+    /// Reports a key that is not there, or the slip that was written in its place.
+    pub fn missing(&mut self, key: &Key) -> Reported {
+        match self.entries.iter().position(|entry| alike(&entry.name, key.name())) {
+            Some(slip) => {
+                let entry = self.entries.swap_remove(slip);
+                self.unknown(&entry)
+            }
             None => {
                 let problem = Problem::Missing { key: key.path, bound: key.requirement() };
-                Fault { span: self.span.start..self.span.start, problem }
+                self.report(self.span.start..self.span.start, problem)
             }
         }
     }
 
-    /// Ends the table: a key that nobody asked for is an error.
-    pub fn finish(self) -> Result<(), Fault> {
-        // The first in the file, not in the map: people mend a file from the top.
-        match self.entries.iter().min_by_key(|entry| entry.span.start) {
-            Some(entry) => Err(self.unknown(entry)),
-            None => Ok(()),
+    /// Ends the table, before anything that was read is looked at: every key that nobody asked for
+    /// is reported, whatever else is wrong.
+    pub fn finish(&mut self) {
+        for entry in std::mem::take(&mut self.entries) {
+            self.unknown(&entry);
         }
+    }
+
+    /// Reports a problem.
+    pub fn report(&self, span: Span, problem: Problem) -> Reported {
+        self.faults.report(Fault { span, problem })
     }
 
     fn take(&mut self, key: &Key) -> Option<Node> {
@@ -191,15 +221,19 @@ impl<'t> Section<'t> {
         Some(self.entries.swap_remove(index).node)
     }
 
-    fn number_of(&self, key: &Key, path: &str, node: &Node) -> Result<f64, Fault> {
+    fn wrong_kind(&self, key: &Key, span: &Span, value: &Value) -> Reported {
+        self.faults.report(wrong_kind(self.text, key, span, value))
+    }
+
+    fn number_of(&self, key: &Key, path: &str, node: &Node) -> Read<f64> {
         match node.value {
             Value::Number(value) if key.bound.admits(value) => Ok(value),
             Value::Number(_) => Err(self.out_of_bounds(key, path, &node.span)),
-            ref other => Err(wrong_kind(self.text, key, &node.span, other)),
+            ref other => Err(self.wrong_kind(key, &node.span, other)),
         }
     }
 
-    fn unknown(&self, entry: &Entry) -> Fault {
+    fn unknown(&self, entry: &Entry) -> Reported {
         let slip = self.asked.iter().find(|name| alike(&entry.name, name));
         let advice = match slip {
             Some(name) => format!("`{name}` is"),
@@ -208,7 +242,7 @@ impl<'t> Section<'t> {
         let dot = if self.path.is_empty() { "" } else { "." };
         let key = format!("{}{dot}{}", self.path, excerpt(&entry.name));
         let problem = Problem::Unknown { key, table: self.title.clone(), advice };
-        Fault { span: entry.span.clone(), problem }
+        self.report(entry.span.clone(), problem)
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use crate::device::Hand;
 use crate::simulation::missed::Missed;
 
+use super::faults::Read;
 use super::key::{self, Key};
-use super::problem::Fault;
 use super::section::{Found, Section};
 
 /// What a simulation starts from and what the hand does.
@@ -61,23 +61,28 @@ pub enum HandTorque {
 }
 
 /// Reads `[simulation]` of a servo with this period in s.
-pub fn simulation(
-    mut section: Section<'_>,
-    period: f64,
-    friction: f64,
-) -> Result<Simulation, Fault> {
-    let samples = section.number(&key::SAMPLES)? as usize;
-    let position = section.optional(&key::POSITION)?.unwrap_or(0.0);
-    let velocity = section.optional(&key::VELOCITY)?.unwrap_or(0.0);
-    let torque = torque(&mut section)?;
-    let friction = section.optional(&key::FRICTION)?.unwrap_or(friction);
-    let latency = latency(&mut section, period)?;
-    let missed = section.table(&key::MISSED)?.map_or(Ok(Missed::None), missed)?;
-    section.finish()?;
-    Ok(Simulation { samples, position, velocity, torque, friction, latency, missed })
+pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<Simulation> {
+    let samples = section.whole(&key::SAMPLES);
+    let [position, velocity] =
+        [&key::POSITION, &key::VELOCITY].map(|key| section.number(key));
+    let torque = torque(&mut section);
+    let own_friction = section.optional(&key::FRICTION);
+    let latency = latency(&mut section, period);
+    let missed = section.table(&key::MISSED);
+    section.finish();
+    let missed = missed.and_then(|table| table.map_or(Ok(Missed::None), missed_of));
+    Ok(Simulation {
+        samples: samples?,
+        position: position?,
+        velocity: velocity?,
+        torque: torque?,
+        friction: own_friction?.unwrap_or(friction),
+        latency: latency?,
+        missed: missed?,
+    })
 }
 
-fn latency(section: &mut Section<'_>, period: f64) -> Result<f64, Fault> {
+fn latency(section: &mut Section<'_>, period: f64) -> Read<f64> {
     match section.found(&key::LATENCY)? {
         None => Ok(0.0),
         Some(Found { value, .. }) if value < period => Ok(value),
@@ -92,37 +97,50 @@ fn latency(section: &mut Section<'_>, period: f64) -> Result<f64, Fault> {
     }
 }
 
-fn missed(mut table: Section<'_>) -> Result<Missed, Fault> {
-    let every = table.found(&key::MISSED_EVERY)?;
-    let fraction = table.optional(&key::MISSED_FRACTION)?;
-    let seed = table.optional(&key::MISSED_SEED)?;
-    let missed = match (every, fraction) {
-        (None, None) => return Err(table.missing(&key::MISSED_FRACTION)),
-        (None, Some(fraction)) => Missed::Random { fraction, seed: seed.unwrap_or(0.0) as u64 },
-        (Some(Found { value, .. }), None) if seed.is_none() => Missed::Every(value as u32),
-        (Some(Found { span, .. }), _) => {
-            let reason = "stands beside what chance decides; it is one or the other".to_owned();
-            return Err(table.conflict(&key::MISSED_EVERY, span, reason));
+fn missed_of(mut table: Section<'_>) -> Read<Missed> {
+    let every = table.found(&key::MISSED_EVERY);
+    let fraction = table.optional(&key::MISSED_FRACTION);
+    let seed = table.optional(&key::MISSED_SEED);
+    let (every, fraction, seed) = match (every, fraction, seed) {
+        // What is not there may be a slip of the other, which is said before it is unknown.
+        (Ok(None), Ok(None), Ok(_)) => {
+            let reported = table.missing(&key::MISSED_FRACTION);
+            table.finish();
+            return Err(reported);
+        }
+        (every, fraction, seed) => {
+            table.finish();
+            (every?, fraction?, seed?)
         }
     };
-    table.finish()?;
-    Ok(missed)
+    match (every, fraction) {
+        (Some(Found { value, .. }), None) if seed.is_none() => Ok(Missed::Every(value as u32)),
+        (Some(Found { span, .. }), _) => {
+            let reason = "stands beside what chance decides; it is one or the other".to_owned();
+            Err(table.conflict(&key::MISSED_EVERY, span, reason))
+        }
+        (None, fraction) => Ok(Missed::Random {
+            fraction: fraction.unwrap_or(0.0),
+            seed: seed.unwrap_or(0.0) as u64,
+        }),
+    }
 }
 
 /// Reads `[human]`.
-pub fn hand(mut section: Section<'_>) -> Result<Hand, Fault> {
-    let inertia = section.optional(&key::HUMAN_INERTIA)?.unwrap_or(0.0);
-    let damping = section.optional(&key::HUMAN_DAMPING)?.unwrap_or(0.0);
-    let stiffness = section.optional(&key::HUMAN_STIFFNESS)?.unwrap_or(0.0);
-    section.finish()?;
-    Ok(Hand { inertia, damping, stiffness })
+pub fn hand(mut section: Section<'_>) -> Read<Hand> {
+    let [inertia, damping, stiffness] =
+        [&key::HUMAN_INERTIA, &key::HUMAN_DAMPING, &key::HUMAN_STIFFNESS]
+            .map(|key| section.number(key));
+    section.finish();
+    Ok(Hand { inertia: inertia?, damping: damping?, stiffness: stiffness? })
 }
 
-fn torque(section: &mut Section<'_>) -> Result<HandTorque, Fault> {
-    let held = section.list(&key::TORQUE)?;
-    let file = section.text(&key::TORQUE_FILE)?;
-    let sine = section.table(&key::TORQUE_SINE)?;
-    let pulses = section.table(&key::TORQUE_PULSES)?;
+fn torque(section: &mut Section<'_>) -> Read<HandTorque> {
+    let held = section.list(&key::TORQUE);
+    let file = section.text(&key::TORQUE_FILE);
+    let sine = section.table(&key::TORQUE_SINE);
+    let pulses = section.table(&key::TORQUE_PULSES);
+    let (held, file, sine, pulses) = (held?, file?, sine?, pulses?);
     let given = [
         held.as_ref().map(|found| (key::TORQUE, found.span.clone())),
         file.as_ref().map(|found| (key::TORQUE_FILE, found.span.clone())),
@@ -151,19 +169,22 @@ fn twice() -> String {
     format!("stands beside another torque; the hand has one of {}", names.join(", "))
 }
 
-fn sine_torque(mut table: Section<'_>) -> Result<HandTorque, Fault> {
-    let amplitude = table.number(&key::SINE_AMPLITUDE)?;
-    let omega = table.number(&key::SINE_OMEGA)?;
-    let phase = table.optional(&key::SINE_PHASE)?.unwrap_or(0.0);
-    let held = table.boolean(&key::SINE_HELD)?.unwrap_or(false);
-    table.finish()?;
-    Ok(HandTorque::Sine { amplitude, omega, phase, held })
+fn sine_torque(mut table: Section<'_>) -> Read<HandTorque> {
+    let [amplitude, omega, phase] = [&key::SINE_AMPLITUDE, &key::SINE_OMEGA, &key::SINE_PHASE]
+        .map(|key| table.number(key));
+    let held = table.boolean(&key::SINE_HELD);
+    table.finish();
+    Ok(HandTorque::Sine {
+        amplitude: amplitude?,
+        omega: omega?,
+        phase: phase?,
+        held: held?.unwrap_or(false),
+    })
 }
 
-fn pulses_of_torque(mut table: Section<'_>) -> Result<HandTorque, Fault> {
-    let amplitude = table.number(&key::PULSE_AMPLITUDE)?;
-    let every = table.number(&key::PULSE_EVERY)? as usize;
-    let length = table.number(&key::PULSE_LENGTH)? as usize;
-    table.finish()?;
-    Ok(HandTorque::Pulses { amplitude, every, length })
+fn pulses_of_torque(mut table: Section<'_>) -> Read<HandTorque> {
+    let amplitude = table.number(&key::PULSE_AMPLITUDE);
+    let [every, length] = [&key::PULSE_EVERY, &key::PULSE_LENGTH].map(|key| table.whole(key));
+    table.finish();
+    Ok(HandTorque::Pulses { amplitude: amplitude?, every: every?, length: length? })
 }

@@ -3,20 +3,25 @@
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 
+use super::faults::{Faults, Read};
 use super::problem::{Fault, Problem};
 use super::tree::{Entry, Node, Value};
 
-/// Parses a TOML document; its top is always a table.
-pub fn parse(text: &str) -> Result<Node, Fault> {
-    let document = DeTable::parse(text).map_err(|error| {
+/// Parses a TOML document; its top is always a table. All places that are not TOML are reported.
+pub fn parse(text: &str, faults: &Faults) -> Read<Node> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let reported = errors.iter().map(|error| {
         let span = error.span().unwrap_or(0..0);
         let problem = match error.message() {
             "duplicate key" => Problem::duplicate(text.get(span.clone()).unwrap_or_default()),
             message => Problem::syntax("TOML", message),
         };
-        Fault { span, problem }
-    })?;
-    Ok(Node { span: 0..0, value: table(document.into_inner()) })
+        faults.report(Fault { span, problem })
+    });
+    match reported.last() {
+        Some(reported) => Err(reported),
+        None => Ok(Node { span: 0..0, value: table(document.into_inner()) }),
+    }
 }
 
 fn table(table: DeTable<'_>) -> Value {

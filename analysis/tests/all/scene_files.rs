@@ -306,3 +306,86 @@ proptest! {
         survive(&text);
     }
 }
+
+#[test]
+fn everything_that_is_wrong_is_said_at_once_from_the_top() {
+    let text = r#"nme = "wall"
+[device]
+inertia = -1
+colour = "red"
+[servo]
+perod = 0.001
+[environment]
+type = "wall"
+stifness = 3
+delay = 1
+[simulation]
+samples = 0
+torque_sine = { amplitude = "much" }
+[humans]
+"#;
+    let error = toml(text).unwrap_err();
+    let said = error.to_string();
+    let lines: Vec<&str> = said.lines().collect();
+    for (line, (place, words)) in lines.iter().zip([
+        ("1:1", "`nme`"),
+        ("2:1", "`device.damping` is missing"),
+        ("3:11", "`device.inertia` = -1"),
+        ("4:1", "`device.colour`"),
+        ("6:1", "`servo.perod`"),
+        ("8:8", "\"wall\""),
+        ("9:1", "`environment.stifness`"),
+        ("12:11", "`simulation.samples` = 0"),
+        ("13:15", "`simulation.torque_sine.omega` is missing"),
+        ("13:29", "\"much\" is a string"),
+        ("14:2", "`humans`"),
+    ]) {
+        let is_said = line.starts_with(&format!("scene.toml:{place}: ")) && line.contains(words);
+        assert!(is_said, "{place} {words}: {line}\n{said}");
+    }
+    assert_eq!(lines.len(), 11, "{said}");
+    assert_eq!(error.report(false).matches("error:").count(), 11);
+}
+
+#[test]
+fn all_that_is_not_toml_or_is_there_twice_is_said() {
+    let said = toml("a = \nb = 1\nb = 2\n= 3\n").unwrap_err().to_string();
+    assert_eq!(said.lines().count(), 3, "{said}");
+    let said = json(r#"{"a": 1, "a": 2, "b": {"c": 1, "c": 2}}"#).unwrap_err().to_string();
+    assert_eq!(said.matches("twice").count(), 2, "{said}");
+    let many = (0..1000).map(|i| format!("key{i} = 1\n")).collect::<String>();
+    let said = toml(&many).unwrap_err().to_string();
+    assert!(said.contains("and 984 more problems") && said.lines().count() == 21, "{said}");
+}
+
+#[test]
+fn a_file_without_a_place_is_named_without_one() {
+    let said = |name: &str| file::load(name).unwrap_err().to_string();
+    assert_eq!(said(""), "the name of the file is empty; `-` is standard input");
+    assert!(said("no.toml").starts_with("no.toml: the file cannot be read"), "{}", said("no.toml"));
+}
+
+/// `SCENE_REFERENCE=overwrite` writes it.
+#[test]
+fn the_reference_is_what_the_program_prints() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("SCENE.md");
+    let printed = crate::common::haptic(&["schema", "--reference"]);
+    let printed = String::from_utf8(printed.stdout).unwrap();
+    if std::env::var("SCENE_REFERENCE").is_ok_and(|what| what == "overwrite") {
+        std::fs::write(&path, &printed).unwrap();
+    }
+    assert!(crate::common::read(&path) == printed, "run with SCENE_REFERENCE=overwrite");
+}
+
+#[test]
+fn what_schema_prints_as_an_example_certifies() {
+    for name in file::example::names() {
+        let example = crate::common::haptic(&["schema", "--example", name]).stdout;
+        let judged = crate::common::haptic_reading(&["certify", "-"], &example);
+        assert_eq!(judged.status.code(), Some(0), "{name}: {judged:?}");
+    }
+    let schema = crate::common::answer(&crate::common::haptic(&["schema"]));
+    assert_eq!(schema["properties"]["servo"]["required"][0], "period");
+    let unknown = crate::common::haptic(&["schema", "--example", "wall"]);
+    assert!(crate::common::complaint(unknown).contains("damper-wall"));
+}

@@ -1,0 +1,32 @@
+//! `haptic schema`: what a scene file may say, for editors, for readers, and to start from.
+
+use std::io::{self, Write};
+
+use clap::Args;
+
+use super::{Answer, CommandError};
+use crate::file::{example, reference, schema};
+
+/// Arguments of `haptic schema`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Print a commented scene file that certifies, to start from
+    #[arg(long, value_name = "TYPE", conflicts_with = "reference",
+          value_parser = clap::builder::PossibleValuesParser::new(example::names()))]
+    pub example: Option<String>,
+    /// Print the reference of all keys, as in SCENE.md
+    #[arg(long)]
+    pub reference: bool,
+}
+
+/// Prints the JSON schema, or what is asked for instead.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let text = match &arguments.example {
+        // The command line takes no other name.
+        Some(name) => example::toml(name).unwrap_or_default(),
+        None if arguments.reference => reference::markdown(),
+        None => format!("{:#}\n", schema::json()),
+    };
+    io::stdout().lock().write_all(text.as_bytes())?;
+    Ok(Answer::Yes)
+}

@@ -1,0 +1,141 @@
+//! A commented scene file of each type of environment, and one of a device that is a chain.
+
+use super::key::{self, Key, Presence};
+use super::kind::{self, Kind};
+
+/// The example of a device that is a chain of masses.
+pub const CHAIN: &str = "chain";
+
+/// Optional keys that an example sets all the same, so that it moves and somebody holds it.
+const SET: &[&Key] =
+    &[&key::TORQUE_PULSES, &key::HUMAN_INERTIA, &key::HUMAN_DAMPING, &key::HUMAN_STIFFNESS];
+
+/// Columns of a comment.
+const WIDTH: usize = 96;
+
+/// What there is an example of.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    kind::ALL.iter().map(|kind| kind.name).chain([CHAIN])
+}
+
+/// The example of that name: a scene file that certifies, in which every key that may be left out
+/// is a comment. Nothing where there is no such example.
+pub fn toml(name: &str) -> Option<String> {
+    let is_chain = name == CHAIN;
+    let kind = Kind::find(if is_chain { "damper-wall" } else { name })?;
+    let mut lines = vec![format!("name = \"{name} example\"")];
+    for table in key::ALL.iter().filter(|key| key.table().is_empty() && **key != &key::NAME) {
+        lines.extend(["".to_owned(), format!("# {}", table.doc), format!("[{}]", table.path)]);
+        let keys = || key::ALL.iter().filter(|key| key.table() == table.path).copied();
+        match table.path {
+            "environment" => environment(&mut lines, kind),
+            "device" => device(&mut lines, keys(), is_chain),
+            _ => keys().for_each(|key| line(&mut lines, key, key.example, is_set(key))),
+        }
+    }
+    Some(lines.join("\n") + "\n")
+}
+
+fn is_set(key: &Key) -> bool {
+    key.presence == Presence::Needed || SET.contains(&key)
+}
+
+fn environment(lines: &mut Vec<String>, kind: &Kind) {
+    lines.push(format!("# {}", kind.doc));
+    lines.push(format!("{} = \"{}\"", key::TYPE.name(), kind.name));
+    for key in kind.keys() {
+        let own = kind.values.iter().find(|(own, _)| *own == key);
+        let value = own.map_or(key.example, |(_, value)| value);
+        line(lines, key, value, kind.needed.contains(&key));
+    }
+}
+
+/// `[device]`: a rigid body, or a motor and a handle on a shaft.
+fn device(lines: &mut Vec<String>, keys: impl Iterator<Item = &'static Key>, is_chain: bool) {
+    let of_a_body = [&key::INERTIA, &key::DEVICE_DAMPING];
+    let of_a_chain = [&key::ENCODER, &key::ACTUATOR_LAG];
+    for key in keys.filter(|key| ![&key::MASS, &key::LINK].contains(key)) {
+        let belongs = if is_chain { !of_a_body.contains(&key) } else { !of_a_chain.contains(&key) };
+        // A chain's passivity is not the example's.
+        if belongs && !(is_chain && *key == key::PASSIVITY) {
+            line(lines, key, key.example, is_set(key));
+        }
+    }
+    if is_chain {
+        lines.push(format!("# {}", key::MASS.doc));
+        for [inertia, damping] in [["2.0e-5", "0.02"], ["3.0e-5", "0.005"]] {
+            lines.push(format!("[[{}]]", key::MASS.path));
+            lines.push(set(&key::MASS_INERTIA, inertia));
+            lines.push(set(&key::MASS_DAMPING, damping));
+        }
+        lines.extend([format!("# {}", key::LINK.doc), format!("[[{}]]", key::LINK.path)]);
+        lines.extend([&key::LINK_STIFFNESS, &key::LINK_DAMPING].map(|key| set(key, key.example)));
+    }
+}
+
+/// A key with its words above it; one that is not set is a comment.
+fn line(lines: &mut Vec<String>, key: &Key, value: &str, is_set: bool) {
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" In {}.", key.unit) };
+    let text = format!("{}{unit}", key.doc);
+    lines.extend(textwrap::wrap(&text, WIDTH).iter().map(|line| format!("# {line}")));
+    let comment = if is_set { "" } else { "# " };
+    lines.push(format!("{comment}{} = {value}", key.name()));
+}
+
+fn set(key: &Key, value: &str) -> String {
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" # {}", key.unit) };
+    format!("{} = {value}{unit}", key.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Format, parse};
+
+    /// With the key, which is a comment in it.
+    fn with(text: &str, key: &Key) -> String {
+        let commented = format!("# {} =", key.name());
+        let mut table = "";
+        let lines = text.lines().map(|line| {
+            if line.starts_with('[') {
+                table = line.trim_matches(['[', ']']);
+            }
+            let is_torque = key.name().starts_with("torque") && line.starts_with("torque_pulses");
+            match line.strip_prefix("# ") {
+                Some(rest) if line.starts_with(&commented) && table == key.table() => rest,
+                _ if is_torque => "",
+                _ => line,
+            }
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    }
+
+    #[test]
+    fn every_example_reads_and_certifies() {
+        for name in names() {
+            let text = toml(name).unwrap();
+            let file = parse(name, Format::Toml, &text);
+            let file = file.unwrap_or_else(|error| panic!("{error}\n{text}"));
+            assert!(file.scene.certify().is_ok(), "{name}: {:?}", file.scene.certify());
+            assert!(file.simulation.is_some() && file.hand.is_some());
+        }
+        assert!(toml("wall").is_none());
+    }
+
+    #[test]
+    fn every_key_of_an_example_that_is_a_comment_reads_without_it() {
+        let mut keys = 0;
+        for name in names() {
+            let text = toml(name).unwrap();
+            for key in key::ALL {
+                let more = with(&text, key);
+                if text.contains(&format!("\n# {} =", key.name())) && more != text {
+                    keys += 1;
+                    let read = parse(name, Format::Toml, &more);
+                    assert!(read.is_ok(), "{}: {}\n{more}", key.path, read.unwrap_err());
+                }
+            }
+        }
+        assert!(keys > 60, "{keys}");
+    }
+}

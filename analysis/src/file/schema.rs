@@ -1,0 +1,111 @@
+//! The JSON schema of a scene file, for editors: they complete keys, show what each means, and
+//! underline what is out of bounds. What depends on several keys is left to the reader of the file.
+
+use serde_json::{Map, Value, json};
+
+use super::key::{self, Bound, Form, Key, Presence};
+use super::kind::{self, Kind};
+
+/// The schema, of draft 7, which is the latest that editors of TOML know.
+pub fn json() -> Value {
+    let mut schema = table("");
+    schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
+    schema["title"] = "Haptic scene".into();
+    schema
+}
+
+/// The table of that path.
+fn table(path: &str) -> Value {
+    let keys = key::ALL.iter().filter(|key| key.table() == path).copied();
+    match path {
+        "environment" => json!({ "oneOf": kind::ALL.iter().map(of_kind).collect::<Vec<_>>() }),
+        // Inertia and damping are those of a rigid body, and a chain's masses have their own.
+        "device" => {
+            let mut schema = object(keys, |_| false);
+            let body = [key::INERTIA.name(), key::DEVICE_DAMPING.name()];
+            schema["oneOf"] = json!([{ "required": body }, { "required": [key::MASS.name()] }]);
+            schema
+        }
+        _ => object(keys, |key| key.presence == Presence::Needed),
+    }
+}
+
+fn of_kind(kind: &Kind) -> Value {
+    let is_needed = |key: &Key| *key == key::TYPE || kind.needed.contains(&key);
+    let mut schema = object([&key::TYPE].into_iter().chain(kind.keys()), is_needed);
+    schema["properties"][key::TYPE.name()] = json!({ "const": kind.name });
+    schema["description"] = kind.doc.into();
+    schema
+}
+
+fn object(keys: impl Iterator<Item = &'static Key>, is_needed: impl Fn(&Key) -> bool) -> Value {
+    let (mut properties, mut required) = (Map::new(), Vec::new());
+    for key in keys {
+        properties.insert(key.name().to_owned(), property(key));
+        if is_needed(key) {
+            required.push(key.name());
+        }
+    }
+    json!({
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    })
+}
+
+fn property(key: &Key) -> Value {
+    let mut schema = match key.bound {
+        Bound::Finite => json!({ "type": "number" }),
+        Bound::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Bound::NotNegative => json!({ "type": "number", "minimum": 0 }),
+        Bound::Fraction => json!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 }),
+        Bound::Whole(least, most) => {
+            json!({ "type": "integer", "minimum": least, "maximum": most })
+        }
+        Bound::Other(form, _) => match form {
+            Form::Text => json!({ "type": "string" }),
+            Form::OneOf(words) => json!({ "enum": words }),
+            Form::Boolean => json!({ "type": "boolean" }),
+            Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+            Form::Table => table(key.path),
+            Form::Tables => json!({ "type": "array", "minItems": 1, "items": table(key.path) }),
+        },
+    };
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" In {}.", key.unit) };
+    schema["description"] = format!("{}{unit}", key.doc).into();
+    if let Presence::Default(value) = key.presence {
+        schema["default"] = value.into();
+    }
+    schema
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The schema of a key, by its path.
+    fn of<'s>(schema: &'s Value, path: &str) -> &'s Value {
+        path.split('.').filter(|name| !name.is_empty()).fold(schema, |at, name| {
+            let at = if at["items"].is_object() { &at["items"] } else { at };
+            match at["oneOf"].as_array() {
+                Some(kinds) if at["properties"].is_null() => {
+                    let has = kinds.iter().find(|kind| kind["properties"][name].is_object());
+                    &has.unwrap_or(&Value::Null)["properties"][name]
+                }
+                _ => &at["properties"][name],
+            }
+        })
+    }
+
+    #[test]
+    fn every_key_is_in_it_with_its_words() {
+        let schema = json();
+        for key in key::ALL.iter().filter(|key| **key != &key::TYPE) {
+            let words = of(&schema, key.path)["description"].as_str();
+            assert!(words.is_some_and(|words| words.starts_with(key.doc)), "{}", key.path);
+        }
+        assert_eq!(of(&schema, "servo.period")["exclusiveMinimum"], 0);
+        assert_eq!(of(&schema, "environment.delay")["maximum"], 8);
+    }
+}
