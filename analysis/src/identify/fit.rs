@@ -3,8 +3,9 @@
 use nalgebra::{Complex, Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::IdentifyError;
 use super::response::{Response, images};
+use super::{IdentifyError, LeftOut};
+use crate::quantity::significant;
 
 /// Passes between the fit and the images: each gains the square of what the images do.
 const IMAGE_PASSES: usize = 3;
@@ -73,6 +74,8 @@ pub struct Identification {
     pub misfit: f64,
     /// The responses, in the order of the record.
     pub responses: Vec<Response>,
+    /// Tones of the record that none of this is of, and why.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl Identification {
@@ -97,24 +100,20 @@ pub fn identify(
     period: f64,
     found: usize,
     responses: Vec<Response>,
+    mut left_out: Vec<LeftOut>,
 ) -> Result<Identification, IdentifyError> {
     let stands_out =
         |r: &Response| r.counts >= LEAST_COUNTS && r.deviation < 0.5 * r.impedance().norm();
-    let total = responses.len();
-    let responses: Vec<_> = responses.into_iter().filter(stands_out).collect();
-    let too_few = |reason: &str| IdentifyError::TooFew {
-        found,
-        usable: responses.len(),
-        reason: reason.to_owned(),
-    };
-    if responses.len() < 3 {
-        return Err(too_few(if total > responses.len() {
-            "; the motion of the others is lost in counts and noise: use a larger torque"
-        } else {
-            ""
-        }));
+    let (responses, lost): (Vec<_>, Vec<_>) = responses.into_iter().partition(stands_out);
+    left_out.extend(lost.iter().map(lost_in_noise));
+    let usable = responses.len();
+    let too_few = |left_out: Vec<LeftOut>| IdentifyError::TooFew { found, usable, left_out };
+    if usable < 3 {
+        return Err(too_few(left_out));
     }
-    let (fit, skew, responses) = without_images(period, &responses).ok_or_else(|| too_few(""))?;
+    let Some((fit, skew, responses)) = without_images(period, &responses) else {
+        return Err(too_few(left_out));
+    };
     let disk = disk(&responses);
     let (b, m, turn) =
         (fit.unknowns[DAMPING], fit.unknowns[INERTIA], disk.omega * fit.unknowns[SKEW]);
@@ -126,7 +125,17 @@ pub fn identify(
         bias: b * turn.cos() - m * disk.omega * turn.sin() - b,
         misfit: fit.misfit,
         responses,
+        left_out,
     })
+}
+
+fn lost_in_noise(response: &Response) -> LeftOut {
+    let counts = significant(response.counts, 2);
+    let reason = format!(
+        "its motion of {counts} counts is lost in counts and noise: use a larger torque, or a longer \
+         tone"
+    );
+    LeftOut::new(response.omega, reason)
 }
 
 /// The fit, the skew and the responses without the images of the held torque, which are known once

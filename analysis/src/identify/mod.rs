@@ -23,6 +23,7 @@ use crate::table::TableError;
 pub use fit::{Disk, Estimate, Identification};
 pub use record::Record;
 pub use response::{Correction, Response};
+pub use step::LeftOut;
 
 /// Why a record identifies nothing.
 #[derive(Debug, Error)]
@@ -32,14 +33,14 @@ pub enum IdentifyError {
     Record(#[from] TableError),
     /// No stretch of steady sine.
     #[error(
-        "there is no stretch of at least {} periods of a steady sine in the torque",
-        step::LEAST_PERIODS
+        "there is no stretch of at least {} periods of a steady sine in the torque{}",
+        step::LEAST_PERIODS, reasons(.0)
     )]
-    NoSteps,
+    NoSteps(Vec<LeftOut>),
     /// The fit has more unknowns than equations, or the frequencies are the same.
     #[error(
         "{usable} of {found} sines can be used; a fit of inertia, damping and skew needs at least \
-         3 at different frequencies{reason}"
+         3 at different frequencies{}", reasons(.left_out)
     )]
     TooFew {
         /// Sines found.
@@ -47,19 +48,36 @@ pub enum IdentifyError {
         /// Sines whose motion stands out of the noise.
         usable: usize,
         /// Why the others cannot be used.
-        reason: String,
+        left_out: Vec<LeftOut>,
     },
+}
+
+/// Most tones that an error names.
+const MOST: usize = 6;
+
+/// Why tones were left out, as the end of a sentence.
+fn reasons(left_out: &[LeftOut]) -> String {
+    let named = left_out.iter().take(MOST).map(|tone| format!("; {tone}")).collect::<String>();
+    match left_out.len().saturating_sub(MOST) {
+        0 => named,
+        more => format!("{named}; and {more} more"),
+    }
 }
 
 /// Identifies a rigid device, or at least its passivity, from a record.
 pub fn identify(record: &Record, correction: &Correction) -> Result<Identification, IdentifyError> {
-    let steps = step::steps(record);
+    let (steps, mut left_out) = step::steps(record);
     if steps.is_empty() {
-        return Err(IdentifyError::NoSteps);
+        return Err(IdentifyError::NoSteps(left_out));
     }
-    let responses: Vec<_> =
-        steps.iter().filter_map(|step| response::single_bin(record, step, correction)).collect();
-    fit::identify(record.period, steps.len(), responses)
+    let mut responses = Vec::new();
+    for step in &steps {
+        match response::single_bin(record, step, correction) {
+            Some(response) => responses.push(response),
+            None => left_out.push(LeftOut::new(step.omega, "it has no torque, or nothing moves")),
+        }
+    }
+    fit::identify(record.period, steps.len(), responses, left_out)
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! Stretches of steady sine in a record.
 
+use std::f64::consts::{PI, TAU};
+use std::fmt;
 use std::ops::Range;
 
 use super::record::Record;
+use crate::quantity::significant;
 
 /// Fewest periods of a stretch.
 pub const LEAST_PERIODS: usize = 4;
@@ -22,19 +25,53 @@ pub struct Step {
     pub omega: f64,
 }
 
-/// The stretches of a record: as its column `frequency` says, or else where the torque crosses
-/// zero at steady intervals.
-pub fn steps(record: &Record) -> Vec<Step> {
-    let steps = match &record.frequency {
-        Some(frequency) => labelled(frequency),
+/// A tone that is not used, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Its frequency in Hz.
+    pub frequency: f64,
+    /// Why it is not used.
+    pub reason: String,
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frequency, reason } = self;
+        write!(f, "the tone of {} Hz is left out: {reason}", significant(*frequency, 4))
+    }
+}
+
+impl LeftOut {
+    /// A tone of that angular frequency in rad/s.
+    pub fn new(omega: f64, reason: impl Into<String>) -> Self {
+        Self { frequency: omega / TAU, reason: reason.into() }
+    }
+}
+
+/// The stretches of a record, as its column `frequency` says, or else where the torque crosses
+/// zero at steady intervals; and those that are none.
+pub fn steps(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
+    let (steps, mut left_out) = match &record.frequency {
+        Some(frequency) => (labelled(frequency), Vec::new()),
         None => crossings(record),
     };
-    let is_long = |step: &Step| {
-        let periods = step.omega * record.period * step.rows.len() as f64 / std::f64::consts::TAU;
-        // Above half the sampling rate a sine looks like a slower one.
-        periods >= LEAST_PERIODS as f64 && step.omega * record.period < std::f64::consts::PI
-    };
-    steps.into_iter().filter(is_long).collect()
+    let (used, others): (Vec<Step>, Vec<Step>) =
+        steps.into_iter().partition(|step| why_not(step, record.period).is_none());
+    let reasons = others.iter().filter_map(|step| why_not(step, record.period));
+    left_out.extend(others.iter().zip(reasons).map(|(step, why)| LeftOut::new(step.omega, why)));
+    (used, left_out)
+}
+
+/// Why a stretch cannot be used, if it cannot.
+fn why_not(step: &Step, period: f64) -> Option<String> {
+    let periods = step.omega * period * step.rows.len() as f64 / TAU;
+    // Above half the sampling rate a sine looks like a slower one.
+    if step.omega * period >= PI {
+        return Some(format!("half the sampling rate is {} Hz", significant(0.5 / period, 4)));
+    }
+    (periods < LEAST_PERIODS as f64).then(|| {
+        format!("{} of its periods are fewer than {LEAST_PERIODS}", significant(periods, 2))
+    })
 }
 
 fn labelled(frequency: &[f64]) -> Vec<Step> {
@@ -44,7 +81,7 @@ fn labelled(frequency: &[f64]) -> Vec<Step> {
         let rows = start..start + run.len();
         start = rows.end;
         if run[0] > 0.0 {
-            steps.push(Step { rows, omega: std::f64::consts::TAU * run[0] });
+            steps.push(Step { rows, omega: TAU * run[0] });
         }
     }
     steps
@@ -52,12 +89,14 @@ fn labelled(frequency: &[f64]) -> Vec<Step> {
 
 /// By the rising zero crossings of the torque, interpolated between samples. The frequency's error
 /// turns the phases of torque and motion by the same amount, and so does no harm.
-fn crossings(record: &Record) -> Vec<Step> {
+///
+/// A stretch whose frequency changes slowly is a sweep, of which no part is a steady sine.
+fn crossings(record: &Record) -> (Vec<Step>, Vec<LeftOut>) {
     let rising =
         record.torque.windows(2).enumerate().filter(|(_, pair)| pair[0] <= 0.0 && pair[1] > 0.0);
     let times: Vec<f64> =
         rising.map(|(row, pair)| row as f64 - pair[0] / (pair[1] - pair[0])).collect();
-    let mut steps = Vec::new();
+    let (mut steps, mut sweeps) = (Vec::new(), Vec::new());
     let mut first = 0;
     for last in 1..times.len() {
         let length = times[last] - times[last - 1];
@@ -69,9 +108,31 @@ fn crossings(record: &Record) -> Vec<Step> {
         if last > first + 1 {
             let period = (times[last] - times[first]) / (last - first) as f64;
             let rows = times[first].ceil() as usize..times[last].ceil() as usize;
-            steps.push(Step { rows, omega: std::f64::consts::TAU / (period * record.period) });
+            let step = Step { rows, omega: TAU / (period * record.period) };
+            match sweep(&times[first..=last]) {
+                Some(ratio) => sweeps.push(LeftOut::new(step.omega, sweeping(ratio))),
+                None => steps.push(step),
+            }
         }
         first = last;
     }
-    steps
+    (steps, sweeps)
+}
+
+/// By which factor the frequency changes from the first half of a stretch's crossings to the second,
+/// if it does.
+fn sweep(times: &[f64]) -> Option<f64> {
+    let middle = times.len() / 2;
+    let mean = |times: &[f64]| Some((times.last()? - times.first()?) / (times.len() - 1) as f64);
+    let (before, after) = (mean(&times[..=middle])?, mean(&times[middle..])?);
+    let is_steady = (after - before).abs() <= STEADY * before.max(SHORT);
+    (!is_steady).then_some(before / after)
+}
+
+fn sweeping(ratio: f64) -> String {
+    format!(
+        "its frequency changes by a factor of {} from its first half to its second; a sweep (chirp) is no steady sine. \
+         Record one frequency after the other",
+        significant(ratio, 3)
+    )
 }

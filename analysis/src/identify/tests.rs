@@ -100,7 +100,7 @@ fn steps_are_found_without_labels() {
     let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.02, ..SENSING } };
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
     let blind = Record { frequency: None, ..record.clone() };
-    let (labelled, found) = (step::steps(&record), step::steps(&blind));
+    let (labelled, found) = (step::steps(&record).0, step::steps(&blind).0);
     assert_eq!(found.len(), labelled.len());
     for (a, b) in labelled.iter().zip(&found) {
         assert!((a.omega / b.omega - 1.0).abs() < 2e-3, "{a:?} {b:?}");
@@ -120,7 +120,7 @@ fn too_little_motion_is_said_to_be_so() {
         Record { torque: vec![0.0; 100], counts: vec![0.0; 100], period: 1e-3, frequency: None };
     assert!(matches!(
         identify(&still, &Correction::of_encoder(4096.0)),
-        Err(IdentifyError::NoSteps)
+        Err(IdentifyError::NoSteps(_))
     ));
 }
 
@@ -150,4 +150,44 @@ fn malformed_rows_are_named() {
     assert!(error("time,torque,counts\n0,0,0\n").contains("1 rows"));
     assert!(error("time,torque,counts\n1,0,0\n1,0,0\n").contains("x.csv:3: column 1"));
     assert!(error("").contains("no column"));
+}
+
+/// A paddle's counts under a torque, both over time at 1 kHz.
+fn moved(torque: impl Fn(f64) -> f64, seconds: f64) -> Record {
+    let torque: Vec<f64> =
+        (0..(1e3 * seconds) as usize).map(|row| torque(1e-3 * row as f64)).collect();
+    let (mut speed, mut angle, mut counts) = (0.0, 0.0, Vec::new());
+    for held in &torque {
+        counts.push(f64::round(angle * 61_440.0 / std::f64::consts::TAU));
+        speed += 1e-3 * (held - PADDLE.damping * speed) / PADDLE.inertia;
+        angle += 1e-3 * speed;
+    }
+    Record { period: 1e-3, torque, counts, frequency: None }
+}
+
+#[test]
+fn a_sweep_is_called_one() {
+    use std::f64::consts::TAU;
+    let refused = |torque: &dyn Fn(f64) -> f64| {
+        let record = moved(torque, 20.0);
+        identify(&record, &Correction::of_encoder(61_440.0)).unwrap_err().to_string()
+    };
+    // From 1 to 21 Hz: slowly enough that each period is like the one before.
+    let said = refused(&|t| (TAU * (t + 0.5 * t * t)).sin());
+    assert!(said.contains("a sweep (chirp) is no steady sine"), "{said}");
+    assert!(!said.contains("larger torque"), "{said}");
+}
+
+#[test]
+fn a_tone_that_is_left_out_is_named_with_the_reason() {
+    let rig = Rig { device: PADDLE, sensing: SENSING };
+    let mut tones = sines(PADDLE, LOW_TO_HIGH, 0.02);
+    tones[2].duration = 1.0;
+    tones[7].amplitude *= 1e-4;
+    let record = rig.measure(&tones).unwrap();
+    let found = identify(&record, &Correction::of_encoder(61_440.0)).unwrap();
+    let said: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert_eq!(said[0], "the tone of 2 Hz is left out: 2 of its periods are fewer than 4");
+    assert!(said[1].starts_with("the tone of 64 Hz") && said[1].contains("counts"), "{said:?}");
 }

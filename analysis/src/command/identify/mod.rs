@@ -17,8 +17,8 @@ use target::Origin;
 /// Arguments of `haptic identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Record of stepped sines: CSV with the columns time (s), torque (N m), counts, and perhaps
-    /// frequency (Hz); `-` is standard input.
+    /// Record of stepped sines: CSV with the columns `time` in s, `torque` in N m, `counts`, and
+    /// perhaps `frequency` in Hz; `-` is standard input.
     /// With --target a file with a device table, which may be a scene
     #[arg(value_name = "FILE", required_unless_present = "target")]
     pub file: Option<PathBuf>,
@@ -195,7 +195,7 @@ fn report<'a>(
 
 /// What somebody must know before relying on the numbers.
 fn notes(found: &Identification) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
     if found.skew.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, that makes the damping {} \
