@@ -61,6 +61,7 @@ pub mod number;
 pub mod progress;
 pub mod quantity;
 pub mod report;
+pub mod terminal;
 pub mod tradeoff;
 
 /// The scene file of the README, as this library reads it.

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
-    analysis::command::execute(analysis::command::Arguments::parse())
+    analysis::command::execute(analysis::command::Arguments::of_program())
 }

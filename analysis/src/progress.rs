@@ -2,13 +2,15 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::terminal;
+
 /// Steps between two updates of the bar; a step is far shorter than a glance.
 const STRIDE: u64 = 64;
 
 /// A bar over so many steps, with a word for what they are. It draws nothing unless standard error
 /// is a terminal.
 pub fn bar(steps: u64, what: &str) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr_with_hz(10));
+    let bar = ProgressBar::with_draw_target(Some(steps), target());
     // The template is a constant; were it wrong, the plain bar would do.
     if let Ok(style) = ProgressStyle::with_template("{msg:>18} [{bar:40}] {pos}/{len} {eta}") {
         bar.set_style(style.progress_chars("=> "));
@@ -17,9 +19,18 @@ pub fn bar(steps: u64, what: &str) -> ProgressBar {
     bar
 }
 
+/// Standard error, unless its terminal cannot move its cursor back.
+fn target() -> ProgressDrawTarget {
+    if terminal::is_dumb() {
+        ProgressDrawTarget::hidden()
+    } else {
+        ProgressDrawTarget::stderr_with_hz(10)
+    }
+}
+
 /// A moving sign for work that has no steps to count.
 pub fn spinner(what: &str) -> ProgressBar {
-    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+    let spinner = ProgressBar::with_draw_target(None, target());
     spinner.set_message(what.to_owned());
     spinner.enable_steady_tick(std::time::Duration::from_millis(120));
     spinner

@@ -8,6 +8,7 @@ use super::common::{Arithmetic, ForWhom, SceneArgument};
 use super::{Answer, CommandError};
 use crate::batch;
 use crate::quantity::significant;
+use crate::terminal;
 use crate::verdict::{Enclosure, Report, Verdict};
 
 /// Arguments of `haptic certify`.
@@ -36,9 +37,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         return Ok(Answer::Yes);
     }
     let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
-    arguments.answer.print(&report, text)?;
+    let width = terminal::output_width();
+    arguments.answer.print(&report, |report| terminal::wrapped(&text(report), width, VALUES))?;
     Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
 }
+
+/// Column at which values begin.
+const VALUES: usize = 19;
 
 /// The report for a person.
 pub fn text(report: &Report) -> String {
@@ -52,7 +57,7 @@ pub fn text(report: &Report) -> String {
     if let Some(bound) = report.bound {
         rows.push(("alpha, bound", enclosure(bound)));
     }
-    rows.push(("delta", format!("{} N m s/rad", report.delta)));
+    rows.push(("delta", format!("{} N m s/rad", significant(report.delta, 12))));
     if let Some(margin) = report.margin {
         rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
     }

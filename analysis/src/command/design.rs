@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use firmware::scene::Coupling;
 use serde::Serialize;
 
 use super::common::{ForWhom, folder, json};
@@ -11,6 +12,7 @@ use super::{Answer, CommandError};
 use crate::design::{self, Choice, Quantity, SAMPLES, Terms};
 use crate::file::simulation::HandTorque;
 use crate::file::{self, SceneFile, write};
+use crate::quantity::significant;
 
 /// Arguments of `haptic design`.
 #[derive(Debug, Args)]
@@ -22,7 +24,8 @@ pub struct Arguments {
     #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part,
           allow_negative_numbers = true)]
     pub safety: f64,
-    /// Keep the coupling of the scene instead of the standard one, 2 delta / T
+    /// Keep the coupling of the scene instead of the standard one, 2 delta / T, with which a device is
+    /// designed in any case
     #[arg(long, global = true)]
     pub keep_coupling: bool,
     /// Write the scenes that certify into this folder instead of standard output
@@ -88,6 +91,8 @@ struct Report {
     value: Option<f64>,
     limited: bool,
     possible: bool,
+    /// What was changed in the scenes besides.
+    notes: Vec<String>,
     /// The scenes that certify, as TOML.
     scenes: Vec<String>,
 }
@@ -106,8 +111,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let terms = Terms { safety: arguments.safety, coupling };
     match &arguments.question {
         Question::Border { first, second, file, points } => {
-            let scene = file::load(file)?.scene;
-            let points = design::border(&scene, [*first, *second], *points as usize, &terms);
+            let file = file::load(file)?;
+            let points = design::border(&file.scene, [*first, *second], *points as usize, &terms);
+            let prepared =
+                SceneFile { scene: design::prepared(&file.scene, &terms), ..file.clone() };
+            for note in changed(&file, &prepared) {
+                writeln!(io::stderr(), "note: {note}")?;
+            }
             border(arguments, [*first, *second], &points)
         }
         Question::Largest { quantity, file } => {
@@ -123,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
                     return Err(CommandError::NoSuchQuantity { scene: file.name, quantity: name });
                 }
             };
-            answer(arguments, &sought, &found)
+            answer(arguments, &sought, &found, &[file])
         }
         Question::Device { files } => {
             let files = arguments.load_all(files)?;
@@ -134,12 +144,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
                 let note = Some("of the chain, this damper alone was changed");
                 Sought { which: "least", name: "damping of the motor's mass", unit, note }
             };
-            answer(arguments, &sought, &design::device(&files, &terms))
+            answer(arguments, &sought, &design::device(&files, &terms), &files)
         }
         Question::Period { files } => {
             let files = arguments.load_all(files)?;
             let sought = Sought { which: "longest", name: "period", unit: "s", note: None };
-            answer(arguments, &sought, &design::period(&files, &terms))
+            answer(arguments, &sought, &design::period(&files, &terms), &files)
         }
     }
 }
@@ -190,7 +200,7 @@ impl Sought {
             design::Answer::Limit(value, _) => match (*unit, *value) {
                 (SAMPLES, 1.0) => "1 sample".to_owned(),
                 (SAMPLES, samples) => format!("{samples} {SAMPLES}"),
-                (unit, value) => format!("{value:?} {unit}"),
+                (unit, value) => last_that_certifies(value, unit),
             },
             design::Answer::Unlimited(_) => "any value certifies".to_owned(),
             _ => "no value certifies".to_owned(),
@@ -200,12 +210,54 @@ impl Sought {
     }
 }
 
+/// Digits of an answer for a person.
+const DIGITS: usize = 6;
+
+/// A limit in few digits, and, where those are beyond it, the number itself.
+fn last_that_certifies(value: f64, unit: &str) -> String {
+    let short = significant(value, DIGITS);
+    if short.parse() == Ok(value) {
+        format!("{short} {unit}")
+    } else {
+        format!("{short} {unit} (the last number that certifies is {value:?})")
+    }
+}
+
+/// What a design has changed of a scene besides the number that was asked for, as sentences.
+fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
+    let stiffness = |file: &SceneFile| match file.scene.coupling {
+        Coupling::Rigid => None,
+        Coupling::Spring { stiffness } => Some(stiffness),
+    };
+    let words = |stiffness: Option<f64>| {
+        stiffness
+            .map_or("a rigid one".to_owned(), |k| format!("{} N m/rad", significant(k, DIGITS)))
+    };
+    let (before, after) = (words(stiffness(file)), words(stiffness(designed)));
+    let mut notes = Vec::new();
+    if before != after {
+        notes.push(format!(
+            "{}: the coupling is {after}, the standard 2 delta/T; the file has {before}",
+            file.name
+        ));
+    }
+    let longest = |file: &SceneFile| file.scene.timing.worst_period;
+    if let (Some(before), Some(after)) = (longest(file), longest(designed))
+        && before != after
+    {
+        let (before, after) = (significant(before, DIGITS), significant(after, DIGITS));
+        notes.push(format!("{}: worst_period is {after} s; the file has {before} s", file.name));
+    }
+    notes
+}
+
 /// Prints the answer, and the scenes as files that can be certified as they are: the answer is a
 /// comment in them. Several scenes are no one file, and go into a folder.
 fn answer(
     arguments: &Arguments,
     sought: &Sought,
     found: &design::Answer<Vec<SceneFile>>,
+    asked: &[SceneFile],
 ) -> Result<Answer, CommandError> {
     let (value, files) = match found {
         design::Answer::Limit(value, files) => (Some(*value), files.as_slice()),
@@ -213,8 +265,16 @@ fn answer(
         design::Answer::Nothing | design::Answer::NoSuchNumber => (None, [].as_slice()),
     };
     let comment = sought.comment(found);
-    let scenes: Vec<String> =
-        files.iter().map(|file| format!("{comment}{}", write::toml(file))).collect();
+    let notes: Vec<Vec<String>> =
+        asked.iter().zip(files).map(|(before, after)| changed(before, after)).collect();
+    let remarks =
+        |notes: &[String]| notes.iter().map(|note| format!("# note: {note}\n")).collect::<String>();
+    let scenes: Vec<String> = files
+        .iter()
+        .zip(&notes)
+        .map(|(file, notes)| format!("{comment}{}{}", remarks(notes), write::toml(file)))
+        .collect();
+    let notes = notes.concat();
     let possible = !scenes.is_empty();
     if let Some(folder) = &arguments.output {
         save(folder, &scenes)?;
@@ -222,12 +282,13 @@ fn answer(
     let mut out = io::stdout().lock();
     if arguments.answer.json {
         let Sought { name: quantity, unit, .. } = *sought;
-        let report = Report { quantity, unit, value, limited: value.is_some(), possible, scenes };
+        let report =
+            Report { quantity, unit, value, limited: value.is_some(), possible, notes, scenes };
         json(&mut out, &report)?;
     } else if let ([scene], None) = (&scenes[..], &arguments.output) {
         write!(out, "{scene}")?;
     } else {
-        write!(out, "{comment}")?;
+        write!(out, "{comment}{}", remarks(&notes))?;
         if scenes.len() > 1 && arguments.output.is_none() {
             writeln!(out, "# the {} scenes are written with --output FOLDER", scenes.len())?;
         }

@@ -26,7 +26,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use firmware::certificate::Rejection;
 use thiserror::Error;
 
@@ -35,25 +35,40 @@ use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
 use crate::link::{Address, LinkError};
+use crate::quantity::significant;
 use crate::recorded::RecordedError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
 use crate::table::TableError;
+use crate::terminal;
 use crate::toolchain::{Board, BuildError, NoBoard, SetupError};
 use crate::twin::TwinError;
 use crate::virtual_board::VirtualBoardError;
 
 /// Certifies haptic scenes, runs them, and shows what they do.
 #[derive(Debug, Parser)]
-#[command(
-    name = "haptic",
-    version,
-    after_help = "Exit status: 0 yes, 1 the answer is no, 2 the question was bad."
-)]
+#[command(name = "haptic", version)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// What every help ends with.
+const EXIT_STATUS: &str = "\
+Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, different, or not possible; \
+2 invalid input or failure";
+
+impl Arguments {
+    /// Those that the program was started with; says what is wrong with them, and ends it.
+    pub fn of_program() -> Self {
+        let matches = with_exit_status(Self::command()).get_matches();
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+}
+
+fn with_exit_status(command: clap::Command) -> clap::Command {
+    command.after_help(EXIT_STATUS).mut_subcommands(with_exit_status)
 }
 
 /// What to do.
@@ -235,6 +250,20 @@ pub enum CommandError {
     /// A scene that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A simulated device that leaves; exit status 1, for what it does is the answer.
+    #[error(
+        "the motion runs away: from sample {sample} on, at {} s, the device is more than {} rad from \
+         its zero; the loop is most likely not stable (`haptic stability`)",
+        significant(*.time, 6), significant(*.farthest, 6)
+    )]
+    RanAway {
+        /// The angle in rad that it has left behind.
+        farthest: f64,
+        /// The first sample, counted from 0, that is farther.
+        sample: usize,
+        /// When that is in s.
+        time: f64,
+    },
     /// A case of failure could not be shown.
     #[error(transparent)]
     Failure(#[from] crate::failures::FailureError),
@@ -250,11 +279,8 @@ pub enum CommandError {
         quantity: &'static str,
     },
     /// A parameter was given two values.
-    #[error("{name} is given twice")]
-    Twice {
-        /// Its name.
-        name: &'static str,
-    },
+    #[error(transparent)]
+    Twice(#[from] crate::link::change::Twice),
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),
@@ -284,6 +310,7 @@ impl CommandError {
             self,
             Self::Refused(_)
                 | Self::LeftOut { .. }
+                | Self::RanAway { .. }
                 | Self::Simulation(SimulationError::Overflow { .. })
         )
     }
@@ -343,10 +370,10 @@ fn seconds(text: &str) -> Result<Duration, String> {
 fn complain(error: &CommandError) {
     use std::io::{IsTerminal, Write};
     let stderr = io::stderr();
-    let colour = stderr.is_terminal();
+    let (colour, width) = (terminal::has_colour(stderr.is_terminal()), terminal::error_width());
     let text = match error {
-        CommandError::File(error) => error.report(colour),
-        other => format!("error: {other}"),
+        CommandError::File(error) => error.report_within(colour, width),
+        other => terminal::wrapped(&format!("error: {other}"), width, 7),
     };
     // Nobody is left to be told if this fails.
     let _ = writeln!(stderr.lock(), "{text}");

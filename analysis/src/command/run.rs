@@ -98,7 +98,8 @@ impl From<FormatArgument> for NumberFormat {
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file
+    /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file, whose
+    /// [human] holds the device, and whose [simulation] is for `haptic simulate`
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to
@@ -122,7 +123,8 @@ pub struct Arguments {
     /// Ticks to run; a recording ends with its last row
     #[arg(long, value_name = "N")]
     pub ticks: Option<usize>,
-    /// Print a row a tick: tick,count,angle,torque,code,limit
+    /// Print a row a tick: tick,count,angle,torque,code,limit; the torque is the coupling's, and the
+    /// motor applies its negative
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
@@ -282,9 +284,35 @@ fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
         FormatArgument::F32 => controller::<_, f32>(&certified, &transducers)?,
         FormatArgument::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
+    for note in unused(&file, arguments.replay.is_some()) {
+        writeln!(io::stderr(), "note: {note}")?;
+    }
     let script = script_of(&file);
     let (name, scene) = (file.name, file.scene);
     Ok(Question { name, scene, transducers, script, controller, program: None })
+}
+
+/// What a run does not use of a scene file, as sentences: the servo runs on a rigid device that a
+/// hand takes through its script, or on recorded counts.
+fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    if is_replay {
+        if file.hand.is_some() {
+            notes.push("[human] is not used: the counts are those of the recording".to_owned());
+        }
+    } else if !file.chain.is_rigid() || file.chain.actuator_lag() > 0.0 {
+        let rigid = "the device runs as one rigid body, with all of its inertia and damping";
+        notes.push(format!("{rigid}; `haptic simulate` has its masses and its amplifier's lag"));
+    }
+    if file.simulation.is_some() {
+        let instead = if is_replay {
+            "the counts are those of the recording".to_owned()
+        } else {
+            format!("here {}", script_of(file).story)
+        };
+        notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
+    }
+    notes
 }
 
 /// What was built for a run.

@@ -10,15 +10,19 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::event::{self, Event as Input};
 
 use super::{Answer, CommandError, seconds};
 use crate::link::{Address, Link};
+use crate::scope::control::Action;
 use crate::scope::feed::Feed;
 use crate::scope::record::Recorder;
 use crate::scope::{Scope, view};
+use crate::terminal;
 
-/// Arguments of `haptic scope`.
+/// Arguments of `haptic scope`. In the view t opens a line for new parameters (stiffness = 20), A arms,
+/// d disarms and q quits. Torque is the coupling torque, as in every other trace; the motor applies
+/// its negative.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
@@ -50,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let to_output = match &arguments.csv {
         Some(path) => path == Path::new("-"),
         // Rows are what a pipe or a file can use.
-        None => !io::stdout().is_terminal(),
+        None => !io::stdout().is_terminal() || terminal::is_dumb(),
     };
     let mut recorder = match (&arguments.csv, to_output) {
         (_, true) => Some(Recorder::new(Box::new(io::stdout()))),
@@ -64,11 +68,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         feed: Feed::start(link, every),
         end: arguments.duration.map(|duration| Instant::now() + duration),
     };
-    if to_output || !io::stdout().is_terminal() {
+    if to_output || !io::stdout().is_terminal() || terminal::is_dumb() {
         session.record(recorder.as_mut())?;
     } else {
-        let mut terminal = ratatui::try_init()?;
-        let shown = session.show(&mut terminal, recorder.as_mut());
+        let mut screen = ratatui::try_init()?;
+        let shown = session.show(&mut screen, recorder.as_mut());
         ratatui::try_restore()?;
         shown?;
     }
@@ -133,29 +137,26 @@ impl Session {
     /// With a view.
     fn show(
         &mut self,
-        terminal: &mut DefaultTerminal,
+        screen: &mut DefaultTerminal,
         mut recorder: Option<&mut Recorder>,
     ) -> Result<(), CommandError> {
         while !self.is_over() {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
-            terminal.draw(|frame| view::draw(frame, &self.scope))?;
+            screen.draw(|frame| {
+                view::draw(frame, &self.scope);
+                if !terminal::has_colour(true) {
+                    view::without_colour(frame);
+                }
+            })?;
             while event::poll(Duration::ZERO)? {
-                if is_enough(&event::read()?) {
-                    return Ok(());
+                let Input::Key(key) = event::read()? else { continue };
+                match self.scope.control.press(key) {
+                    Action::None => {}
+                    Action::Request(request) => self.feed.request(request),
+                    Action::Quit => return Ok(()),
                 }
             }
         }
         Ok(())
     }
-}
-
-fn is_enough(input: &Input) -> bool {
-    let Input::Key(key) = input else { return false };
-    let interrupted = key.modifiers.contains(KeyModifiers::CONTROL);
-    key.kind == KeyEventKind::Press
-        && match key.code {
-            KeyCode::Char('q') | KeyCode::Esc => true,
-            KeyCode::Char('c') => interrupted,
-            _ => false,
-        }
 }

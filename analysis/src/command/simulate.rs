@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::common::{ForWhom, SceneArgument, Steps, json};
 use super::{Answer, CommandError};
-use crate::quantity::significant;
+use crate::quantity::{rounded, significant};
 use crate::simulation::served::Served;
 use crate::simulation::{Experiment, Simulator, Stride, Trajectory, simulate};
 
@@ -42,14 +42,17 @@ struct Row {
     limit: Served,
 }
 
+/// Angle in rad from zero beyond which no device goes: 160 000 turns. What is there has run away.
+const FARTHEST: f64 = 1e6;
+
 /// Simulates the scene, certified or not. Of a motion that grows beyond the range of numbers, what
-/// comes before is printed, and the answer is no.
+/// comes before is printed; the answer is no then, and where the device runs away.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let experiment = Experiment::of(&file, arguments.scene.folder())?;
     let stride = arguments.steps.stride();
     let mut out = io::BufWriter::new(io::stdout().lock());
-    let computed = if arguments.csv {
+    let (computed, far) = if arguments.csv {
         rows(&experiment, stride, &mut out)?
     } else {
         let trajectory = simulate(&experiment, stride)?;
@@ -58,34 +61,52 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         } else {
             write!(out, "{}", text(&file.name, experiment.scene.timing.period, &trajectory))?;
         }
-        trajectory.samples()
+        (trajectory.samples(), far(&trajectory))
     };
     out.flush()?;
     experiment.completed(computed)?;
-    Ok(Answer::Yes)
+    match far {
+        None => Ok(Answer::Yes),
+        Some(sample) => {
+            let time = sample as f64 * experiment.scene.timing.period;
+            Err(CommandError::RanAway { farthest: FARTHEST, sample, time })
+        }
+    }
 }
 
-/// Writes the samples as they come, in constant memory; how many there were.
-fn rows(experiment: &Experiment, stride: Stride, out: impl Write) -> Result<usize, CommandError> {
+/// The first sample at which the device has run away.
+fn far(trajectory: &Trajectory) -> Option<usize> {
+    trajectory.position.iter().position(|position| position.abs() > FARTHEST)
+}
+
+/// Writes the samples as they come, in constant memory; how many there were, and at which the device
+/// has run away.
+fn rows(
+    experiment: &Experiment,
+    stride: Stride,
+    out: impl Write,
+) -> Result<(usize, Option<usize>), CommandError> {
     let mut writer = csv::Writer::from_writer(out);
     let mut simulator = Simulator::new(experiment, stride)?;
-    let mut done = 0;
+    let (mut done, mut ran_away) = (0, None);
     while done < experiment.samples {
         let wanted = CHUNK.min(experiment.samples - done);
         let mut chunk = Trajectory::of_length(wanted);
         simulator.fill(&mut chunk);
         for (i, &position) in chunk.position.iter().enumerate() {
-            let time = (done + i) as f64 * experiment.scene.timing.period;
+            // Without the last digits, which are the product's rounding.
+            let time = rounded((done + i) as f64 * experiment.scene.timing.period, 15);
             let (velocity, torque, limit) = (chunk.velocity[i], chunk.torque[i], chunk.limit[i]);
             writer.serialize(Row { time, position, velocity, torque, limit }).map_err(written)?;
         }
+        ran_away = ran_away.or(far(&chunk).map(|sample| done + sample));
         done += chunk.samples();
         if chunk.samples() < wanted {
             break;
         }
     }
     writer.flush()?;
-    Ok(done)
+    Ok((done, ran_away))
 }
 
 /// Numbers always fit a line of CSV: what fails is the writing.

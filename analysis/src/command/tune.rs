@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::tuning::{self, TUNABLE};
 use firmware::wire::message::{Changes, Outcome, Running, Status};
 use serde::Serialize;
 
 use super::common::{ForWhom, json};
 use super::{Answer, CommandError};
+use crate::link::change::{change, collect};
 use crate::link::{Address, Link};
 use crate::scope::words;
 
@@ -32,20 +32,6 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: ForWhom,
-}
-
-/// `stiffness=30`
-fn change(text: &str) -> Result<(Parameter, f64), String> {
-    let (name, value) =
-        text.split_once('=').ok_or_else(|| format!("`{text}` is no change: NAME=VALUE"))?;
-    let parameter = tuning::parameter(name).ok_or_else(|| {
-        let names: Vec<&str> = TUNABLE.iter().map(|(name, _)| *name).collect();
-        format!("there is no parameter `{name}` to tune; there are {}", names.join(", "))
-    })?;
-    match value.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok((parameter, value)),
-        _ => Err(format!("`{value}` is no finite number")),
-    }
 }
 
 /// The answer as JSON.
@@ -86,17 +72,6 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         print(&link, refused, &running, &status)?;
     }
     Ok(if refused.is_none() { Answer::Yes } else { Answer::No })
-}
-
-/// The changes as the wire has them.
-fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, CommandError> {
-    for (i, (parameter, _)) in changes.iter().enumerate() {
-        if changes[..i].iter().any(|(earlier, _)| earlier == parameter) {
-            return Err(CommandError::Twice { name: words::name(*parameter) });
-        }
-    }
-    // More than there are parameters would have one of them twice.
-    Ok(changes.iter().copied().collect())
 }
 
 /// Each step only if the one before it was done.
@@ -169,31 +144,5 @@ fn report<'a>(
         thinned: status.thinned,
         discarded: status.discarded.total(),
         stack_left: status.stack_left,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_change_is_a_name_and_a_number() {
-        assert_eq!(change("stiffness=30"), Ok((Parameter::Stiffness, 30.0)));
-        assert_eq!(change("coupling.stiffness=4e1"), Ok((Parameter::CouplingStiffness, 40.0)));
-        for (text, part) in [
-            ("stiffness", "NAME=VALUE"),
-            ("stiffnes=3", "there are stiffness, damping"),
-            ("damping=soft", "no finite number"),
-            ("damping=inf", "no finite number"),
-        ] {
-            let refused = change(text).unwrap_err();
-            assert!(refused.contains(part), "{refused}");
-        }
-    }
-
-    #[test]
-    fn a_parameter_given_twice_is_a_bad_question() {
-        let twice = [(Parameter::Damping, 0.1), (Parameter::Damping, 0.1)];
-        assert!(matches!(collect(&twice), Err(CommandError::Twice { name: "damping" })));
     }
 }

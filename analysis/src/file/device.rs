@@ -94,10 +94,7 @@ fn rigid(section: &mut Section<'_>) -> Read<Chain> {
     chain(section, &key::DEVICE, section.span(), vec![mass], Vec::new())
 }
 
-fn masses_and_links(
-    section: &mut Section<'_>,
-    masses: Found<Vec<Section<'_>>>,
-) -> Read<Chain> {
+fn masses_and_links(section: &mut Section<'_>, masses: Found<Vec<Section<'_>>>) -> Read<Chain> {
     let alone = [&key::INERTIA, &key::DEVICE_DAMPING].map(|key| {
         let Some(Found { span, .. }) = section.found(key)? else { return Ok(()) };
         let reason = format!("stands beside [[{}]], which has its own", key::MASS.path);
@@ -132,8 +129,8 @@ fn mass(mut section: Section<'_>) -> Read<Mass> {
 
 fn link(mut section: Section<'_>) -> Read<Link> {
     let stiffness = section.found(&key::LINK_STIFFNESS);
-    let stiffness = stiffness
-        .and_then(|found| found.ok_or_else(|| section.missing(&key::LINK_STIFFNESS)));
+    let stiffness =
+        stiffness.and_then(|found| found.ok_or_else(|| section.missing(&key::LINK_STIFFNESS)));
     let damping = section.number(&key::LINK_DAMPING);
     section.finish();
     let (stiffness, damping) = (stiffness?, damping?);

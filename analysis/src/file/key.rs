@@ -153,8 +153,10 @@ const DEGREE: u32 = MAX_DEGREE as u32;
 const DELAY: u32 = MAX_DELAY as u32;
 
 const TABLE: Bound = Bound::Other(Form::Table, "a table");
-const POLYNOMIAL: Bound =
-    Bound::Other(Form::Numbers, "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0");
+const POLYNOMIAL: Bound = Bound::Other(
+    Form::Numbers,
+    "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0",
+);
 
 keys! {
     /// Name of the scene, as reports and pictures show it.

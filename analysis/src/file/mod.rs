@@ -164,7 +164,8 @@ fn root(format: Format, text: &str, faults: &Faults) -> Read<Node> {
 
 fn bounded(source: impl std::io::Read) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
-    std::io::Read::read_to_end(&mut std::io::Read::take(source, MAX_BYTES + 1), &mut bytes).map_err(unreadable)?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(source, MAX_BYTES + 1), &mut bytes)
+        .map_err(unreadable)?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(Problem::TooLong { bound: MAX_BYTES });
     }

@@ -9,6 +9,7 @@ use thiserror::Error;
 use super::key::{Bound, Key};
 use super::tree::Span;
 use crate::chain::NoPassivity;
+use crate::terminal::wrapped;
 
 /// Longest piece of a file that is repeated in a message, in characters.
 const EXCERPT: usize = 60;
@@ -214,8 +215,13 @@ impl FileError {
 
     /// Each message with the line of the file below it, as compilers print it.
     pub fn report(&self, colour: bool) -> String {
+        self.report_within(colour, None)
+    }
+
+    /// The same, with messages broken to so many columns.
+    pub fn report_within(&self, colour: bool, width: Option<usize>) -> String {
         let each = std::iter::once(self).chain(&self.rest);
-        let mut parts: Vec<String> = each.map(|error| error.report_alone(colour)).collect();
+        let mut parts: Vec<String> = each.map(|error| error.report_alone(colour, width)).collect();
         parts.extend(self.and_more());
         parts.join("\n\n")
     }
@@ -225,8 +231,11 @@ impl FileError {
         (self.untold > 0).then(|| format!("{}: and {} more problems", self.file, self.untold))
     }
 
-    fn report_alone(&self, colour: bool) -> String {
-        let title = self.sentence();
+    fn report_alone(&self, colour: bool, width: Option<usize>) -> String {
+        // Behind the word in front, under which the other lines are indented.
+        const ERROR: usize = "error: ".len();
+        let room = width.map(|width| width.saturating_sub(ERROR).max(1));
+        let title = wrapped(&self.sentence(), room, 0);
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let group = match self.shown.as_deref() {
             None => Level::ERROR

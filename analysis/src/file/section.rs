@@ -62,7 +62,9 @@ impl<'t> Section<'t> {
     /// The table of that key, if there is one.
     pub fn table(&mut self, key: &Key) -> Read<Option<Self>> {
         let title = format!("[{}]", key.path);
-        self.take(key).map(|node| Self::new((self.text, self.faults), &title, key, node)).transpose()
+        self.take(key)
+            .map(|node| Self::new((self.text, self.faults), &title, key, node))
+            .transpose()
     }
 
     /// The table of that key, which must be there.

@@ -63,8 +63,7 @@ pub enum HandTorque {
 /// Reads `[simulation]` of a servo with this period in s.
 pub fn simulation(mut section: Section<'_>, period: f64, friction: f64) -> Read<Simulation> {
     let samples = section.whole(&key::SAMPLES);
-    let [position, velocity] =
-        [&key::POSITION, &key::VELOCITY].map(|key| section.number(key));
+    let [position, velocity] = [&key::POSITION, &key::VELOCITY].map(|key| section.number(key));
     let torque = torque(&mut section);
     let own_friction = section.optional(&key::FRICTION);
     let latency = latency(&mut section, period);
@@ -170,8 +169,8 @@ fn twice() -> String {
 }
 
 fn sine_torque(mut table: Section<'_>) -> Read<HandTorque> {
-    let [amplitude, omega, phase] = [&key::SINE_AMPLITUDE, &key::SINE_OMEGA, &key::SINE_PHASE]
-        .map(|key| table.number(key));
+    let [amplitude, omega, phase] =
+        [&key::SINE_AMPLITUDE, &key::SINE_OMEGA, &key::SINE_PHASE].map(|key| table.number(key));
     let held = table.boolean(&key::SINE_HELD);
     table.finish();
     Ok(HandTorque::Sine {

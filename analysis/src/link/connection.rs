@@ -17,18 +17,19 @@ pub type Message = ToHost<String>;
 
 /// How long an answer is waited for.
 #[derive(Clone, Copy)]
-struct Patience {
+pub(crate) struct Patience {
     /// Until it is asked again: bytes get lost.
-    again: Duration,
+    pub(crate) again: Duration,
     /// In all.
-    end: Duration,
+    pub(crate) end: Duration,
 }
 
 /// With what a board knows.
 const QUESTION: Patience =
     Patience { again: Duration::from_millis(250), end: Duration::from_secs(3) };
 /// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
-const REQUEST: Patience = Patience { again: Duration::from_secs(2), end: Duration::from_secs(10) };
+pub(crate) const REQUEST: Patience =
+    Patience { again: Duration::from_secs(2), end: Duration::from_secs(10) };
 
 /// A connection to a board that has said who it is.
 pub struct Link {
@@ -105,6 +106,12 @@ impl Wire {
     }
 }
 
+/// Whether the other end has closed the connection.
+fn is_closed(error: &io::Error) -> bool {
+    use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
+    matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
+}
+
 impl Link {
     /// Connects and asks who is there.
     ///
@@ -139,6 +146,10 @@ impl Link {
                 Err(LinkError::Protocol { address, program, theirs })
             }
             Ok(None) => Err(LinkError::Silent { address, after: QUESTION.end }),
+            // A socket says so; a serial line is only silent.
+            Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
+                Err(LinkError::InUse { address })
+            }
             Err(source) => Err(LinkError::Lost { address, source }),
         }
     }
@@ -233,13 +244,18 @@ impl Link {
         self.wire.receive(until).map_err(|source| self.lost(source))
     }
 
+    /// A number for a request that was not used before; the answer has the same.
+    pub fn next_id(&mut self) -> Id {
+        self.last_id = self.last_id.wrapping_add(1);
+        self.last_id
+    }
+
     fn request(
         &mut self,
         what: &'static str,
         message: impl Fn(Id) -> ToBoard,
     ) -> Result<Outcome<String>, LinkError> {
-        self.last_id = self.last_id.wrapping_add(1);
-        let sent = self.last_id;
+        let sent = self.next_id();
         self.ask(what, &message(sent), REQUEST, |message| match message {
             ToHost::Answer { id, outcome } if id == sent => Some(outcome),
             _ => None,

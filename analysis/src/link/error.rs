@@ -8,12 +8,13 @@ use firmware::wire::PROTOCOL;
 use thiserror::Error;
 
 use super::Address;
+use super::holder::holders;
 
 /// Why a board cannot be talked to.
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// No such port, or somebody else has it.
-    #[error("cannot open {address}: {source}{}", ports(.address))]
+    #[error("cannot open {address}: {source}{}", why_not(.address))]
     Open {
         /// The address.
         address: Address,
@@ -22,15 +23,24 @@ pub enum LinkError {
     },
     /// The port opened, and nobody answers.
     #[error(
-        "no board answers on {address} within {} s: is it powered, flashed with a scene's program, \
-         and is this its port (and its speed)?",
-        .after.as_secs_f64()
+        "no board answers on {address} within {} s{}",
+        .after.as_secs_f64(),
+        why_silent(.address)
     )]
     Silent {
         /// The address.
         address: Address,
         /// How long it was asked.
         after: Duration,
+    },
+    /// The other end has closed the socket before it said who it is.
+    #[error(
+        "{address} is in use by another program: a board has one at a time. If that is `haptic \
+         scope`, press t in it to tune, A to arm, d to disarm; or end it first"
+    )]
+    InUse {
+        /// The address.
+        address: Address,
     },
     /// A board of another version.
     #[error(
@@ -65,7 +75,32 @@ pub enum LinkError {
     },
 }
 
-/// The ports that there are, where one was asked for that cannot be had.
+/// Who has a port that cannot be had; where nobody has it, the ports that there are.
+fn why_not(address: &Address) -> String {
+    match address {
+        Address::Serial { port, .. } => match holders(port) {
+            nobody if nobody.is_empty() => ports(address),
+            holders => holders,
+        },
+        _ => String::new(),
+    }
+}
+
+/// Why nobody may answer: somebody else takes the answers, or there is nobody.
+fn why_silent(address: &Address) -> String {
+    let holders = match address {
+        Address::Serial { port, .. } => holders(port),
+        _ => String::new(),
+    };
+    if holders.is_empty() {
+        ": is it powered, flashed with a scene's program, and is this its port (and its speed)?"
+            .to_owned()
+    } else {
+        holders
+    }
+}
+
+/// The ports that there are.
 fn ports(address: &Address) -> String {
     if !matches!(address, Address::Serial { .. }) {
         return String::new();

@@ -1,10 +1,13 @@
 //! A board at the other end of a serial line or a socket.
 
 mod address;
+pub mod change;
 mod connection;
 mod error;
+mod holder;
 mod transport;
 
 pub use address::{Address, AddressError};
+pub(crate) use connection::REQUEST;
 pub use connection::{Link, Message};
 pub use error::LinkError;

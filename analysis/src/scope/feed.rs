@@ -10,13 +10,16 @@ use std::time::{Duration, Instant};
 
 use firmware::cycle::Frame;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Remembered, Running, Status, ToBoard, ToHost};
+use firmware::wire::message::{Board, Id, Remembered, Running, Status, ToBoard, ToHost};
 
-use crate::link::{Link, LinkError};
+use super::control::{Reply, Request};
+use crate::link::{Link, LinkError, REQUEST};
 
 /// Time between two questions how it is going; also what the board hears of us, where it stops
 /// without a host.
 const BEAT: Duration = Duration::from_millis(100);
+/// Longest time until a request is passed on.
+const LOOK: Duration = Duration::from_millis(20);
 /// Time between two tries to connect again.
 const RETRY: Duration = Duration::from_millis(500);
 /// Silence after which a link that gives no error counts as lost all the same.
@@ -40,6 +43,8 @@ pub enum Event {
     Status(Status, Discarded),
     /// The numbers that run.
     Running(Running),
+    /// What became of a request.
+    Reply(Request, Reply),
     /// The link is lost, and a new one is tried.
     Lost(String),
 }
@@ -48,6 +53,7 @@ pub enum Event {
 #[derive(Debug)]
 pub struct Feed {
     events: Receiver<Event>,
+    requests: Sender<Request>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -56,10 +62,17 @@ impl Feed {
     /// Asks the board behind this link for every so many ticks.
     pub fn start(link: Link, every: NonZeroU32) -> Self {
         let (events, receiver) = mpsc::channel();
+        let (requests, inbox) = mpsc::channel();
         let ended = Arc::new(AtomicBool::new(false));
-        let feeder = Feeder { events, ended: ended.clone(), every };
+        let feeder = Feeder { events, requests: inbox, ended: ended.clone(), every };
         let thread = thread::spawn(move || feeder.run(link));
-        Self { events: receiver, ended, thread: Some(thread) }
+        Self { events: receiver, requests, ended, thread: Some(thread) }
+    }
+
+    /// Asks the board for something; what becomes of it is an event.
+    pub fn request(&self, request: Request) {
+        // A thread that is gone has said why.
+        let _ = self.requests.send(request);
     }
 
     /// The next event, if there is one within that time.
@@ -81,8 +94,19 @@ impl Drop for Feed {
 /// The thread's side of a feed.
 struct Feeder {
     events: Sender<Event>,
+    requests: Receiver<Request>,
     ended: Arc<AtomicBool>,
     every: NonZeroU32,
+}
+
+/// A request that the board has not answered yet.
+struct Pending {
+    id: Id,
+    request: Request,
+    /// When it is asked again.
+    again: Instant,
+    /// When it counts as unanswered.
+    end: Instant,
 }
 
 /// Why following a board ended.
@@ -152,14 +176,26 @@ impl Feeder {
         self.events.send(Event::Connected { program, board, remembered: link.remembered() })?;
         link.send(&ToBoard::Stream(Some(self.every)))?;
         link.send(&ToBoard::Get)?;
+        let mut pending = None;
+        let followed = self.listen(link, &mut pending);
+        if let Some(Pending { request, .. }) = pending {
+            self.events.send(Event::Reply(request, Reply::Unanswered))?;
+        }
+        followed?;
+        link.send(&ToBoard::Stream(None))?;
+        Ok(())
+    }
+
+    fn listen(&self, link: &mut Link, pending: &mut Option<Pending>) -> Result<(), End> {
         let (mut beat, mut heard) = (Instant::now(), Instant::now());
         let mut last: Option<Status> = None;
         while !self.is_over() {
+            self.ask(link, pending)?;
             if beat <= Instant::now() {
                 link.send(&ToBoard::Status)?;
                 beat = Instant::now() + BEAT;
             }
-            let Some(message) = link.receive(beat)? else {
+            let Some(message) = link.receive(beat.min(Instant::now() + LOOK))? else {
                 if heard.elapsed() > SILENCE {
                     return Err(End::Lost(link.silent("for its status", SILENCE)));
                 }
@@ -183,6 +219,11 @@ impl Feeder {
                     self.events.send(Event::Status(status, link.discarded()))?;
                 }
                 ToHost::Running(running) => self.events.send(Event::Running(running))?,
+                ToHost::Answer { id, outcome } if pending.as_ref().is_some_and(|p| p.id == id) => {
+                    let Some(Pending { request, .. }) = pending.take() else { continue };
+                    self.events.send(Event::Reply(request, Reply::Answered(outcome)))?;
+                    link.send(&ToBoard::Get)?;
+                }
                 // Of a greeting that was asked for twice, or of somebody else's question.
                 ToHost::Welcome { .. }
                 | ToHost::Remembered(_)
@@ -190,7 +231,33 @@ impl Feeder {
                 | ToHost::Answer { .. } => {}
             }
         }
-        link.send(&ToBoard::Stream(None))?;
+        Ok(())
+    }
+
+    /// Passes on the next request, once the one before it is answered; asks again, since bytes get
+    /// lost.
+    fn ask(&self, link: &mut Link, pending: &mut Option<Pending>) -> Result<(), End> {
+        let now = Instant::now();
+        if pending.as_ref().is_some_and(|pending| now >= pending.end)
+            && let Some(Pending { request, .. }) = pending.take()
+        {
+            self.events.send(Event::Reply(request, Reply::Unanswered))?;
+        }
+        match pending {
+            Some(Pending { id, request, again, .. }) if now >= *again => {
+                *again = now + REQUEST.again;
+                link.send(&request.message(*id))?;
+            }
+            Some(_) => {}
+            None => {
+                let Ok(request) = self.requests.try_recv() else { return Ok(()) };
+                let id = link.next_id();
+                link.send(&request.message(id))?;
+                self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
+                let (again, end) = (now + REQUEST.again, now + REQUEST.end);
+                *pending = Some(Pending { id, request, again, end });
+            }
+        }
         Ok(())
     }
 

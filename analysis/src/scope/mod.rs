@@ -1,5 +1,6 @@
 //! A live view of a board: what it says, what of it is kept, and how it is drawn.
 
+pub mod control;
 pub mod feed;
 pub mod history;
 pub mod record;
@@ -12,6 +13,7 @@ pub mod words;
 use firmware::wire::Discarded;
 use firmware::wire::message::{Board, Remembered, Running, Status};
 
+use self::control::Control;
 use self::feed::Event;
 use self::history::History;
 use self::sample::{Sample, Scale};
@@ -31,6 +33,8 @@ pub struct Scope {
     pub running: Option<Running>,
     /// The last seconds.
     pub history: History,
+    /// What is asked of the board.
+    pub control: Control,
 }
 
 /// What a board has said about itself.
@@ -49,7 +53,8 @@ impl Scope {
     /// Nothing is known yet of the board there; `window` seconds are kept.
     pub fn new(address: String, window: f64) -> Self {
         let history = History::new(window);
-        Self { address, known: None, lost: None, status: None, running: None, history }
+        let control = Control::default();
+        Self { address, known: None, lost: None, status: None, running: None, history, control }
     }
 
     /// Takes in what the board says, and gives its ticks to `each`.
@@ -75,6 +80,7 @@ impl Scope {
             }
             Event::Status(status, discarded) => self.status = Some((status, discarded)),
             Event::Running(running) => self.running = Some(running),
+            Event::Reply(request, reply) => self.control.said = Some(reply.line(&request)),
             Event::Lost(why) => self.lost = Some(why),
         }
         Ok(())

@@ -26,7 +26,7 @@ pub struct Sample {
     pub position: f64,
     /// The converter's code.
     pub code: u16,
-    /// Torque of the motor in N m; positive as the angle.
+    /// Coupling torque `F` in N m, as in every other trace; the motor applies `-F`.
     pub torque: f64,
     /// What the servo was doing.
     pub state: State,
@@ -62,7 +62,8 @@ impl Scale {
             count: self.count,
             position: self.count as f64 * TAU / board.counts_per_turn,
             code: frame.code.get(),
-            torque: f64::from(frame.code.offset()) * torque_per_code,
+            // No torque is 0 and not -0.
+            torque: 0.0 - f64::from(frame.code.offset()) * torque_per_code,
             state: frame.state,
             limit: frame.limit,
             slack: f64::from(frame.slack) / f64::from(board.timer_counts) * board.period,
@@ -117,7 +118,7 @@ mod tests {
         for (value, wanted) in [
             (sample.time, 0.25),
             (sample.position, -TAU / 4.0),
-            (sample.torque, -0.5),
+            (sample.torque, 0.5),
             (sample.slack, 0.00075),
         ] {
             assert!((value - wanted).abs() < 1e-12, "{value} is not {wanted}");

@@ -84,7 +84,7 @@ fn shows_everything_that_is_to_be_watched() {
         "energy into the hand -0.005 J, at most 0.007 J",
         "limited by torque 25 %",
         "ticks dropped 4, thinned 6   frames spoilt 8 there, 0 here",
-        "q quits",
+        "q quits   t tunes   A arms   d disarms",
     ] {
         assert!(shown.contains(part), "{part:?} is not in\n{shown}");
     }
@@ -101,6 +101,40 @@ fn shows_the_worst_trouble() {
     take(&mut scope, Event::Lost("the link to COM3 is lost: gone".to_owned()));
     let shown = screen(&scope, 120, 40);
     assert!(shown.contains("the link to COM3 is lost: gone; connecting again"), "{shown}");
+}
+
+#[test]
+fn shows_the_line_that_is_typed_and_all_of_the_answer() {
+    let mut scope = connected();
+    scope.control.prompt = Some("stiffness = 2".to_owned());
+    let sentence = "rejected: the environment needs alpha = 0.5 N m s/rad of damping, not below the \
+                    delta = 0.022 N m s/rad that the device has; it would pass with stiffness <= 16";
+    scope.control.said = Some(sentence.to_owned());
+    let shown = screen(&scope, 60, 40);
+    let words = |text: &str| {
+        text.replace(['"', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    assert!(words(&shown).contains(&words(sentence)), "{shown}");
+    assert!(shown.contains("tune: stiffness = 2_") && shown.contains("Enter sends"), "{shown}");
+}
+
+#[test]
+fn colours_can_be_left_out() {
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
+    let scope = connected();
+    let coloured = |terminal: &Terminal<TestBackend>| {
+        let cells = &terminal.backend().buffer().content;
+        cells.iter().filter(|cell| cell.fg != ratatui::style::Color::Reset).count()
+    };
+    terminal.draw(|frame| view::draw(frame, &scope)).unwrap();
+    assert!(coloured(&terminal) > 0);
+    terminal
+        .draw(|frame| {
+            view::draw(frame, &scope);
+            view::without_colour(frame);
+        })
+        .unwrap();
+    assert_eq!(coloured(&terminal), 0);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 
+use super::control::{self, Control};
 use super::sample::Sample;
 use super::{Scope, words};
 use crate::quantity::significant;
@@ -16,19 +17,49 @@ const DOTS: usize = 2;
 
 /// Draws all that is known.
 pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
-    let [head, position, torque, facts, keys] = Layout::vertical([
+    let width = usize::from(frame.area().width);
+    let said = scope.control.said.as_deref().map_or(Vec::new(), |said| wrapped(said, width));
+    let [head, position, torque, facts, answer, keys] = Layout::vertical([
         Constraint::Length(2),
         Constraint::Fill(1),
         Constraint::Fill(1),
         Constraint::Length(4),
+        Constraint::Length(said.len() as u16),
         Constraint::Length(1),
     ])
     .areas(frame.area());
     frame.render_widget(Paragraph::new(heading(scope)), head);
     draw_curve(frame, position, scope, "position, rad", |sample| sample.position);
-    draw_curve(frame, torque, scope, "torque, N m", |sample| sample.torque);
+    draw_curve(frame, torque, scope, "coupling torque, N m", |sample| sample.torque);
     frame.render_widget(Paragraph::new(facts_of(scope)), facts);
-    frame.render_widget(Line::from("q quits").dim(), keys);
+    frame.render_widget(Paragraph::new(said), answer);
+    frame.render_widget(last_line(&scope.control), keys);
+}
+
+/// Most lines of an answer: a refusal names the remedies.
+const ANSWER: usize = 5;
+
+fn wrapped(text: &str, width: usize) -> Vec<Line<'static>> {
+    let lines = textwrap::wrap(text, width.max(1));
+    lines.into_iter().take(ANSWER).map(|line| Line::from(line.into_owned())).collect()
+}
+
+/// The keys, or the line that is typed.
+fn last_line(control: &Control) -> Line<'_> {
+    match &control.prompt {
+        None => Line::from(control::KEYS).dim(),
+        Some(line) => Line::from(vec![
+            Span::from(format!("tune: {line}_   ")).bold(),
+            Span::from(control::PROMPT_KEYS).dim(),
+        ]),
+    }
+}
+
+/// Takes the colours out of what is drawn; bold and dim stay.
+pub fn without_colour(frame: &mut Frame<'_>) {
+    for cell in &mut frame.buffer_mut().content {
+        (cell.fg, cell.bg) = (Color::Reset, Color::Reset);
+    }
 }
 
 fn heading(scope: &Scope) -> Vec<Line<'static>> {

@@ -3,15 +3,19 @@
 use firmware::certificate::Parameter;
 use firmware::tuning;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Remembered, Running, Status};
+use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
 
 use super::Scope;
 use crate::quantity::significant;
 
 /// The numbers that run, as they are typed: `stiffness=22 damping=0.01`.
 pub fn numbers(running: &Running) -> String {
-    let each =
-        running.values.iter().map(|(parameter, value)| format!("{}={value}", name(*parameter)));
+    changes(&running.values)
+}
+
+/// Parameters as they are typed.
+pub fn changes(changes: &Changes) -> String {
+    let each = changes.iter().map(|(parameter, value)| format!("{}={value}", name(*parameter)));
     each.collect::<Vec<_>>().join(" ")
 }
 

@@ -6,6 +6,7 @@ use std::net::{TcpListener, TcpStream};
 use std::os::unix::net::{UnixListener, UnixStream};
 #[cfg(unix)]
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use firmware::number::Number;
 use firmware::servo::{OutputMode, Renders};
@@ -29,7 +30,12 @@ impl<S: Read + Write + Send> Stream for S {}
 pub(super) struct Listener {
     socket: Socket,
     client: Option<Box<dyn Stream>>,
+    next: Option<(Instant, Box<dyn Stream>)>,
 }
+
+/// Time after which somebody who has connected beside somebody else is sent away. Until then the
+/// other may turn out to have left.
+const TURN: Duration = Duration::from_millis(100);
 
 enum Socket {
     Tcp(TcpListener),
@@ -55,7 +61,7 @@ impl Listener {
             }
             _ => return Err(ErrorKind::Unsupported.into()),
         };
-        Ok((Self { socket, client: None }, address))
+        Ok((Self { socket, client: None, next: None }, address))
     }
 
     /// Carries bytes between the session and whoever is connected; gives whether there were any.
@@ -68,11 +74,12 @@ impl Listener {
         N: Number,
         M: OutputMode,
     {
+        self.send_others_away();
         let Some(client) = &mut self.client else {
             session.poll();
             // Nobody listens: as on a serial line, what is sent is gone.
             session.sent(session.outgoing().len());
-            self.client = self.socket.accept();
+            self.client = self.accept();
             return false;
         };
         match carry(client.as_mut(), session) {
@@ -86,10 +93,11 @@ impl Listener {
 
     /// Sends what the stream takes of these bytes, and gives what has come in.
     pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
+        self.send_others_away();
         let Some(client) = &mut self.client else {
             // Nobody listens: as on a serial line, what is sent is gone.
             outgoing.clear();
-            self.client = self.socket.accept();
+            self.client = self.accept();
             return Vec::new();
         };
         let mut bytes = [0; BYTES];
@@ -101,6 +109,25 @@ impl Listener {
             self.client = None;
             Vec::new()
         })
+    }
+}
+
+impl Listener {
+    /// Whoever is next.
+    fn accept(&mut self) -> Option<Box<dyn Stream>> {
+        self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
+    }
+
+    /// Closes the connection of somebody who has connected while somebody else is: on a serial line
+    /// the port cannot be opened then, and here, too, somebody should hear of it.
+    fn send_others_away(&mut self) {
+        if self.client.is_none() {
+            return;
+        }
+        self.next.take_if(|(since, _)| since.elapsed() > TURN);
+        if self.next.is_none() {
+            self.next = self.socket.accept().map(|next| (Instant::now(), next));
+        }
     }
 }
 

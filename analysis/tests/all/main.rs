@@ -16,6 +16,7 @@ mod report;
 mod scene_files;
 mod simulate_program;
 mod simulation_reference;
+mod terminal;
 mod virtual_board;
 mod wire;
 mod wire_target;

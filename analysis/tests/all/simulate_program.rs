@@ -273,6 +273,73 @@ fn a_design_is_a_scene_that_certifies() {
 }
 
 #[test]
+fn a_design_says_what_else_it_has_changed() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let soft = WALL.replace("stiffness = 44.0", "stiffness = 30.0");
+    std::fs::write(&path, soft.replace("period = 0.001", "period = 0.001\nworst_period = 0.001"))
+        .unwrap();
+    let run = |arguments: &[&str]| {
+        let output = haptic(&[&["design"], arguments, &[name(&path)]].concat());
+        let [out, err] = [output.stdout, output.stderr].map(|t| String::from_utf8(t).unwrap());
+        (out, err)
+    };
+    let coupling = "the coupling is 44 N m/rad, the standard 2 delta/T; the file has 30 N m/rad";
+    let (out, _) = run(&["largest", "stiffness"]);
+    assert!(out.contains(&format!("# note: delayed wall: {coupling}")), "{out}");
+    assert!(!run(&["largest", "stiffness", "--keep-coupling"]).0.contains("note:"));
+    let (out, err) = run(&["border", "stiffness", "damping"]);
+    assert!(err.contains(coupling) && !out.contains("note"), "{err}{out}");
+    let (out, _) = run(&["period"]);
+    assert!(out.contains("note: delayed wall: worst_period is 0.00"), "{out}");
+    let (_, report) = json(&["design", "largest", "stiffness", name(&path), "--json"]);
+    assert_eq!(report["notes"].as_array().map(Vec::len), Some(1), "{report}");
+}
+
+/// A third stiffer than what the device can render: the motion grows by some per cent a tick.
+#[test]
+fn a_device_that_runs_away_is_a_no() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let wall = WALL.replace("stiffness = 22.0", "stiffness = 80.0");
+    let scene =
+        |samples: u32| format!("{wall}[simulation]\nsamples = {samples}\nposition = 0.01\n");
+    for more in [&[][..], &["--csv"], &["--json"]] {
+        std::fs::write(&path, scene(50)).unwrap();
+        let output = haptic(&[&["simulate", name(&path)], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        std::fs::write(&path, scene(5000)).unwrap();
+        let output = haptic(&[&["simulate", name(&path)], more].concat());
+        assert_eq!(output.status.code(), Some(1), "{more:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("1000000 rad from its zero") || said.contains("beyond the range"));
+    }
+}
+
+#[test]
+fn a_run_says_what_it_does_not_use_of_a_file() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("scene.toml");
+    let chain = WALL.replace("inertia = 2.2e-5\ndamping = 0.022\n", CHAIN);
+    std::fs::write(&path, format!("{chain}[simulation]\nsamples = 9\n[human]\nstiffness = 4\n"))
+        .unwrap();
+    let run = |more: &[&str]| {
+        let output = haptic(&[&["run", name(&path), "--ticks", "20"], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = run(&[]);
+    assert!(said.contains("[simulation] is not used: here a hand pushes in"), "{said}");
+    assert!(said.contains("as one rigid body") && !said.contains("[human]"), "{said}");
+    let counts = folder.path().join("counts.csv");
+    std::fs::write(&counts, "count\n0\n1\n2\n").unwrap();
+    let said = run(&["--replay", name(&counts)]);
+    assert!(said.contains("[human] is not used: the counts are those of the recording"), "{said}");
+    std::fs::write(&path, WALL).unwrap();
+    assert_eq!(run(&[]), "");
+}
+
+#[test]
 fn designs_of_several_scenes_go_into_a_folder_and_find_their_torques_from_there() {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("push.csv"), "0.1\n").unwrap();

@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::num::NonZeroU32;
 use std::os::unix::net::UnixStream;
 use std::process::{Output, Stdio};
 use std::sync::{Arc, Mutex};
@@ -12,12 +13,16 @@ use crate::common::{answer, haptic, program};
 use analysis::link::{Address, Link};
 use analysis::program::{Program, damper_wall};
 use analysis::rig::Plant;
+use analysis::scope::Scope;
+use analysis::scope::control::Action;
+use analysis::scope::feed::Feed;
 use analysis::twin::{Clock, Twin};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::wire::message::{Changes, Outcome, Status};
+use ratatui::crossterm::event::KeyCode;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -237,7 +242,8 @@ fn scope_records_rows_and_ends_quietly() {
     assert_eq!((last["state"].as_str(), last["limit"].as_str()), ("running", "none"));
     assert_eq!(number(last, "count"), f64::from(DEPTH));
     assert!((number(last, "code") - code(22.0)).abs() <= 1.0);
-    let torque = (number(last, "code") - 2048.0) / 2047.0 * 2.0;
+    // The coupling torque: what the motor applies is its negative.
+    let torque = (2048.0 - number(last, "code")) / 2047.0 * 2.0;
     assert!((number(last, "torque") - torque).abs() < 1e-12);
     assert!((number(last, "slack") - 0.001).abs() < 1e-12);
 }
@@ -290,6 +296,72 @@ fn wait_for(mut is_so: impl FnMut() -> bool) {
     while !is_so() {
         assert!(Instant::now() < end, "it takes too long");
         std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// What the keys of the scope ask for, from the line that is typed to what is shown of the answer.
+#[test]
+fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
+    let rig = Rig::new(Clock::Real);
+    let mut scope = Scope::new(rig.port(), 1.0);
+    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let mut press = |text: &str, said: &str, is_so: fn(&Scope) -> bool| {
+        for letter in text.chars() {
+            let key = if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) };
+            if let Action::Request(request) = scope.control.press(key.into()) {
+                feed.request(request);
+            }
+        }
+        let end = Instant::now() + Duration::from_secs(20);
+        while !(is_so(&scope) && scope.control.said.as_ref().is_some_and(|s| s.contains(said))) {
+            assert!(Instant::now() < end, "{text:?}: {:?}", scope.control.said);
+            if let Some(event) = feed.next(Duration::from_millis(10)) {
+                scope.take(event, |_| Ok::<(), std::convert::Infallible>(())).unwrap();
+            }
+        }
+    };
+    let softer: fn(&Scope) -> bool = |scope| {
+        let running = scope.running.as_ref();
+        running.is_some_and(|r| r.values.contains(&(Parameter::Stiffness, 12.5)))
+    };
+    press("tstiffness = 12.5\n", "stiffness=12.5: done", softer);
+    press("tstiffness = 4000\n", "stiffness=4000: rejected", softer);
+    press("d", "disarm: done", |scope| scope.status.is_some_and(|(s, _)| !s.state.is_armed()));
+    press("A", "arm: done", |scope| scope.status.is_some_and(|(s, _)| s.state.is_armed()));
+}
+
+#[test]
+fn a_second_client_hears_that_the_port_is_in_use() {
+    let rig = Rig::new(Clock::Real);
+    let first = rig.link();
+    let second = rig.haptic(&["tune"]);
+    assert_eq!(second.status.code(), Some(2), "{second:?}");
+    let said = text(&second.stderr);
+    assert!(said.contains("is in use by another program") && said.contains("press t"), "{said}");
+    drop(first);
+    assert_eq!(rig.haptic(&["tune"]).status.code(), Some(0));
+}
+
+#[test]
+fn a_serial_port_that_another_program_has_open_is_said_with_its_name() {
+    use serialport::SerialPort;
+    let (_master, slave) = serialport::TTYPort::pair().unwrap();
+    let port = slave.name().unwrap();
+    // As a logger does it: without a lock, and taking the bytes that the board sends.
+    let mut other = std::process::Command::new("sleep")
+        .arg("30")
+        .stdin(std::fs::File::open(&port).unwrap())
+        .spawn()
+        .unwrap();
+    let held = haptic(&["tune", "--port", &port]);
+    drop(slave);
+    let silent = haptic(&["tune", "--port", &port]);
+    let named = format!("in use by sleep (process {})", other.id());
+    other.kill().unwrap();
+    other.wait().unwrap();
+    for output in [held, silent] {
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(text(&output.stderr).contains(&named), "{output:?}");
     }
 }
 

@@ -1,0 +1,176 @@
+//! What somebody who watches a board may ask of it, by keys.
+
+use firmware::wire::message::{Changes, Id, Outcome, ToBoard};
+use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+
+use crate::link::change;
+
+/// What is asked of a board.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// Other parameters, all or none.
+    Set(Changes),
+    /// Switch the amplifier on; clears a fault.
+    Arm,
+    /// Fade the torque out and switch the amplifier off.
+    Disarm,
+}
+
+impl Request {
+    /// The message that asks for it.
+    pub fn message(&self, id: Id) -> ToBoard {
+        match self {
+            Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
+            Self::Arm => ToBoard::Arm { id },
+            Self::Disarm => ToBoard::Disarm { id },
+        }
+    }
+
+    /// What is asked for, in words.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Set(changes) => super::words::changes(changes),
+            Self::Arm => "arm".to_owned(),
+            Self::Disarm => "disarm".to_owned(),
+        }
+    }
+}
+
+/// What became of a request.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// It was asked for.
+    Asked,
+    /// The board has answered.
+    Answered(Outcome<String>),
+    /// There was no answer.
+    Unanswered,
+}
+
+impl Reply {
+    /// What is shown of it.
+    pub fn line(&self, request: &Request) -> String {
+        let what = request.words();
+        match self {
+            Self::Asked => format!("{what} ..."),
+            Self::Answered(Outcome::Done) => format!("{what}: done"),
+            Self::Answered(Outcome::Refused(sentence)) => format!("{what}: {sentence}"),
+            Self::Unanswered => format!("{what}: the board has not answered; it may have done it"),
+        }
+    }
+}
+
+/// What a key asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Nothing, or only another picture.
+    None,
+    /// Ask the board.
+    Request(Request),
+    /// Somebody has seen enough.
+    Quit,
+}
+
+/// The keys, as the last line of the view names them.
+pub const KEYS: &str = "q quits   t tunes   A arms   d disarms";
+/// And where a line is typed.
+pub const PROMPT_KEYS: &str = "Enter sends   Esc gives up";
+
+/// The line that is typed, and what came of the last one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Control {
+    /// The line so far, where one is typed.
+    pub prompt: Option<String>,
+    /// What came of the last request, or what is wrong with the line.
+    pub said: Option<String>,
+}
+
+impl Control {
+    /// Takes a key. Arming takes a capital letter: it switches a motor on. Ctrl-C quits from
+    /// anywhere.
+    pub fn press(&mut self, key: KeyEvent) -> Action {
+        if key.kind == KeyEventKind::Release {
+            return Action::None;
+        }
+        if key.modifiers.contains(KeyModifiers::CONTROL) {
+            return if key.code == KeyCode::Char('c') { Action::Quit } else { Action::None };
+        }
+        match self.prompt.take() {
+            Some(line) => self.edit(line, key.code),
+            None => self.command(key.code),
+        }
+    }
+
+    fn command(&mut self, key: KeyCode) -> Action {
+        match key {
+            KeyCode::Char('q') | KeyCode::Esc => Action::Quit,
+            KeyCode::Char('A') => Action::Request(Request::Arm),
+            KeyCode::Char('d') => Action::Request(Request::Disarm),
+            KeyCode::Char('t' | ':') => {
+                self.prompt = Some(String::new());
+                Action::None
+            }
+            _ => Action::None,
+        }
+    }
+
+    /// A line that is not a change stays, to be mended.
+    fn edit(&mut self, mut line: String, key: KeyCode) -> Action {
+        match key {
+            KeyCode::Esc => return Action::None,
+            KeyCode::Enter => match change::line(&line) {
+                Ok(changes) => return Action::Request(Request::Set(changes)),
+                Err(why) => self.said = Some(why),
+            },
+            KeyCode::Backspace => drop(line.pop()),
+            KeyCode::Char(letter) => line.push(letter),
+            _ => {}
+        }
+        self.prompt = Some(line);
+        Action::None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::certificate::Parameter;
+
+    use super::*;
+
+    fn typed(control: &mut Control, text: &str) -> Action {
+        let keys = text.chars().map(|letter| match letter {
+            '\n' => KeyCode::Enter,
+            '\u{8}' => KeyCode::Backspace,
+            letter => KeyCode::Char(letter),
+        });
+        keys.map(|key| control.press(key.into())).last().unwrap_or(Action::None)
+    }
+
+    #[test]
+    fn a_line_is_typed_mended_and_sent() {
+        let mut control = Control::default();
+        assert_eq!(typed(&mut control, "tstifness = 20\n"), Action::None);
+        let said = control.said.clone().unwrap();
+        assert!(said.contains("no parameter `stifness`"), "{said}");
+        let mended = "\u{8}".repeat(10) + "ffness = 20\n";
+        let wanted = Changes::from_slice(&[(Parameter::Stiffness, 20.0)]).unwrap();
+        assert_eq!(control.prompt.as_deref(), Some("stifness = 20"));
+        assert_eq!(typed(&mut control, &mended), Action::Request(Request::Set(wanted)));
+        assert_eq!(control.prompt, None);
+    }
+
+    #[test]
+    fn letters_of_a_line_are_no_commands() {
+        let mut control = Control::default();
+        assert_eq!(typed(&mut control, "tqAd"), Action::None);
+        assert_eq!(control.prompt.as_deref(), Some("qAd"));
+        assert_eq!(control.press(KeyCode::Esc.into()), Action::None);
+        assert_eq!(typed(&mut control, "a"), Action::None);
+        assert_eq!(typed(&mut control, "A"), Action::Request(Request::Arm));
+        assert_eq!(typed(&mut control, "d"), Action::Request(Request::Disarm));
+        assert_eq!(typed(&mut control, "q"), Action::Quit);
+        let interrupt = KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL);
+        typed(&mut control, "t");
+        assert_eq!(control.press(interrupt), Action::Quit);
+    }
+}

@@ -1,0 +1,88 @@
+//! What the program writes to a terminal: its colours and its lines.
+
+use std::fs::OpenOptions;
+use std::io::Read;
+use std::process::{Command, Stdio};
+
+use serialport::{SerialPort, TTYPort};
+
+use crate::common::{WALL, haptic, program};
+
+/// What the program writes to a terminal of so many columns, and its exit status. Both of its outputs
+/// are the terminal.
+fn shown(arguments: &[&str], columns: u32, environment: &[(&str, &str)]) -> (String, Option<i32>) {
+    let (mut master, slave) = TTYPort::pair().unwrap();
+    let path = slave.name().unwrap();
+    let open = || OpenOptions::new().read(true).write(true).open(&path).unwrap();
+    let size = ["cols", &columns.to_string(), "rows", "20"].map(str::to_owned);
+    assert!(Command::new("stty").args(size).stdin(open()).status().unwrap().success());
+    let mut child = program(arguments);
+    child.env_remove("NO_COLOR").env("TERM", "xterm").envs(environment.iter().copied());
+    let mut child = child.stdin(Stdio::null()).stdout(open()).stderr(open()).spawn().unwrap();
+    master.set_timeout(std::time::Duration::from_millis(200)).unwrap();
+    let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
+    loop {
+        let ended = child.try_wait().unwrap();
+        match master.read(&mut chunk) {
+            Ok(read) => bytes.extend_from_slice(&chunk[..read]),
+            Err(_) if ended.is_some() => break,
+            Err(_) => {}
+        }
+    }
+    (String::from_utf8(bytes).unwrap(), child.wait().unwrap().code())
+}
+
+#[test]
+fn colours_are_for_terminals_that_have_them_and_people_who_want_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.toml");
+    std::fs::write(&path, WALL.replace("0.001", "0")).unwrap();
+    let bad = path.to_str().unwrap();
+    let coloured = |arguments: &[&str], environment: &[(&str, &str)]| {
+        let (text, status) = shown(arguments, 80, environment);
+        assert!(!text.is_empty());
+        (text.contains('\u{1b}'), status)
+    };
+    for (arguments, status) in
+        [(&["certify", bad][..], 2), (&["certify", "--hlp"], 2), (&["--help"], 0)]
+    {
+        assert_eq!(coloured(arguments, &[]), (true, Some(status)), "{arguments:?}");
+        for plain in [("NO_COLOR", "1"), ("TERM", "dumb")] {
+            assert_eq!(
+                coloured(arguments, &[plain]),
+                (false, Some(status)),
+                "{arguments:?} {plain:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn messages_answers_and_help_are_as_wide_as_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, WALL.replace("damping = 0.01\n", "damping = 0.02\n")).unwrap();
+    let scene = path.to_str().unwrap();
+    for arguments in [
+        &["certify", scene][..],
+        &["chart", "tradeoff", "-o", "a.pdf"],
+        &["scope", "--help"],
+        &["schema", "--example", "wall"],
+    ] {
+        let plain = [("NO_COLOR", "1")];
+        let (narrow, _) = shown(arguments, 60, &plain);
+        let longest = narrow.lines().map(|line| line.trim_end().chars().count()).max();
+        assert!(longest.is_some_and(|longest| longest <= 60), "{longest:?}\n{narrow}");
+    }
+    // A pipe gets whole lines.
+    let piped = String::from_utf8(haptic(&["certify", scene]).stdout).unwrap();
+    assert!(piped.lines().any(|line| line.chars().count() > 100), "{piped}");
+}
+
+#[test]
+fn every_help_says_what_the_exit_status_means() {
+    for arguments in [&["--help"][..], &["certify", "--help"], &["design", "largest", "--help"]] {
+        let help = String::from_utf8(haptic(arguments).stdout).unwrap();
+        assert!(help.contains("Exit status: 0 success; 1 negative verdict"), "{help}");
+    }
+}
