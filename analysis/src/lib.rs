@@ -56,6 +56,7 @@ pub mod worst_hand;
 pub mod bench;
 pub mod chart;
 pub mod circle;
+pub mod date;
 pub mod minimum;
 pub mod number;
 pub mod progress;

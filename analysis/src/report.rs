@@ -1,9 +1,12 @@
 //! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
 
+use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart::Picture;
+use crate::device::Hand;
+use crate::file::{SceneFile, write};
 use crate::quantity::significant;
 use crate::verdict::{Enclosure, Report, RuleAnswer, Verdict};
 
@@ -12,8 +15,12 @@ use crate::verdict::{Enclosure, Report, RuleAnswer, Verdict};
 pub struct Page<'p> {
     /// The judged scene.
     pub report: &'p Report,
-    /// Its numbers.
-    pub scene: &'p Scene,
+    /// What it was read from.
+    pub file: &'p SceneFile,
+    /// Where that is, as somebody named it.
+    pub path: &'p str,
+    /// The day, as 2026-03-14.
+    pub date: String,
     /// The curve of its environment.
     pub nyquist: Figure,
     /// The map of its wall.
@@ -66,8 +73,11 @@ impl Page<'_> {
                 body {
                     h1 { (report.name) }
                     (verdict(report))
+                    (origin(self))
+                    h2 { "What was judged" }
+                    (table("judged", &judged(self.file)))
                     h2 { "Numbers" }
-                    (numbers(report, self.scene))
+                    (numbers(report, &self.file.scene))
                     @if !report.remedies.is_empty() {
                         h2 { "Remedies" }
                         p { "Each of these changes alone would make it pass." }
@@ -107,6 +117,65 @@ fn verdict(report: &Report) -> Markup {
     }
 }
 
+/// Where the page is from.
+fn origin(page: &Page<'_>) -> Markup {
+    let version = env!("CARGO_PKG_VERSION");
+    html! { p id="origin" { "Of " (page.path) ", by haptic " (version) ", on " (page.date) "." } }
+}
+
+/// Environment, device and hand, with all that the file says of them.
+fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
+    let mut rows = vec![("Environment", write::kind(&file.scene.environment).to_owned())];
+    let number = |name, value: f64, unit| (name, format!("{} {unit}", significant(value, 6)));
+    let wall = |rows: &mut Vec<_>, wall: &Wall| {
+        rows.push(number("Stiffness", wall.stiffness, "N m/rad"));
+        rows.push(number("Damping", wall.damping, "N m s/rad"));
+        rows.extend(wall.filter.map(|pole| number("Pole of the velocity filter", pole, "")));
+        rows.push(number("Face", wall.face, "rad"));
+        let sides = if wall.one_sided { "felt beyond the face only" } else { "felt everywhere" };
+        rows.push(("Sides", sides.to_owned()));
+        rows.push(number("Delay", wall.delay as f64, "samples"));
+    };
+    match &file.scene.environment {
+        Environment::DelayedSpring(spring) => wall(&mut rows, &Wall { damping: 0.0, ..*spring }),
+        Environment::DamperWall(behind) => wall(&mut rows, behind),
+        Environment::FreeMode { residual, delay } => {
+            rows.push(number("Residual damping", *residual, "N m s/rad"));
+            rows.push(number("Delay", *delay as f64, "samples"));
+        }
+        Environment::FreeModeWall { residual, wall: behind } => {
+            rows.push(number("Residual damping", *residual, "N m s/rad"));
+            wall(&mut rows, behind);
+        }
+        Environment::Rational(rational) => {
+            rows.push(("Numerator", format!("{:?}", rational.numerator.as_slice())));
+            rows.push(("Denominator", format!("{:?}", rational.denominator.as_slice())));
+            rows.push(number("Zeros at z = 1", rational.unit_zeros as f64, ""));
+            rows.push(number("Delay", rational.delay as f64, "samples"));
+        }
+    }
+    if !file.chain.is_rigid() {
+        rows.push(("Device", format!("a chain of {} masses", file.chain.masses().len())));
+    }
+    rows.push(("Hand, in the simulation", hand(file.hand)));
+    rows.extend(file.friction.map(|torque| number("Dry friction of the device", torque, "N m")));
+    rows.extend(file.encoder_step.map(|angle| number("Encoder's step", angle, "rad")));
+    rows.extend(file.full_scale.map(|torque| number("Torque at full scale", torque, "N m")));
+    rows
+}
+
+fn hand(hand: Option<Hand>) -> String {
+    let Some(Hand { inertia, damping, stiffness }) = hand else {
+        return "none; the verdict is of every passive hand".to_owned();
+    };
+    format!(
+        "{} kg m\u{b2}, {} N m s/rad, {} N m/rad; the verdict is of every passive hand",
+        significant(inertia, 6),
+        significant(damping, 6),
+        significant(stiffness, 6)
+    )
+}
+
 fn numbers(report: &Report, scene: &Scene) -> Markup {
     let (period, device) = (scene.timing.period, scene.device);
     let hertz = significant(1.0 / period, 6);
@@ -132,6 +201,10 @@ fn numbers(report: &Report, scene: &Scene) -> Markup {
     rows.extend(
         scene.torque_limit.map(|limit| ("Torque limit", format!("{} N m", significant(limit, 6)))),
     );
+    rows.extend(
+        (scene.timing.worst_period)
+            .map(|worst| ("Longest time between updates", format!("{} s", significant(worst, 6)))),
+    );
     rows.extend(report.format.clone().map(|format| ("Coefficients rounded to", format)));
     if let Some(rest) = &report.rest {
         rows.push(("Torque of all steps at rest", format!("{} N m", significant(rest.hum, 4))));
@@ -139,9 +212,13 @@ fn numbers(report: &Report, scene: &Scene) -> Markup {
     rows.extend(report.board.clone().map(|why| ("Not on a board", why)));
     rows.push(("Rule of the paper", answer(report.rules.paper).to_owned()));
     rows.push(("Exact rule", answer(report.rules.exact).to_owned()));
+    table("numbers", &rows)
+}
+
+fn table(id: &str, rows: &[(&str, String)]) -> Markup {
     html! {
-        table id="numbers" {
-            @for (name, value) in &rows { tr { th scope="row" { (name) } td { (value) } } }
+        table id=(id) {
+            @for (name, value) in rows { tr { th scope="row" { (name) } td { (value) } } }
         }
     }
 }

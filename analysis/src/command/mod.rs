@@ -233,6 +233,9 @@ pub enum CommandError {
         /// The first sample, counted from 0, that is not shown.
         sample: usize,
     },
+    /// The date of a page is none.
+    #[error(transparent)]
+    Date(#[from] crate::date::NoDate),
     /// A page's file must be called one.
     #[error("{path}: the name of a page must end in .html")]
     NoPage {

@@ -1,5 +1,6 @@
 //! `haptic report`: one page about a scene.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -10,9 +11,11 @@ use super::{Answer, CommandError};
 use crate::chart::ChartError;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::{Trace, trace};
+use crate::date;
 use crate::map::MapError;
 use crate::report::{Figure, Page};
 use crate::simulation::SimulationError;
+use crate::terminal;
 use crate::verdict::Verdict;
 
 /// Arguments of `haptic report`.
@@ -32,7 +35,7 @@ pub struct Arguments {
 /// Cells of the map in each direction: as fine as a page shows, and judged in a moment.
 const SIDE: usize = 400;
 
-/// Writes the page. The answer is the scene's verdict, as that of `haptic certify`.
+/// Writes the page, and says the verdict, which is the answer as it is that of `haptic certify`.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let extension = arguments.output.extension().map(|e| e.to_string_lossy().to_lowercase());
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
@@ -64,9 +67,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         }
         drawn => Figure::Drawn(drawn?),
     };
-    let page = Page { report: &report, scene: &file.scene, nyquist, map, motion };
+    let (path, date) = (arguments.scene.file.as_str(), date::today()?);
+    let page = Page { report: &report, file: &file, path, date, nyquist, map, motion };
     std::fs::write(&arguments.output, page.html())
         .map_err(|source| CommandError::Unwritable { path: arguments.output.clone(), source })?;
+    let said = format!("{}: {}\n", arguments.output.display(), report.message);
+    let said = terminal::wrapped(&said, terminal::output_width(), 0);
+    io::stdout().lock().write_all(said.as_bytes())?;
     Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
 }
 

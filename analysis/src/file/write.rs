@@ -73,15 +73,20 @@ fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Opt
     }
 }
 
-fn environment(lines: &mut Vec<String>, environment: &Environment) {
-    let kind = match environment {
+/// The type of an environment as a file has it.
+pub fn kind(environment: &Environment) -> &'static str {
+    match environment {
         // A spring with a face is a wall without damping to the reader of a file.
         Environment::DelayedSpring(wall) if !wall.one_sided && wall.face == 0.0 => "delayed-spring",
         Environment::DelayedSpring(_) | Environment::DamperWall(_) => "damper-wall",
         Environment::FreeMode { .. } => "free-mode",
         Environment::FreeModeWall { .. } => "free-mode-wall",
         Environment::Rational(_) => "rational",
-    };
+    }
+}
+
+fn environment(lines: &mut Vec<String>, environment: &Environment) {
+    let kind = kind(environment);
     lines.push(format!("type = \"{kind}\""));
     match environment {
         Environment::DelayedSpring(spring) => {

@@ -28,7 +28,14 @@ fn report(folder: &Path, scene: &str) -> (String, Option<i32>) {
     let (file, page) = (folder.join("scene.toml"), folder.join("report.html"));
     std::fs::write(&file, scene).unwrap();
     let run = haptic(&["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()]);
-    assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
+    assert!(run.stderr.is_empty(), "{run:?}");
+    let said = String::from_utf8(run.stdout).unwrap();
+    let word = if run.status.code() == Some(0) {
+        "report.html: certified"
+    } else {
+        "report.html: rejected"
+    };
+    assert!(said.contains(word), "{said}");
     (std::fs::read_to_string(page).unwrap(), run.status.code())
 }
 
@@ -125,6 +132,32 @@ fn the_page_stands_alone() {
     for outside in ["http:", "https:", "src=", "href=", "@import", "url(", "<script"] {
         assert!(!links.contains(outside), "{outside}");
     }
+}
+
+#[test]
+fn the_page_says_what_was_judged_where_from_and_when() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, page) = (folder.path().join("scene.toml"), folder.path().join("report.html"));
+    std::fs::write(&file, format!("{WALL}{MOTION}")).unwrap();
+    let [file, page] = [&file, &page].map(|path| path.to_str().unwrap());
+    let write = |epoch: &str| {
+        let mut report = crate::common::program(&["report", file, "-o", page]);
+        let run = report.env("SOURCE_DATE_EPOCH", epoch).output().unwrap();
+        (run, crate::common::read(page))
+    };
+    let (run, first) = write("951782400");
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let version = env!("CARGO_PKG_VERSION");
+    for part in [
+        format!("Of {file}, by haptic {version}, on 2000-02-29."),
+        "damper-wall".to_owned(),
+        "22 N m/rad".to_owned(),
+        "0.0001 kg m\u{b2}, 0.02 N m s/rad, 4 N m/rad".to_owned(),
+    ] {
+        assert!(first.contains(&part), "{part}");
+    }
+    assert!(first == write("951782400").1, "the same input gives the same page");
+    assert_eq!(write("soon").0.status.code(), Some(2));
 }
 
 #[test]

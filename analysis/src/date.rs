@@ -1,0 +1,48 @@
+//! The day on which something is made, for a page that says so.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use thiserror::Error;
+use time::OffsetDateTime;
+
+/// What somebody sets so that the same input gives the same page (reproducible-builds.org).
+const EPOCH: &str = "SOURCE_DATE_EPOCH";
+
+/// The time that was asked for is none.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{EPOCH} = `{0}` is no number of seconds since 1970-01-01, up to the year 9999")]
+pub struct NoDate(String);
+
+/// Today in UTC, as 2026-03-14; the day of `SOURCE_DATE_EPOCH` where that is set.
+///
+/// # Errors
+/// Where that is no time.
+pub fn today() -> Result<String, NoDate> {
+    let seconds = match std::env::var_os(EPOCH) {
+        Some(text) => text.to_string_lossy().into_owned(),
+        None => {
+            let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+            since.as_secs().to_string()
+        }
+    };
+    day(&seconds)
+}
+
+fn day(seconds: &str) -> Result<String, NoDate> {
+    let time = seconds.parse().ok().and_then(|at| OffsetDateTime::from_unix_timestamp(at).ok());
+    time.map(|time| time.date().to_string()).ok_or_else(|| NoDate(seconds.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_of_seconds() {
+        assert_eq!(day("0").unwrap(), "1970-01-01");
+        assert_eq!(day("951782400").unwrap(), "2000-02-29");
+        for bad in ["", "soon", "1e9", "9999999999999999"] {
+            assert_eq!(day(bad), Err(NoDate(bad.to_owned())));
+        }
+    }
+}
