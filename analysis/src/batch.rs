@@ -51,6 +51,9 @@ pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), C
     if file == "-" {
         return certify_lines("<stdin>", format, std::io::stdin().lock(), out);
     }
+    if file.is_empty() {
+        return Err(FileError::whole(file, 1, 1, Problem::NoName).into());
+    }
     let unreadable = |error: std::io::Error| {
         FileError::whole(file, 1, 1, Problem::Unreadable(error.to_string()))
     };

@@ -134,14 +134,14 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
         rows.push(number("Face", wall.face, "rad"));
         let sides = if wall.one_sided { "felt beyond the face only" } else { "felt everywhere" };
         rows.push(("Sides", sides.to_owned()));
-        rows.push(number("Delay", wall.delay as f64, "samples"));
+        rows.push(delayed(wall.delay));
     };
     match &file.scene.environment {
         Environment::DelayedSpring(spring) => wall(&mut rows, &Wall { damping: 0.0, ..*spring }),
         Environment::DamperWall(behind) => wall(&mut rows, behind),
         Environment::FreeMode { residual, delay } => {
             rows.push(number("Residual damping", *residual, "N m s/rad"));
-            rows.push(number("Delay", *delay as f64, "samples"));
+            rows.push(delayed(*delay));
         }
         Environment::FreeModeWall { residual, wall: behind } => {
             rows.push(number("Residual damping", *residual, "N m s/rad"));
@@ -151,7 +151,7 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
             rows.push(("Numerator", format!("{:?}", rational.numerator.as_slice())));
             rows.push(("Denominator", format!("{:?}", rational.denominator.as_slice())));
             rows.push(number("Zeros at z = 1", rational.unit_zeros as f64, ""));
-            rows.push(number("Delay", rational.delay as f64, "samples"));
+            rows.push(delayed(rational.delay));
         }
     }
     if !file.chain.is_rigid() {
@@ -162,6 +162,10 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     rows.extend(file.encoder_step.map(|angle| number("Encoder's step", angle, "rad")));
     rows.extend(file.full_scale.map(|torque| number("Torque at full scale", torque, "N m")));
     rows
+}
+
+fn delayed(samples: usize) -> (&'static str, String) {
+    ("Delay", format!("{samples} sample{}", if samples == 1 { "" } else { "s" }))
 }
 
 fn hand(hand: Option<Hand>) -> String {

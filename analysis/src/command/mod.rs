@@ -94,7 +94,10 @@ pub enum Command {
     Bench(bench::Arguments),
     /// Show or change the parameters of a running board; it refuses what it cannot certify.
     Tune(tune::Arguments),
-    /// Watch a running board, or record it.
+    /// Watch a running board, tune it, or record it.
+    ///
+    /// In the view t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. Torque
+    /// is the coupling torque, as in every other trace; the motor applies its negative.
     Scope(scope::Arguments),
     /// Be a board without hardware, in a simulated hand, for tune and scope to be tried on.
     Twin(twin::Arguments),

@@ -20,9 +20,7 @@ use crate::scope::record::Recorder;
 use crate::scope::{Scope, view};
 use crate::terminal;
 
-/// Arguments of `haptic scope`. In the view t opens a line for new parameters (stiffness = 20), A arms,
-/// d disarms and q quits. Torque is the coupling torque, as in every other trace; the motor applies
-/// its negative.
+/// Arguments of `haptic scope`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH

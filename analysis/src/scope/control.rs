@@ -45,6 +45,10 @@ pub enum Reply {
     Answered(Outcome<String>),
     /// There was no answer.
     Unanswered,
+    /// It was not asked for, since the board has yet to answer what was asked before.
+    Busy,
+    /// It was not asked for, since there was no link.
+    NoLink,
 }
 
 impl Reply {
@@ -56,6 +60,10 @@ impl Reply {
             Self::Answered(Outcome::Done) => format!("{what}: done"),
             Self::Answered(Outcome::Refused(sentence)) => format!("{what}: {sentence}"),
             Self::Unanswered => format!("{what}: the board has not answered; it may have done it"),
+            Self::Busy => {
+                format!("{what}: not sent; the board has not answered the last request yet")
+            }
+            Self::NoLink => format!("{what}: not sent; there was no link to the board"),
         }
     }
 }

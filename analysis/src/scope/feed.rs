@@ -166,12 +166,14 @@ impl Feeder {
     fn rest(&self) {
         let end = Instant::now() + RETRY;
         while !self.is_over() && Instant::now() < end {
+            self.refuse();
             thread::sleep(Duration::from_millis(20));
         }
     }
 
     /// Passes on what the board says, until the link is lost or nobody listens.
     fn follow(&self, link: &mut Link) -> Result<(), End> {
+        self.refuse();
         let (program, board) = (link.program().to_owned(), *link.board());
         self.events.send(Event::Connected { program, board, remembered: link.remembered() })?;
         link.send(&ToBoard::Stream(Some(self.every)))?;
@@ -234,31 +236,43 @@ impl Feeder {
         Ok(())
     }
 
-    /// Passes on the next request, once the one before it is answered; asks again, since bytes get
-    /// lost.
+    /// Passes on a request; one at a time, but that disarming waits for nothing. Asks again, since
+    /// bytes get lost.
     fn ask(&self, link: &mut Link, pending: &mut Option<Pending>) -> Result<(), End> {
         let now = Instant::now();
-        if pending.as_ref().is_some_and(|pending| now >= pending.end)
-            && let Some(Pending { request, .. }) = pending.take()
-        {
+        while let Ok(request) = self.requests.try_recv() {
+            if pending.is_some() && request != Request::Disarm {
+                self.events.send(Event::Reply(request, Reply::Busy))?;
+                continue;
+            }
+            if let Some(Pending { request, .. }) = pending.take() {
+                self.events.send(Event::Reply(request, Reply::Unanswered))?;
+            }
+            let id = link.next_id();
+            link.send(&request.message(id))?;
+            self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
+            let (again, end) = (now + REQUEST.again, now + REQUEST.end);
+            *pending = Some(Pending { id, request, again, end });
+        }
+        if let Some(Pending { request, .. }) = pending.take_if(|pending| now >= pending.end) {
             self.events.send(Event::Reply(request, Reply::Unanswered))?;
         }
-        match pending {
-            Some(Pending { id, request, again, .. }) if now >= *again => {
-                *again = now + REQUEST.again;
-                link.send(&request.message(*id))?;
-            }
-            Some(_) => {}
-            None => {
-                let Ok(request) = self.requests.try_recv() else { return Ok(()) };
-                let id = link.next_id();
-                link.send(&request.message(id))?;
-                self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
-                let (again, end) = (now + REQUEST.again, now + REQUEST.end);
-                *pending = Some(Pending { id, request, again, end });
-            }
+        if let Some(Pending { id, request, again, .. }) = pending
+            && now >= *again
+        {
+            *again = now + REQUEST.again;
+            link.send(&request.message(*id))?;
         }
         Ok(())
+    }
+
+    /// Drops what was asked for without a link: a motor is not switched on by a key that was pressed
+    /// some time ago.
+    fn refuse(&self) {
+        for request in self.requests.try_iter() {
+            // Nobody may be listening any more, which the next look tells.
+            let _ = self.events.send(Event::Reply(request, Reply::NoLink));
+        }
     }
 
     fn is_over(&self) -> bool {

@@ -296,7 +296,7 @@ fn a_design_says_what_else_it_has_changed() {
     assert_eq!(report["notes"].as_array().map(Vec::len), Some(1), "{report}");
 }
 
-/// A third stiffer than what the device can render: the motion grows by some per cent a tick.
+/// Four times as stiff as what the device can render.
 #[test]
 fn a_device_that_runs_away_is_a_no() {
     let folder = TempDir::new().unwrap();
@@ -305,14 +305,14 @@ fn a_device_that_runs_away_is_a_no() {
     let scene =
         |samples: u32| format!("{wall}[simulation]\nsamples = {samples}\nposition = 0.01\n");
     for more in [&[][..], &["--csv"], &["--json"]] {
-        std::fs::write(&path, scene(50)).unwrap();
+        std::fs::write(&path, scene(10)).unwrap();
         let output = haptic(&[&["simulate", name(&path)], more].concat());
         assert_eq!(output.status.code(), Some(0), "{output:?}");
-        std::fs::write(&path, scene(5000)).unwrap();
+        std::fs::write(&path, scene(100)).unwrap();
         let output = haptic(&[&["simulate", name(&path)], more].concat());
         assert_eq!(output.status.code(), Some(1), "{more:?}");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(said.contains("1000000 rad from its zero") || said.contains("beyond the range"));
+        assert!(said.contains("more than 1000000 rad from its zero"), "{said}");
     }
 }
 

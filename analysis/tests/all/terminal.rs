@@ -11,7 +11,8 @@ use crate::common::{WALL, haptic, program};
 /// What the program writes to a terminal of so many columns, and its exit status. Both of its outputs
 /// are the terminal.
 fn shown(arguments: &[&str], columns: u32, environment: &[(&str, &str)]) -> (String, Option<i32>) {
-    let (mut master, slave) = TTYPort::pair().unwrap();
+    let (mut master, mut slave) = TTYPort::pair().unwrap();
+    slave.set_exclusive(false).unwrap();
     let path = slave.name().unwrap();
     let open = || OpenOptions::new().read(true).write(true).open(&path).unwrap();
     let size = ["cols", &columns.to_string(), "rows", "20"].map(str::to_owned);

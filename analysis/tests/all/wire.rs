@@ -14,8 +14,8 @@ use analysis::link::{Address, Link};
 use analysis::program::{Program, damper_wall};
 use analysis::rig::Plant;
 use analysis::scope::Scope;
-use analysis::scope::control::Action;
-use analysis::scope::feed::Feed;
+use analysis::scope::control::{Action, Reply, Request};
+use analysis::scope::feed::{Event, Feed};
 use analysis::twin::{Clock, Twin};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
@@ -328,6 +328,23 @@ fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
     press("tstiffness = 4000\n", "stiffness=4000: rejected", softer);
     press("d", "disarm: done", |scope| scope.status.is_some_and(|(s, _)| !s.state.is_armed()));
     press("A", "arm: done", |scope| scope.status.is_some_and(|(s, _)| s.state.is_armed()));
+}
+
+/// A key that was pressed while the link was lost does nothing once it is back.
+#[test]
+fn what_is_asked_without_a_link_is_not_done_later() {
+    let rig = Rig::new(Clock::Real);
+    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let wait = |is_it: fn(&Event) -> bool| {
+        let end = Instant::now() + Duration::from_secs(20);
+        while !feed.next(Duration::from_millis(10)).is_some_and(|event| is_it(&event)) {
+            assert!(Instant::now() < end, "it takes too long");
+        }
+    };
+    drop(rig.twin);
+    wait(|event| matches!(event, Event::Lost(_)));
+    feed.request(Request::Arm);
+    wait(|event| matches!(event, Event::Reply(Request::Arm, Reply::NoLink)));
 }
 
 #[test]
