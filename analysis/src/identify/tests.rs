@@ -183,7 +183,7 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     let rig = Rig { device: PADDLE, sensing: SENSING };
     let mut tones = sines(PADDLE, LOW_TO_HIGH, 0.02);
     tones[2].duration = 1.0;
-    tones[7].amplitude *= 1e-4;
+    tones[7].amplitude *= 5e-3;
     let record = rig.measure(&tones).unwrap();
     let found = identify(&record, &Correction::of_encoder(61_440.0)).unwrap();
     let said: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();

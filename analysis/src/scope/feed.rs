@@ -140,6 +140,7 @@ impl Feeder {
                 Some(mut link) => self.follow(&mut link),
                 None => match Link::open(&address) {
                     Ok(again) => {
+                        self.refuse();
                         link = Some(again);
                         continue;
                     }
@@ -173,7 +174,6 @@ impl Feeder {
 
     /// Passes on what the board says, until the link is lost or nobody listens.
     fn follow(&self, link: &mut Link) -> Result<(), End> {
-        self.refuse();
         let (program, board) = (link.program().to_owned(), *link.board());
         self.events.send(Event::Connected { program, board, remembered: link.remembered() })?;
         link.send(&ToBoard::Stream(Some(self.every)))?;

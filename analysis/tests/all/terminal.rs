@@ -66,7 +66,7 @@ fn messages_answers_and_help_are_as_wide_as_the_terminal() {
     let scene = path.to_str().unwrap();
     for arguments in [
         &["certify", scene][..],
-        &["chart", "tradeoff", "-o", "a.pdf"],
+        &["run", "no_such_scene"],
         &["scope", "--help"],
         &["schema", "--example", "wall"],
     ] {
