@@ -21,7 +21,7 @@ pub mod tune;
 pub mod twin;
 pub mod worst_hand;
 
-use std::io;
+use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -62,9 +62,26 @@ Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, diffe
 impl Arguments {
     /// Those that the program was started with; says what is wrong with them, and ends it.
     pub fn of_program() -> Self {
-        let matches = with_exit_status(Self::command()).get_matches();
-        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+        let matches = with_exit_status(Self::command()).try_get_matches();
+        let found = matches.and_then(|matches| Self::from_arg_matches(&matches));
+        found.unwrap_or_else(|error| refuse(&error))
     }
+}
+
+/// Ends the program with a help that was asked for, or with what is wrong with its arguments, which
+/// clap does not break into lines.
+fn refuse(error: &clap::Error) -> ! {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    let rendered = error.render();
+    let text = match terminal::has_colour(io::stderr().is_terminal()) {
+        true => rendered.ansi().to_string(),
+        false => rendered.to_string(),
+    };
+    // Nobody is left to be told if this fails.
+    let _ = write!(io::stderr(), "{}", terminal::wrapped(&text, terminal::error_width(), 2));
+    std::process::exit(error.exit_code())
 }
 
 fn with_exit_status(command: clap::Command) -> clap::Command {
@@ -374,7 +391,6 @@ fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 fn complain(error: &CommandError) {
-    use std::io::{IsTerminal, Write};
     let stderr = io::stderr();
     let (colour, width) = (terminal::has_colour(stderr.is_terminal()), terminal::error_width());
     let text = match error {
