@@ -12,7 +12,7 @@ use crate::toolchain::{self, Board, NoBoard, Tools, probe};
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode, identify)
+    /// Name of a program in firmware/src/bin, as damper_wall or identify
     #[arg(value_name = "PROGRAM")]
     pub program: String,
     /// The board: nucleo-g474re, b-g431b-esc1 or stm32f405

@@ -13,12 +13,12 @@ use serde::Serialize;
 
 use super::common::{ForWhom, json};
 use super::identify::positive;
-use super::{Answer, CommandError, demo};
+use super::{Answer, CommandError, demo, own};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::{self, SceneFile};
 use crate::hand::Script;
-use crate::program::{self, Program};
+use crate::program::Program;
 use crate::progress;
 use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
@@ -98,7 +98,7 @@ impl From<FormatArgument> for NumberFormat {
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file
+    /// Name of a program in firmware/src/bin, as damper_wall; or, on the host, a scene file
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to
@@ -241,9 +241,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
 /// A scene file, or the sentence that there is neither such a file nor such a program.
 pub(super) fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
-        let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
-        let name = name.to_owned();
-        return Err(CommandError::NoScene { name, programs: programs.join(", ") });
+        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
     }
     Ok(file::load(name)?)
 }

@@ -11,14 +11,16 @@ pub mod plan;
 mod prepare;
 pub mod probe;
 mod size;
+mod sources;
 mod version;
 
 pub use board::{Board, NoBoard};
-pub use build::{BuildError, NumberFormat, Program, Toolchain};
+pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;
 pub use prepare::{SetupError, prepare};
 pub use size::Sizes;
+pub use sources::Sources;
 pub use version::Version;
 
 /// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.

@@ -8,6 +8,7 @@ mod common;
 mod device_files;
 mod haptic;
 mod identify_target;
+mod own_scene;
 mod pictures;
 mod python_client;
 mod readme;
