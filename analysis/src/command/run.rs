@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use firmware::encoder::CounterWidth;
 use firmware::scene::Scene;
@@ -120,7 +121,8 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
     pub format: FormatArgument,
     /// Ticks to run; a recording ends with its last row
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N",
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_TICKS))]
     pub ticks: Option<usize>,
     /// Print a row a tick: tick,count,angle,torque,code,limit
     #[arg(long, conflicts_with = "json")]
@@ -132,6 +134,9 @@ pub struct Arguments {
 
 /// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
 pub const TICKS: usize = 5000;
+
+/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
+pub const MOST_TICKS: u64 = 10_000_000;
 
 /// Torque in N m at full scale for a scene file that has no limit of its own.
 const FULL_SCALE: f64 = 5.0;

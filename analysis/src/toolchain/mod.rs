@@ -3,6 +3,7 @@
 //! [`prepare`] looks at the machine ([`facts`]), chooses a route ([`plan`], a pure function), takes
 //! it, and gives a [`Toolchain`]; everything else asks that.
 
+mod apt;
 mod board;
 mod build;
 pub mod facts;
@@ -14,11 +15,12 @@ mod size;
 mod sources;
 mod version;
 
+pub use apt::AptError;
 pub use board::{Board, NoBoard};
 pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;
-pub use prepare::{SetupError, prepare};
+pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
 pub use sources::Sources;
 pub use version::Version;

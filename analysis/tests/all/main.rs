@@ -15,6 +15,7 @@ mod readme;
 mod reference;
 mod report;
 mod scene_files;
+mod set_up;
 mod simulate_program;
 mod simulation_reference;
 mod virtual_board;

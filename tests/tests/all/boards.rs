@@ -32,6 +32,8 @@ fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
     )
     .unwrap();
     assert!(sizes.text > 0 && sizes.flash() <= memory.flash);
+    // The map fits the smallest of the boards.
+    assert!(memory.flash <= board.flash(), "{board}");
     assert!(sizes.bss > 0 && sizes.ram() <= memory.ram);
     assert!(sizes.fast <= memory.fast);
     let elf = std::fs::read(&program.path).unwrap();
