@@ -106,3 +106,15 @@ fn a_name_that_cannot_be_one_is_refused() {
         assert!(complaint(haptic(&["new", name])).contains("is there already"));
     }
 }
+
+/// So that whoever measures a device changes one file.
+#[test]
+fn the_device_of_all_scenes_is_written_once() {
+    let folder = root().join("firmware/src/bin");
+    assert!(read(folder.join("device/mod.rs")).contains("DEVICE: Device = Device {"));
+    for name in ["damper_wall", "delayed_spring", "free_mode", "identify"] {
+        let text = read(folder.join(name).with_extension("rs"));
+        assert!(text.contains("mod device;") && text.contains("device::TRANSDUCERS"), "{name}");
+        assert!(!text.contains("inertia:") && !text.contains("counts_per_turn"), "{name}");
+    }
+}

@@ -18,9 +18,10 @@ use self::common::{MOTION, WALL, report};
 const MEASURE: &str = include_str!("measure.js");
 
 /// Each test with its name.
-const TESTS: [(&str, fn()); 2] = [
+const TESTS: [(&str, fn()); 3] = [
     ("nothing_is_missing_cut_off_or_in_the_way", nothing_is_missing_cut_off_or_in_the_way),
     ("the_measurement_finds_what_it_looks_for", the_measurement_finds_what_it_looks_for),
+    ("without_a_browser_these_tests_are_ignored", without_a_browser_these_tests_are_ignored),
 ];
 
 fn main() -> ExitCode {
@@ -124,4 +125,16 @@ fn the_measurement_finds_what_it_looks_for() {
         let found = measure(folder.path(), &page, 800)["found"].to_string();
         assert!(found.contains(what), "{what}: {found}");
     }
+}
+
+/// And not passed: this program once more, where no program is to be found.
+fn without_a_browser_these_tests_are_ignored() {
+    let this = std::env::current_exe().unwrap();
+    let run = std::process::Command::new(this).env("PATH", "/nowhere").output().unwrap();
+    assert!(run.status.success(), "{run:?}");
+    let (shown, said) =
+        (String::from_utf8(run.stdout).unwrap(), String::from_utf8(run.stderr).unwrap());
+    assert_eq!(shown.matches("test [no chromium] ").count(), TESTS.len(), "{shown}");
+    assert!(shown.contains("0 passed; 0 failed; 3 ignored"), "{shown}");
+    assert!(said.contains("skipped: ") && said.contains("apt install chromium"), "{said}");
 }
