@@ -1,5 +1,7 @@
 //! What a hand does over time: where it wants to be, and when it lets go.
 
+use firmware::environment::Environment;
+
 use crate::device::{Grip, Hand};
 
 /// A hand's intention: it moves smoothly from one angle to the next, and lets go at the end.
@@ -19,6 +21,14 @@ pub struct Script {
 pub const GRIP: Hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
 
 impl Script {
+    /// What shows an environment: a wall is pushed into, free motion is swung.
+    pub fn showing(environment: &Environment) -> Self {
+        match environment {
+            Environment::FreeMode { .. } => Self::swing_and_let_go(),
+            _ => Self::push_and_let_go(),
+        }
+    }
+
     /// Comes from outside, pushes in, holds, eases out, pushes in once more and lets go there.
     pub fn push_and_let_go() -> Self {
         let path =

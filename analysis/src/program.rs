@@ -1,4 +1,5 @@
-//! The scenes that have a program for the board, as that program's own file says them.
+//! The scenes that have a program for the board, as that program's own file says them: three, and one
+//! more in the build of `haptic` that the package `haptic-scene` makes for it.
 
 #[path = "../../firmware/src/bin/damper_wall.rs"]
 pub mod damper_wall;
@@ -13,16 +14,15 @@ pub mod free_mode;
 pub mod identify;
 
 use std::io;
+use std::sync::OnceLock;
 
-use firmware::boot;
-use firmware::cycle::Options;
 use firmware::environment::Renderable;
 use firmware::number::Number;
 use firmware::scene::Scene;
-use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Transducers};
+use firmware::servo::{BuildError, Servo, Transducers};
 use serde::Serialize;
 
-use crate::controller::{Controller, controller};
+use crate::controller::Controller;
 use crate::hand::Script;
 use crate::link::Address;
 use crate::rig::{Plant, SimulatedDevice};
@@ -42,8 +42,10 @@ pub struct Program {
     pub script: fn() -> Script,
     /// What its servo keeps from tick to tick, in a format.
     pub state: fn(NumberFormat) -> State,
-    build: Build,
-    listen: Listen,
+    /// Builds its servo on the host.
+    pub build: Build,
+    /// Starts it on a board that is a thread.
+    pub listen: Listen,
 }
 
 /// Bytes that a servo keeps from tick to tick, coefficients included. There is nothing in it whose
@@ -57,16 +59,17 @@ pub struct State {
 }
 
 impl State {
-    fn of<E: Renderable<N>, N: Number>() -> Self {
+    /// What the servo of an environment keeps in the format `N`.
+    pub fn of<E: Renderable<N>, N: Number>() -> Self {
         Self { servo: size_of::<Servo<E, N>>(), environment: size_of::<E::Law>() }
     }
 }
 
 /// Builds a program's servo on the host.
-type Build = fn(NumberFormat, &Transducers) -> Result<Box<dyn Controller>, BuildError>;
+pub type Build = fn(NumberFormat, &Transducers) -> Result<Box<dyn Controller>, BuildError>;
 
 /// Starts a program on a board that is a thread.
-type Listen = fn(Box<dyn Plant + Send>, &Address, Clock) -> io::Result<Twin>;
+pub type Listen = fn(Box<dyn Plant + Send>, &Address, Clock) -> io::Result<Twin>;
 
 impl Program {
     /// Its servo on the host, with other transducers where a recording comes from another encoder.
@@ -107,49 +110,77 @@ impl Program {
 
     /// The program of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
-        ALL.iter().find(|program| program.name == name)
+        ALL.iter().chain(MORE.get()).find(|program| program.name == name)
     }
 }
 
+/// The program that this build has besides [`ALL`].
+static MORE: OnceLock<Program> = OnceLock::new();
+
+/// Adds the one program that [`Program::find`] is to know besides [`ALL`].
+pub fn add(program: Program) {
+    // A second one is not found, which `find` says.
+    let _ = MORE.set(program);
+}
+
+/// The [`Program`] of a module that is a scene's file.
+#[macro_export]
+macro_rules! program {
+    ($module:ident) => {
+        $crate::program::Program {
+            name: stringify!($module),
+            scene: $module::SCENE.as_data(),
+            transducers: $module::TRANSDUCERS,
+            script: || $crate::hand::Script::showing(&$module::SCENE.as_data().environment),
+            state: |format| match format {
+                $crate::toolchain::NumberFormat::F32 => {
+                    $crate::program::State::of::<$module::Environment, f32>()
+                }
+                $crate::toolchain::NumberFormat::Fixed => {
+                    $crate::program::State::of::<$module::Environment, $module::Fixed>()
+                }
+            },
+            build: |format, transducers| match format {
+                $crate::toolchain::NumberFormat::F32 => {
+                    $crate::controller::controller::<_, f32>(&$module::CERTIFIED, transducers)
+                }
+                $crate::toolchain::NumberFormat::Fixed => {
+                    $crate::controller::controller::<_, $module::Fixed>(
+                        &$module::CERTIFIED,
+                        transducers,
+                    )
+                }
+            },
+            listen: |plant, address, clock| {
+                let program = ::firmware::boot::Program {
+                    scene: $module::SCENE,
+                    transducers: $module::TRANSDUCERS,
+                    rendering: ::firmware::servo::RenderingOptions::DEFAULT,
+                    options: ::firmware::cycle::Options::DEFAULT,
+                };
+                $crate::twin::Twin::start::<_, f32, ::firmware::servo::Latched>(
+                    stringify!($module),
+                    program,
+                    plant,
+                    address,
+                    clock,
+                )
+            },
+        }
+    };
+}
+
 macro_rules! programs {
-    ($($module:ident, $script:path;)*) => {
+    ($($module:ident),*) => {
         /// Names of all programs, in the order in which they are shown.
         pub const NAMES: &[&str] = &[$(stringify!($module)),*];
 
         /// All programs, in the same order.
-        pub const ALL: &[Program] = &[$(Program {
-            name: stringify!($module),
-            scene: $module::SCENE.as_data(),
-            transducers: $module::TRANSDUCERS,
-            script: $script,
-            state: |format| match format {
-                NumberFormat::F32 => State::of::<$module::Environment, f32>(),
-                NumberFormat::Fixed => State::of::<$module::Environment, $module::Fixed>(),
-            },
-            build: |format, transducers| match format {
-                NumberFormat::F32 => controller::<_, f32>(&$module::CERTIFIED, transducers),
-                NumberFormat::Fixed => {
-                    controller::<_, $module::Fixed>(&$module::CERTIFIED, transducers)
-                }
-            },
-            listen: |plant, address, clock| {
-                let program = boot::Program {
-                    scene: $module::SCENE,
-                    transducers: $module::TRANSDUCERS,
-                    rendering: RenderingOptions::DEFAULT,
-                    options: Options::DEFAULT,
-                };
-                Twin::start::<_, f32, Latched>(stringify!($module), program, plant, address, clock)
-            },
-        }),*];
+        pub const ALL: &[Program] = &[$($crate::program!($module)),*];
     };
 }
 
-programs! {
-    delayed_spring, Script::push_and_let_go;
-    damper_wall, Script::push_and_let_go;
-    free_mode, Script::swing_and_let_go;
-}
+programs!(delayed_spring, damper_wall, free_mode);
 
 #[cfg(test)]
 mod tests {

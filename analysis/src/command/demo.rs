@@ -4,12 +4,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use firmware::certificate::certify;
 use firmware::dac::DacCode;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 
-use super::run::FormatArgument;
+use super::run::{FormatArgument, MOST_TICKS};
 use super::{Answer, CommandError};
 use crate::chain::Chain;
 use crate::chart::growth::growth;
@@ -35,8 +36,9 @@ pub struct Arguments {
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
     pub format: FormatArgument,
-    /// Ticks of each run
-    #[arg(long, value_name = "N", default_value_t = super::run::TICKS)]
+    /// Ticks of each run; a picture needs two
+    #[arg(long, value_name = "N", default_value_t = super::run::TICKS,
+          value_parser = RangedU64ValueParser::<usize>::new().range(2..=MOST_TICKS))]
     pub ticks: usize,
 }
 

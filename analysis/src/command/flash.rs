@@ -7,12 +7,12 @@ use clap::Args;
 use super::run::FormatArgument;
 use super::{Answer, CommandError};
 use crate::progress;
-use crate::toolchain::{self, Board, NoBoard, Tools, probe};
+use crate::toolchain::{self, Board, Memory, NoBoard, Tools, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode, identify)
+    /// Name of a program in firmware/src/bin, as damper_wall or identify
     #[arg(value_name = "PROGRAM")]
     pub program: String,
     /// The board: nucleo-g474re, b-g431b-esc1 or stm32f405
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
     println!("program: {}", program.path.display());
     println!("chip: {chip}");
-    println!("flash: {} of {} bytes", sizes.flash(), memory.flash);
+    println!("flash: {} of {} bytes{}", sizes.flash(), board.flash(), spared(board, memory));
     println!("variables: {} of {} bytes of RAM", sizes.ram(), memory.ram);
     println!("stack: {} bytes of RAM", memory.stack);
     println!("fast memory: {} of {} bytes", sizes.fast, memory.fast);
@@ -55,6 +55,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         probe::run(&program.path, &chip, arguments.probe.as_deref())?;
     }
     Ok(Answer::Yes)
+}
+
+/// What the linker's map leaves of a board's flash, since one map fits every board.
+fn spared(board: Board, memory: Memory) -> String {
+    match memory.flash < board.flash() {
+        true => format!("; the linker's map, which fits every board, allows {}", memory.flash),
+        false => String::new(),
+    }
 }
 
 fn read(path: &PathBuf) -> Result<Vec<u8>, CommandError> {

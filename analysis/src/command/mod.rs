@@ -11,6 +11,8 @@ pub mod device;
 pub mod failures;
 pub mod flash;
 pub mod identify;
+pub mod new;
+mod own;
 pub mod report;
 pub mod run;
 pub mod schema;
@@ -97,6 +99,8 @@ pub enum Command {
     Device(device::Arguments),
     /// What are inertia, damping and passivity of a device that was measured?
     Identify(identify::Arguments),
+    /// Begin a scene of your own, as a copy of another one.
+    New(new::Arguments),
     /// Build a scene's program for a board and flash it.
     Flash(flash::Arguments),
     /// Run a scene tick by tick: on this machine, on the emulated board, or as flashed on a virtual one.
@@ -163,7 +167,7 @@ pub enum CommandError {
     /// A scene file has no program for the board.
     #[error(
         "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
-         of its own, in firmware/src/bin"
+         of its own, in firmware/src/bin: `cargo haptic new NAME` begins one"
     )]
     FileOnBoard {
         /// The scene.
@@ -342,9 +346,11 @@ impl CommandError {
 /// Runs one command and turns its answer into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
+        ref command if let Some(scene) = own::scene_of(command) => own::hand_over(&scene),
         Command::Certify(arguments) => certify::run(&arguments),
         Command::Device(arguments) => device::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
         Command::Flash(arguments) => flash::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Demo(arguments) => demo::run(&arguments),

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use firmware::encoder::CounterWidth;
 use firmware::scene::Scene;
@@ -13,12 +14,12 @@ use serde::Serialize;
 
 use super::common::{ForWhom, json};
 use super::identify::positive;
-use super::{Answer, CommandError, demo};
+use super::{Answer, CommandError, demo, own};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::{self, SceneFile};
 use crate::hand::Script;
-use crate::program::{self, Program};
+use crate::program::Program;
 use crate::progress;
 use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
@@ -98,7 +99,7 @@ impl From<FormatArgument> for NumberFormat {
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode) or, on the host, a scene file, whose
+    /// Name of a program in firmware/src/bin, as damper_wall; or, on the host, a scene file, whose
     /// [human] holds the device, and whose [simulation] is for `haptic simulate`
     #[arg(value_name = "SCENE")]
     pub scene: String,
@@ -121,7 +122,8 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
     pub format: FormatArgument,
     /// Ticks to run; a recording ends with its last row
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N",
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_TICKS))]
     pub ticks: Option<usize>,
     /// Print a row a tick: tick,count,angle,torque,code,limit; the torque is the coupling's, and the
     /// motor applies its negative
@@ -134,6 +136,9 @@ pub struct Arguments {
 
 /// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
 pub const TICKS: usize = 5000;
+
+/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
+pub const MOST_TICKS: u64 = 10_000_000;
 
 /// Torque in N m at full scale for a scene file that has no limit of its own.
 const FULL_SCALE: f64 = 5.0;
@@ -243,9 +248,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
 /// A scene file, or the sentence that there is neither such a file nor such a program.
 pub(super) fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
-        let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
-        let name = name.to_owned();
-        return Err(CommandError::NoScene { name, programs: programs.join(", ") });
+        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
     }
     Ok(file::load(name)?)
 }

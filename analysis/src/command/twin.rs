@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::run::Flashed;
-use super::{Answer, CommandError, seconds, virtual_board as board};
+use super::{Answer, CommandError, own, seconds, virtual_board as board};
 use crate::link::Address;
-use crate::program::{self, Program};
+use crate::program::Program;
 use crate::rig::SimulatedDevice;
 use crate::toolchain::{Board, NumberFormat};
 use crate::twin::{Clock, Twin};
@@ -17,7 +17,7 @@ use crate::twin::{Clock, Twin};
 /// Arguments of `haptic twin`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program: delayed_spring, damper_wall, free_mode
+    /// Name of a scene's program in firmware/src/bin, as damper_wall
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Where it listens: tcp://HOST:PORT, unix:PATH
@@ -42,10 +42,8 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Runs a program in a simulated hand until the time is up or Ctrl-C.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let name = &arguments.scene;
-    let program = Program::find(name).ok_or_else(|| {
-        let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
-        CommandError::NoScene { name: name.clone(), programs: programs.join(", ") }
-    })?;
+    let program = Program::find(name)
+        .ok_or_else(|| CommandError::NoScene { name: name.clone(), programs: own::scenes() })?;
     let (enough, wait) = mpsc::channel();
     ctrlc::set_handler(move || {
         // Asked more than once, it ends as well.

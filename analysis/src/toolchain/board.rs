@@ -49,6 +49,16 @@ impl Board {
         }
     }
 
+    /// Bytes of its chip's flash, as the chip's data sheet says.
+    pub const fn flash(self) -> u64 {
+        let kibibytes = match self {
+            Self::NucleoG474re => 512,
+            Self::BG431bEsc1 => 128,
+            Self::Stm32f405 => 1024,
+        };
+        kibibytes << 10
+    }
+
     /// The board of that name.
     ///
     /// # Errors

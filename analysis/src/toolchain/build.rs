@@ -11,6 +11,7 @@ use super::memory::{Memory, NoLength};
 use super::plan::Compiler;
 use super::prepare::last_lines;
 use super::size::{SizeError, Sizes};
+use super::sources::{BadName, Sources};
 use super::{Board, TARGET};
 use crate::anatomy::{Anatomy, ListingError};
 
@@ -64,6 +65,17 @@ pub enum BuildError {
         /// What there is.
         scenes: Vec<String>,
     },
+    /// A new scene cannot have this name.
+    #[error("a scene cannot be called `{name}`: {why}")]
+    Name {
+        /// The name.
+        name: String,
+        /// Why not.
+        why: BadName,
+    },
+    /// A new scene's file is there.
+    #[error("{} is there already; it is left as it is", .0.display())]
+    Exists(PathBuf),
     /// Cargo could not be started.
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
@@ -153,24 +165,12 @@ impl Toolchain {
         self.compiler
     }
 
-    /// Names of the scenes that have a program, in the alphabet's order.
+    /// Names of the programs, in the alphabet's order.
     ///
     /// # Errors
     /// Where the source cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
-        let folder = self.workspace.root.join("firmware/src/bin");
-        let failed = |source| BuildError::File { path: folder.clone(), source };
-        let mut scenes = Vec::new();
-        for entry in folder.read_dir().map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            if let (Some(name), Some("rs")) =
-                (path.file_stem(), path.extension().and_then(|e| e.to_str()))
-            {
-                scenes.push(name.to_string_lossy().into_owned());
-            }
-        }
-        scenes.sort();
-        Ok(scenes)
+        Sources::of(&self.workspace.root).programs()
     }
 
     /// Builds a scene's program for the emulated board, with its log, and gives its file.
@@ -376,6 +376,27 @@ impl Toolchain {
 /// What is flashed is built with, from the workspace's root. Not a profile with a name, which would have
 /// a folder of its own, and in it each macro and build script once more.
 const FLASH: &str = "firmware/flash.toml";
+
+/// Builds the program `haptic` with one scene more, and gives its file.
+///
+/// It is built as this program was, for this machine: what they have in common is there.
+///
+/// # Errors
+/// Where the scene does not compile.
+pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
+    const NAME: &str = "haptic-scene";
+    let workspace = Workspace::find()?;
+    let _alone = workspace.lock("scene")?;
+    let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
+    let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
+    if profile == "release" {
+        cargo.arg("--release");
+    }
+    cargo.env("CARGO_TARGET_DIR", &workspace.target).env("HAPTIC_SCENE", scene);
+    ran(scene, &mut cargo)?;
+    workspace.keep(&workspace.target.join(profile).join(NAME), &format!("haptic-{scene}"))
+}
 
 /// Has cargo build a program.
 fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {

@@ -3,6 +3,7 @@
 //! [`prepare`] looks at the machine ([`facts`]), chooses a route ([`plan`], a pure function), takes
 //! it, and gives a [`Toolchain`]; everything else asks that.
 
+mod apt;
 mod board;
 mod build;
 pub mod facts;
@@ -11,14 +12,17 @@ pub mod plan;
 mod prepare;
 pub mod probe;
 mod size;
+mod sources;
 mod version;
 
+pub use apt::AptError;
 pub use board::{Board, NoBoard};
-pub use build::{BuildError, NumberFormat, Program, Toolchain};
+pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;
-pub use prepare::{SetupError, prepare};
+pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
+pub use sources::Sources;
 pub use version::Version;
 
 /// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.

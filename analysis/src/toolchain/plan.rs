@@ -8,7 +8,7 @@
 
 use std::fmt;
 
-use super::{TARGET, Version};
+use super::{TARGET, Version, apt};
 use crate::emulator::QEMU;
 
 /// What is wanted of the machine.
@@ -332,18 +332,14 @@ impl Need {
     }
 }
 
-/// The packages' names, as `apt-get install` takes them.
-pub fn names(packages: &[Package]) -> String {
-    packages.iter().map(|package| package.name()).collect::<Vec<_>>().join(" ")
-}
-
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::AddTarget => write!(f, "rustup target add {TARGET}"),
             Self::FetchLists => f.write_str("apt-get update"),
             Self::Install(packages) => {
-                write!(f, "apt-get install -y --no-install-recommends {}", names(packages))
+                let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
+                f.write_str(&apt::by_hand(&names))
             }
         }
     }

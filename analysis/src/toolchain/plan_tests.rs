@@ -159,7 +159,7 @@ fn both_kinds_of_request_are_made_together() {
 fn requests_are_commands() {
     assert_eq!(
         Request::Packages(vec![Package::Lld, Package::Qemu]).to_string(),
-        "install packages: sudo apt-get install -y --no-install-recommends lld qemu-system-arm"
+        "install packages: sudo apt-get install --no-install-recommends lld qemu-system-arm"
     );
     assert_eq!(
         Request::Compiler { found: Some(OLD), rustup: true }.to_string(),

@@ -3,6 +3,7 @@
 use std::io;
 use std::process::{Command, ExitStatus, Stdio};
 
+use super::apt::{Apt, AptError, person_agrees};
 use super::build::{Toolchain, Workspace};
 use super::facts::observe;
 use super::plan::{Plan, Request, Step, Tools, plan};
@@ -32,6 +33,9 @@ pub enum SetupError {
         /// The end of what it said.
         output: String,
     },
+    /// Packages were not installed.
+    #[error(transparent)]
+    Apt(#[from] AptError),
     /// A step was taken and has not helped.
     #[error("`{0}` succeeded, and what it should bring is still missing")]
     InVain(Step),
@@ -48,7 +52,8 @@ fn bullets(requests: &[Request]) -> String {
 /// builds them.
 ///
 /// As root on Debian it installs what is missing; with rustup it adds the target, unless the
-/// machine's owner forbids that. `progress` is told each step before it is taken.
+/// machine's owner forbids that. `progress` is told each step before it is taken. No package is removed
+/// but after a yes at the terminal.
 ///
 /// # Errors
 /// Elsewhere, [`SetupError::Missing`] says exactly what to install.
@@ -66,16 +71,14 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
         if taken.contains(&step) {
             return Err(SetupError::InVain(step));
         }
-        progress(&step.to_string());
-        match (take(&step), &step) {
+        match (take(&step, &progress), &step) {
             // A mirror may have dropped the versions that old lists name.
-            (Err(SetupError::Failed { .. }), Step::Install(_))
+            (Err(SetupError::Apt(AptError::Failed { .. })), Step::Install(_))
                 if !taken.contains(&Step::FetchLists) =>
             {
-                progress(&Step::FetchLists.to_string());
-                take(&Step::FetchLists)?;
+                take(&Step::FetchLists, &progress)?;
                 taken.push(Step::FetchLists);
-                take(&step)?;
+                take(&step, &progress)?;
             }
             (result, _) => result?,
         }
@@ -83,18 +86,27 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
     }
 }
 
-/// Takes a step.
-fn take(step: &Step) -> Result<(), SetupError> {
-    let mut command = match step {
-        Step::AddTarget => command("rustup", &["target", "add", TARGET]),
-        Step::FetchLists => apt(&["update"]),
-        Step::Install(packages) => {
-            let mut command = apt(&["install", "-y", "--no-install-recommends"]);
-            command.args(packages.iter().map(|package| package.name()));
-            command
+/// Takes a step, and says before what it does.
+fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
+    match step {
+        Step::AddTarget => {
+            progress(&step.to_string());
+            add_target(step)
         }
-    };
-    let output = command
+        Step::FetchLists => {
+            progress(&step.to_string());
+            Ok(Apt::default().update()?)
+        }
+        Step::Install(packages) => {
+            let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
+            Ok(Apt::default().install(&names, progress, person_agrees)?)
+        }
+    }
+}
+
+fn add_target(step: &Step) -> Result<(), SetupError> {
+    let output = Command::new("rustup")
+        .args(["target", "add", TARGET])
         .stdin(Stdio::null())
         .output()
         .map_err(|source| SetupError::Unrunnable { step: step.clone(), source })?;
@@ -109,17 +121,25 @@ fn take(step: &Step) -> Result<(), SetupError> {
     })
 }
 
-fn command(program: &str, arguments: &[&str]) -> Command {
-    let mut command = Command::new(program);
-    command.args(arguments);
-    command
-}
-
-/// `apt-get` that asks nothing and waits for another one to finish.
-fn apt(arguments: &[&str]) -> Command {
-    let mut command = command("apt-get", &["-o", "DPkg::Lock::Timeout=600"]);
-    command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
-    command
+/// Installs packages of Debian's that are for the tests alone, where that is this machine's way: as root,
+/// and with nothing removed.
+///
+/// # Errors
+/// Where it is not, or fails.
+pub fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptError> {
+    let apt = Apt::default();
+    let root = nix::unistd::geteuid().is_root();
+    if !root {
+        return Err(AptError::Unrunnable(io::ErrorKind::PermissionDenied.into()));
+    }
+    let install = || apt.install(packages, &progress, person_agrees);
+    match install() {
+        Err(AptError::Failed { .. }) => {
+            apt.update()?;
+            install()
+        }
+        result => result,
+    }
 }
 
 /// The end of a long text.

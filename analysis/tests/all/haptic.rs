@@ -468,3 +468,35 @@ fn friction_of_the_device_ends_a_hum() {
     };
     assert_eq!([program("0.06"), program("0.047")], [Some(0), Some(1)]);
 }
+
+/// Before anything is built or run.
+#[test]
+fn a_run_of_no_ticks_is_refused_with_its_bounds() {
+    for (arguments, bounds) in [
+        (["demo", "--ticks", "0"].as_slice(), "0 is not in 2..=10000000"),
+        (&["demo", "--ticks", "1"], "1 is not in 2..=10000000"),
+        (&["run", "damper_wall", "--ticks", "0"], "0 is not in 1..=10000000"),
+        (&["run", "damper_wall", "--ticks", "10000001"], "10000001 is not in 1..=10000000"),
+    ] {
+        let said = complaint(haptic(arguments, b""));
+        assert!(said.contains("--ticks") && said.contains(bounds), "{said}");
+    }
+}
+
+/// Of the board that is flashed, and not of the smallest.
+#[test]
+fn flash_says_how_much_the_board_has() {
+    for (board, sentence) in [
+        (
+            "nucleo-g474re",
+            " of 524288 bytes; the linker's map, which fits every board, allows 131072",
+        ),
+        ("b-g431b-esc1", " of 131072 bytes"),
+    ] {
+        let built = haptic(&["flash", "damper_wall", "--board", board, "--build-only"], b"");
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let said = String::from_utf8(built.stdout).unwrap();
+        let flash = said.lines().find(|line| line.starts_with("flash: ")).unwrap();
+        assert!(flash.ends_with(sentence), "{flash}");
+    }
+}

@@ -2,18 +2,19 @@
 //! and 21).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+mod device;
+
+pub use device::TRANSDUCERS;
 use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::Transducers;
+use firmware::scene::{Coupling, Scene, Timing};
 
 /// What the hand feels.
 pub type Environment = DelayedSpring<1>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    device: device::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: DelayedSpring { stiffness: 22.0 },
@@ -22,14 +23,6 @@ pub const SCENE: Scene<Environment> = Scene {
 
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
-
-/// The sensor and the motor that it runs on.
-pub const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
 
 /// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
 pub type Fixed = fixed::types::I8F24;

@@ -2,10 +2,11 @@
 //! (equations 22 and 23).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+mod device;
+
 use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
 use firmware::environment::FreeMode;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Scene, Timing};
 use firmware::servo::Transducers;
 
 /// What the hand feels: the paper's canceller, as late as a board's torque. It needs as much of the
@@ -14,7 +15,7 @@ pub type Environment = FreeMode<1>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    device: device::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
@@ -26,15 +27,10 @@ pub const SCENE: Scene<Environment> = Scene {
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-/// The sensor and the motor that it runs on. Full scale is what a speed of 12 rad/s needs: half a
+/// The device's, but for the amplifier's gain. Full scale is what a speed of 12 rad/s needs: half a
 /// step of the converter keeps a device without friction turning at that torque over the residual,
 /// and the finer the step, the slower.
-pub const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 0.25,
-    largest_speed: 100.0,
-};
+pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..device::TRANSDUCERS };
 
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.
 pub type Fixed = fixed::types::I12F20;

@@ -4,17 +4,10 @@
 //! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use firmware::encoder::CounterWidth;
-use firmware::excitation::{Sweep, Tone};
-use firmware::servo::Transducers;
+mod device;
 
-/// The sensor and the motor that it runs on.
-pub const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+pub use device::TRANSDUCERS;
+use firmware::excitation::{Sweep, Tone};
 
 /// Sampling period in s: that of the scenes which the device is to be certified for.
 pub const PERIOD: f64 = 0.001;

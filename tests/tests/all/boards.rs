@@ -32,6 +32,8 @@ fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
     )
     .unwrap();
     assert!(sizes.text > 0 && sizes.flash() <= memory.flash);
+    // The map fits the smallest of the boards.
+    assert!(memory.flash <= board.flash(), "{board}");
     assert!(sizes.bss > 0 && sizes.ram() <= memory.ram);
     assert!(sizes.fast <= memory.fast);
     let elf = std::fs::read(&program.path).unwrap();
@@ -109,13 +111,17 @@ fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
     let programs: Vec<_> = programs.iter().map(String::as_str).collect();
-    assert_eq!(programs, ["damper_wall", "delayed_spring", "free_mode", "identify"]);
+    let ours = ["damper_wall", "delayed_spring", "free_mode", "identify"];
+    assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
     for board in Board::ALL {
         let built = toolchain.build_for(board, &programs, NumberFormat::F32);
         let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
         for (name, program) in programs.iter().zip(&built) {
             check(&toolchain, board, name, program);
-            check_parts(board, name, program);
+            // What a scene of somebody's own is of, only its file knows.
+            if ours.contains(name) {
+                check_parts(board, name, program);
+            }
         }
     }
 }

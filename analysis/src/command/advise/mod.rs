@@ -12,7 +12,7 @@ use super::{Answer, CommandError};
 /// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program (delayed_spring, damper_wall, free_mode) or a scene file; a file with `--model`
+    /// Name of a program in firmware/src/bin, as damper_wall, or a scene file; a file with `--model`
     #[arg(value_name = "SCENE")]
     pub scene: String,
     #[command(flatten)]

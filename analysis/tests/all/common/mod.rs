@@ -22,6 +22,19 @@ damping = 0.01
 delay = 1
 "#;
 
+/// What happens to it, for a report that shows it.
+pub const MOTION: &str = r#"
+[simulation]
+samples = 300
+torque_sine = { amplitude = 1.5, omega = 60.0, phase = 0.0 }
+[human]
+inertia = 1e-4
+damping = 0.02
+stiffness = 4.0
+[limits]
+torque = 0.5
+"#;
+
 /// The program, to be started.
 pub fn program(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_haptic"));
@@ -51,32 +64,31 @@ pub fn haptic_reading(arguments: &[&str], input: &[u8]) -> Output {
     output
 }
 
-/// A program that a test needs beside the project, which is the name of its package, too. Where it is
-/// missing it is installed, as the project's other tools are, by root on Debian.
+/// Makes sure that there is a program that a test needs beside the project, which is the name of its
+/// package, too. Where it is missing it is installed, as the project's other tools are, by root on Debian.
 ///
-/// # Panics
+/// # Errors
 /// Elsewhere, with what to install.
-pub fn tool(name: &str) -> &str {
+pub fn set_up_tool(name: &str) -> Result<(), String> {
     let is_there =
         || Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     if is_there() {
-        return name;
+        return Ok(());
     }
-    let apt = |arguments: &[&str]| {
-        Command::new("apt-get")
-            .args(["-o", "DPkg::Lock::Timeout=600"])
-            .args(arguments)
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .output()
-            .is_ok_and(|output| output.status.success())
-    };
-    let is_ours = Path::new("/etc/debian_version").exists() && nix::unistd::geteuid().is_root();
-    let install = || apt(&["install", "-y", "--no-install-recommends", name]);
-    let installed = is_ours && (install() || apt(&["update"]) && install());
-    assert!(
-        installed && is_there(),
-        "this test runs {name}: install it (Debian: apt install {name})"
-    );
+    let by_hand = format!("install it (Debian: apt install {name})");
+    match analysis::toolchain::install(&[name], |step| eprintln!("{step}")) {
+        Ok(()) if is_there() => Ok(()),
+        Ok(()) => Err(by_hand),
+        Err(error) => Err(format!("{error}; {by_hand}")),
+    }
+}
+
+/// The program itself, set up.
+///
+/// # Panics
+/// Where there can be none, with what to install.
+pub fn tool(name: &str) -> &str {
+    set_up_tool(name).unwrap_or_else(|error| panic!("this test runs {name}: {error}"));
     name
 }
 
@@ -101,4 +113,16 @@ pub fn root() -> PathBuf {
 pub fn read(path: impl AsRef<Path>) -> String {
     let path = path.as_ref();
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Writes the report of a scene; its text and the program's exit status.
+pub fn report(folder: &Path, scene: &str) -> (String, Option<i32>) {
+    let (file, page) = (folder.join("scene.toml"), folder.join("report.html"));
+    std::fs::write(&file, scene).unwrap();
+    let run = haptic(&["report", file.to_str().unwrap(), "-o", page.to_str().unwrap()]);
+    assert!(run.stderr.is_empty(), "{run:?}");
+    let said = String::from_utf8(run.stdout).unwrap();
+    let verdict = if run.status.code() == Some(0) { "certified" } else { "rejected" };
+    assert!(said.contains(&format!("report.html: {verdict}")), "{said}");
+    (std::fs::read_to_string(page).unwrap(), run.status.code())
 }

@@ -5,15 +5,26 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::tool;
+use crate::common::set_up_tool;
 
 /// Longest that a page may take, browser's start included, on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
+/// The browser.
+const NAME: &str = "chromium";
+
+/// Makes sure that there is one.
+///
+/// # Errors
+/// Where there can be none, with what to install.
+pub fn set_up() -> Result<(), String> {
+    set_up_tool(NAME)
+}
+
 /// The page as it is after its scripts have run, in a window so many pixels wide.
 pub fn dom(page: &Path, width: u32) -> String {
     let profile = tempfile::tempdir().unwrap();
-    let mut child = Command::new(tool("chromium"))
+    let mut child = Command::new(NAME)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
         .arg("--disable-dev-shm-usage")

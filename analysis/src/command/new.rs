@@ -1,0 +1,38 @@
+//! `haptic new`: a scene of one's own.
+
+use std::io::{self, Write};
+
+use clap::Args;
+
+use super::{Answer, CommandError};
+use crate::toolchain::Sources;
+
+/// Arguments of `haptic new`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// What it is to be called: lower-case letters, digits and underscores
+    #[arg(value_name = "NAME")]
+    pub name: String,
+    /// The scene that it begins as a copy of
+    #[arg(long, value_name = "SCENE", default_value = "damper_wall")]
+    pub from: String,
+}
+
+/// Writes the scene's file, and says where it is and what to do with it.
+///
+/// # Errors
+/// Where there can be no scene of that name, or there is one.
+pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+    let Arguments { name, from } = arguments;
+    let path = Sources::find()?.begin(name, from)?;
+    writeln!(
+        io::stdout(),
+        "{path}\n  \
+         is a copy of {from}: change what the hand feels there, and then\n  \
+         cargo haptic run {name}                               on this machine\n  \
+         cargo haptic run {name} --target board:nucleo-g474re  as flashed, on a virtual board\n  \
+         cargo haptic flash {name} --board nucleo-g474re       on a board",
+        path = path.display(),
+    )?;
+    Ok(Answer::Yes)
+}

@@ -1,0 +1,41 @@
+//! Scenes that this program was not built with: it builds itself once more, with the scene's file, and
+//! hands over to that. What runs on this machine is then compiled from the file that a board's program
+//! is compiled from.
+
+use std::os::unix::process::CommandExt;
+use std::process;
+
+use super::{Answer, Command, CommandError};
+use crate::program::Program;
+use crate::progress;
+use crate::toolchain::{Sources, build_haptic_with};
+
+/// The scene that a command wants the program of, where this program was built without it.
+pub fn scene_of(command: &Command) -> Option<String> {
+    let name = match command {
+        Command::Run(arguments) => &arguments.scene,
+        Command::Twin(arguments) => &arguments.scene,
+        Command::Advise(arguments) if arguments.format.is_some() => &arguments.scene,
+        _ => return None,
+    };
+    // Without its source this program has the scenes that it was built with.
+    let is_there = || Sources::find().and_then(|sources| sources.scenes()).unwrap_or_default();
+    let is_new = Program::find(name).is_none() && is_there().contains(name);
+    is_new.then(|| name.clone())
+}
+
+/// Builds what knows the scene, and becomes that, with the same arguments.
+pub fn hand_over(scene: &str) -> Result<Answer, CommandError> {
+    let spinner = progress::spinner(&format!("building {scene} for this machine"));
+    let program = build_haptic_with(scene)?;
+    spinner.finish_and_clear();
+    let error = process::Command::new(program).args(std::env::args_os().skip(1)).exec();
+    Err(CommandError::Output(error))
+}
+
+/// The scenes that there are, for a sentence: those with a file, or else those in this program.
+pub fn scenes() -> String {
+    let built_in = || crate::program::NAMES.iter().map(|name| (*name).to_owned()).collect();
+    let there = Sources::find().and_then(|sources| sources.scenes());
+    there.unwrap_or_else(|_| built_in()).join(", ")
+}

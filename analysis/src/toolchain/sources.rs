@@ -1,0 +1,241 @@
+//! The programs' source: one file each in `firmware/src/bin`.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::BuildError;
+
+/// The call that makes a scene's file a program; a file without it is another program.
+const SCENE: &str = "scene_program!";
+
+/// The folder of the programs' files.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    folder: PathBuf,
+}
+
+/// Why a name is no name for a new scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BadName {
+    /// It is no name of a module.
+    #[error(
+        "it must be of lower-case letters, digits and underscores, and begin with a letter, as \
+         soft_wall"
+    )]
+    Letters,
+    /// It is too long for a board's messages.
+    #[error("it is {0} bytes long, and at most {LONGEST} fit")]
+    Long(usize),
+    /// It means something else to Rust or to cargo.
+    #[error("the compiler or the firmware uses this name")]
+    Taken,
+}
+
+/// Longest name of a scene in bytes: a board says its scene's name in one message.
+const LONGEST: usize = 32;
+
+/// What else a scene's module or program could be mistaken for: words of the language, crates that a
+/// scene's file uses, the programs and tests of the firmware, and cargo's own folders.
+const TAKEN: [&str; 59] = [
+    "abstract",
+    "analysis",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "build",
+    "clap",
+    "const",
+    "continue",
+    "core",
+    "corpus",
+    "crate",
+    "deps",
+    "device",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "examples",
+    "extern",
+    "false",
+    "final",
+    "firmware",
+    "fixed",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "incremental",
+    "judge",
+    "let",
+    "loop",
+    "macro",
+    "main",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "on_target",
+    "override",
+    "player",
+    "program",
+    "ref",
+    "std",
+    "survey",
+    "test",
+    "trial",
+    "try",
+    "type",
+    "use",
+    "virtual",
+    "where",
+    "while",
+    "yield",
+];
+
+impl Sources {
+    /// Those of the workspace that this program was built from.
+    ///
+    /// # Errors
+    /// Where it is no longer there.
+    pub fn find() -> Result<Self, BuildError> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let root = root.canonicalize().map_err(|_| BuildError::NoWorkspace(root))?;
+        Ok(Self::of(&root))
+    }
+
+    /// Those of a workspace.
+    pub(super) fn of(root: &Path) -> Self {
+        Self { folder: root.join("firmware/src/bin") }
+    }
+
+    /// The file of the program of that name, whether there is one or not.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.rs"))
+    }
+
+    /// Names of all programs, in the alphabet's order.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn programs(&self) -> Result<Vec<String>, BuildError> {
+        let failed = |source| BuildError::File { path: self.folder.clone(), source };
+        let mut programs = Vec::new();
+        for entry in self.folder.read_dir().map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if let (Some(name), Some("rs")) =
+                (path.file_stem(), path.extension().and_then(|extension| extension.to_str()))
+            {
+                programs.push(name.to_string_lossy().into_owned());
+            }
+        }
+        programs.sort();
+        Ok(programs)
+    }
+
+    /// Names of the programs that render a scene, in the same order.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
+        let mut programs = self.programs()?;
+        programs.retain(|name| {
+            fs::read_to_string(self.file(name)).is_ok_and(|text| text.contains(SCENE))
+        });
+        Ok(programs)
+    }
+
+    /// Begins a scene as a copy of another one, and gives its file. What the other one's file says of
+    /// itself at its head is left out.
+    ///
+    /// # Errors
+    /// Where the name is no good or taken, or there is no such other one.
+    pub fn begin(&self, name: &str, from: &str) -> Result<PathBuf, BuildError> {
+        check(name).map_err(|why| BuildError::Name { name: name.into(), why })?;
+        let scenes = self.scenes()?;
+        if !scenes.iter().any(|scene| scene == from) {
+            return Err(BuildError::NoScene { name: from.into(), scenes });
+        }
+        let failed = |path: &Path, source| BuildError::File { path: path.into(), source };
+        let (other, path) = (self.file(from), self.file(name));
+        let text = fs::read_to_string(&other).map_err(|source| failed(&other, source))?;
+        let rest = text.lines().skip_while(|line| line.starts_with("//!"));
+        let head = format!("//! The scene {name}, begun as a copy of {from}.");
+        let text: String =
+            std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
+        // Never over a file that is there, however it got there meanwhile.
+        match File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())) {
+            Ok(()) => Ok(path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                Err(BuildError::Exists(path))
+            }
+            Err(source) => Err(failed(&path, source)),
+        }
+    }
+}
+
+/// Whether a scene may be called that.
+fn check(name: &str) -> Result<(), BadName> {
+    let begins_well = name.starts_with(|c: char| c.is_ascii_lowercase());
+    let is_of = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !begins_well || !name.chars().all(is_of) {
+        Err(BadName::Letters)
+    } else if name.len() > LONGEST {
+        Err(BadName::Long(name.len()))
+    } else if TAKEN.contains(&name) {
+        Err(BadName::Taken)
+    } else {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_called_what_a_module_and_a_program_can_be_called() {
+        for name in ["soft_wall", "a", "wall2", &"w".repeat(LONGEST)] {
+            assert_eq!(check(name), Ok(()), "{name}");
+        }
+        for name in ["", "2walls", "_wall", "soft-wall", "Wall", "wall.rs", "../wall", "wällchen"]
+        {
+            assert_eq!(check(name), Err(BadName::Letters), "{name}");
+        }
+        assert_eq!(check(&"w".repeat(LONGEST + 1)), Err(BadName::Long(LONGEST + 1)));
+        for name in TAKEN {
+            assert_eq!(check(name), Err(BadName::Taken), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_scene_begins_as_a_copy_and_never_over_a_file() {
+        let root = tempfile::tempdir().unwrap();
+        let sources = Sources::of(root.path());
+        fs::create_dir_all(&sources.folder).unwrap();
+        let other = "//! A wall\n//! of the paper.\n#![no_std]\n\nfirmware::scene_program! {}\n";
+        fs::write(sources.file("wall"), other).unwrap();
+        fs::write(sources.file("identify"), "firmware::sweep_program!(SWEEP);\n").unwrap();
+
+        let path = sources.begin("soft", "wall").unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        let head = "//! The scene soft, begun as a copy of wall.\n";
+        assert_eq!(text, format!("{head}#![no_std]\n\nfirmware::scene_program! {{}}\n"));
+        assert_eq!(sources.scenes().unwrap(), ["soft", "wall"]);
+        assert_eq!(sources.programs().unwrap(), ["identify", "soft", "wall"]);
+
+        let said = |name, from| sources.begin(name, from).unwrap_err().to_string();
+        fs::write(&path, "mine").unwrap();
+        assert!(said("soft", "wall").ends_with("soft.rs is there already; it is left as it is"));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
+        assert_eq!(said("x", "identify"), "there is no scene identify; there are wall");
+        assert!(said("match", "wall").starts_with("a scene cannot be called `match`: "));
+        assert!(!sources.file("match").exists());
+    }
+}

@@ -1,0 +1,120 @@
+//! A scene of somebody's own: one new file is all that the commands need.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::Stdio;
+
+use crate::common::{answer, complaint, haptic, program, read, root};
+
+/// Its name, which nobody takes.
+const NAME: &str = "scene_of_a_test";
+
+/// Its file, which goes with the test.
+struct Scene(PathBuf);
+
+impl Scene {
+    fn file() -> PathBuf {
+        root().join("firmware/src/bin").join(NAME).with_extension("rs")
+    }
+
+    fn begin() -> Self {
+        // A test that was killed has left it.
+        let _ = fs::remove_file(Self::file());
+        let begun = haptic(&["new", NAME]);
+        assert!(begun.status.success(), "{begun:?}");
+        let said = String::from_utf8(begun.stdout).unwrap();
+        assert!(said.starts_with(Self::file().to_str().unwrap()), "{said}");
+        assert!(said.contains(&format!("cargo haptic run {NAME} --target board:")), "{said}");
+        Self(Self::file())
+    }
+
+    fn change(&self, from: &str, to: &str) {
+        let text = read(&self.0);
+        assert!(text.contains(from), "{text}");
+        fs::write(&self.0, text.replace(from, to)).unwrap();
+    }
+}
+
+impl Drop for Scene {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+/// From its first line to a board that is tuned: on this machine, in the emulator, on a virtual board
+/// and behind a port. Past the line it does not compile, which stops nothing else.
+#[test]
+fn a_new_file_is_all_that_the_commands_need() {
+    let scene = Scene::begin();
+    let again = complaint(haptic(&["new", NAME]));
+    assert!(again.contains("is there already"), "{again}");
+
+    // The copy is what it was copied from, tick by tick.
+    let copied = |name| haptic(&["run", name, "--csv", "--ticks", "1000"]);
+    let (copy, original) = (copied(NAME), copied("damper_wall"));
+    assert!(copy.status.success(), "{}", String::from_utf8_lossy(&copy.stderr));
+    assert!(copy.stdout == original.stdout);
+
+    scene.change("stiffness: 22.0, damping: 0.01", "stiffness: 12.0, damping: 0.005");
+    assert!(copied(NAME).stdout != original.stdout);
+    for target in ["qemu", "board:nucleo-g474re"] {
+        let run = haptic(&["run", NAME, "--target", target, "--ticks", "1000", "--json"]);
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        let run = answer(&run);
+        assert_eq!((&run["scene"], &run["codes_equal"]), (&NAME.into(), &1000.into()), "{run}");
+    }
+
+    let folder = tempfile::tempdir().unwrap();
+    let port = format!("unix:{}", folder.path().join("board").display());
+    let mut twin =
+        program(&["twin", NAME, "--port", &port]).stdout(Stdio::piped()).spawn().unwrap();
+    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    assert_eq!(said.next().unwrap().unwrap(), format!("{NAME} listens on {port}"));
+    let tuned = answer(&haptic(&["tune", "--json", "--port", &port]));
+    let _ = twin.kill();
+    let _ = twin.wait();
+    assert_eq!(tuned["parameters"]["stiffness"], 12.0, "{tuned}");
+
+    let format = haptic(&["advise", NAME, "--hum", "0.05", "--rate", "1000", "--json"]);
+    assert_eq!(answer(&format)["scene"], NAME, "{format:?}");
+    let unknown = complaint(haptic(&["run", "no_such_scene"]));
+    assert!(unknown.contains(NAME) && unknown.contains("damper_wall"), "{unknown}");
+
+    scene.change("damping: 0.005", "damping: 0.02");
+    let refused = complaint(haptic(&["run", NAME]));
+    assert!(refused.contains("does not compile") && refused.contains("would pass"), "{refused}");
+    assert!(copied("damper_wall").stdout == original.stdout);
+}
+
+#[test]
+fn a_name_that_cannot_be_one_is_refused() {
+    for (name, why) in [
+        ("Soft-Wall", "lower-case letters"),
+        ("../wall", "lower-case letters"),
+        ("device", "uses this name"),
+        ("loop", "uses this name"),
+        ("a_wall_whose_name_says_more_than_fits", "at most 32"),
+    ] {
+        let said = complaint(haptic(&["new", name]));
+        assert!(said.contains(&format!("cannot be called `{name}`")), "{said}");
+        assert!(said.contains(why), "{said}");
+    }
+    let said = complaint(haptic(&["new", "fine", "--from", "nothing"]));
+    assert!(said.contains("there is no scene nothing") && said.contains("free_mode"), "{said}");
+    for name in ["damper_wall", "identify"] {
+        assert!(complaint(haptic(&["new", name])).contains("is there already"));
+    }
+}
+
+/// So that whoever measures a device changes one file.
+#[test]
+fn the_device_of_all_scenes_is_written_once() {
+    let folder = root().join("firmware/src/bin");
+    assert!(read(folder.join("device/mod.rs")).contains("DEVICE: Device = Device {"));
+    for name in ["damper_wall", "delayed_spring", "free_mode", "identify"] {
+        let text = read(folder.join(name).with_extension("rs"));
+        assert!(text.contains("mod device;") && text.contains("device::TRANSDUCERS"), "{name}");
+        assert!(!text.contains("inertia:") && !text.contains("counts_per_turn"), "{name}");
+    }
+}
