@@ -9,10 +9,9 @@ use super::axes::Axes;
 use super::*;
 use crate::tradeoff::{Axis, Method, Tradeoff};
 
-mod labels;
 mod marks;
 
-use labels::{Block, Labels};
+use super::labels::{Block, Labels};
 use marks::Mark;
 
 /// Width and height of a panel in pixels.
