@@ -2,6 +2,7 @@
 //! they can be read in print.
 
 pub mod axes;
+pub mod bode;
 pub mod dash;
 pub mod data;
 pub mod failures;

@@ -1,5 +1,6 @@
 //! `haptic chart`: pictures of scenes, one module each.
 
+pub mod bode;
 pub mod failures;
 pub mod identify;
 pub mod limits;
@@ -39,6 +40,8 @@ pub enum Kind {
 pub enum Single {
     /// The curves of (T z/(z-1)) E(z) of one or more scenes, with the line -delta
     Nyquist(nyquist::Arguments),
+    /// Gain and phase of the open loop of device and controller, with its margins
+    Bode(bode::Arguments),
     /// What is certified, stable and unstable, over stiffness and damping of a scene's wall
     Map(map::Arguments),
     /// The largest certified stiffness over the sample rate, with the encoder's torque ripple
@@ -117,6 +120,7 @@ impl Single {
     fn output(&self) -> &OutputArguments {
         match self {
             Self::Nyquist(arguments) => &arguments.output,
+            Self::Bode(arguments) => &arguments.output,
             Self::Map(arguments) => &arguments.output,
             Self::Limits(arguments) => &arguments.output,
             Self::Trace(arguments) => &arguments.output,
@@ -135,6 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let files = kind.output().files()?;
     let chart = match kind {
         Single::Nyquist(arguments) => nyquist::draw(arguments)?,
+        Single::Bode(arguments) => bode::draw(arguments)?,
         Single::Map(arguments) => map::draw(arguments)?,
         Single::Limits(arguments) => limits::draw(arguments)?,
         Single::Trace(arguments) => return trace::run(arguments, &files),
