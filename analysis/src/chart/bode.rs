@@ -86,9 +86,7 @@ fn paint_gains(
     Axes { most: (12, 8), ..Axes::named(None, "gain (1)") }.draw(&mut chart)?;
     let plot = chart.plotting_area();
     let panel = plot.strip_coord_spec();
-    let sheet = Logarithmic::of(&panel, x, |gain| {
-        (gain / y.start).ln() / (y.end / y.start).ln()
-    });
+    let sheet = Logarithmic::of(&panel, x, |gain| (gain / y.start).ln() / (y.end / y.start).ln());
     sheet.level(1.0)?;
     for (index, (_, found)) in loops.iter().enumerate() {
         let curve = found.points.iter().map(|point| (point.hertz, point.gain));
@@ -113,8 +111,7 @@ fn paint_phases(
     Axes { most: (12, 8), ..names }.draw(&mut chart)?;
     let plot = chart.plotting_area();
     let panel = plot.strip_coord_spec();
-    let sheet =
-        Logarithmic::of(&panel, x, |phase| (phase - y.start) / (y.end - y.start));
+    let sheet = Logarithmic::of(&panel, x, |phase| (phase - y.start) / (y.end - y.start));
     sheet.level(-180.0)?;
     for (index, (_, found)) in loops.iter().enumerate() {
         let curve = found.points.iter().map(|point| (point.hertz, point.phase));

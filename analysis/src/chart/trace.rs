@@ -178,7 +178,7 @@ const ROW: i32 = 24;
 /// Height of a line of words, in pixels.
 const LINE: i32 = 20;
 /// Letters of a line of words.
-const LETTERS: usize = 108;
+const LETTERS: usize = 112;
 /// Heights of the panels, in pixels.
 const PANELS: [i32; 3] = [226, 186, 264];
 /// Which way is up.
@@ -322,10 +322,10 @@ fn words(trace: &Trace) -> Vec<String> {
         words.push("dotted: face of the wall".to_owned());
     }
     if !trace.hand.is_empty() {
-        words.push("broken: where the hand wants to be".to_owned());
+        words.push("broken: angle that the hand wants".to_owned());
     }
     if !trace.hand_torque.is_empty() {
-        words.push("broken, below: torque of the hand".to_owned());
+        words.push("broken: torque of the hand".to_owned());
     }
     if let Some(limit) = trace.torque_limit {
         words.push(format!("dash-dotted: torque limit, {} N m", significant(limit, 4)));

@@ -23,7 +23,7 @@ use plant::SampledPlant;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Region {
     /// Certified, and yet without a hand it does not come to rest: the device has less passivity
-    /// than its scene claims.
+    /// than its scene claims, or its torque is late.
     Wrong,
     /// Even without a hand it does not come to rest.
     Unstable,
@@ -91,8 +91,9 @@ pub enum MapError {
 pub struct Family {
     scene: Scene,
     plant: SampledPlant,
-    /// Whether the passivity that the scene declares is more than the device's damping.
-    claims_too_much: bool,
+    /// Whether the verdict rests on what does not hold: the scene declares more passivity than the
+    /// device has damping, or its torque is later than the servo's timing says.
+    may_be_wrong: bool,
 }
 
 impl Family {
@@ -120,7 +121,8 @@ impl Family {
         let tick = alone.tick(Stride::default())?;
         let device = alone.scene.device;
         let claims_too_much = device.passivity.is_some_and(|claimed| claimed > device.damping);
-        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), claims_too_much })
+        let may_be_wrong = claims_too_much || alone.latency > 0.0;
+        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
     }
 
     /// The scene that the others differ from.
@@ -146,12 +148,12 @@ impl Family {
 
     /// What is known of one of the walls. Stability comes first, being by far the cheapest: no hand
     /// at all is a passive hand too, so what does not come to rest without one is not certified,
-    /// as long as the device is as passive as its scene says. Where it is not, the verdict is asked
-    /// for all the same, and may be wrong.
+    /// as long as the device is as passive and as fast as its scene says. Where it is not, the verdict
+    /// is asked for all the same, and may be wrong.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
         let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);
-        if !is_stable && !self.claims_too_much {
+        if !is_stable && !self.may_be_wrong {
             return Region::Unstable;
         }
         match (is_stable, verdict(&scene)) {

@@ -142,6 +142,20 @@ fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
     for (region, certified) in map.cells().map(of) {
         assert_eq!(region == Region::Wrong || region >= Region::Exact, certified);
     }
+    // So may a torque be that is nearly a sample later than the certificate takes it to be.
+    let latency = "type = \"damper-wall\"\nstiffness = 1\ndamping = 0\n[simulation]\nsamples = 1\n\
+                   latency = 0.0009";
+    let family = Family::of(&self::file(latency, STANDARD)).unwrap();
+    let map = Map::new(&family, 1.0..200.0, 0.0..0.01, 10, || {});
+    assert!(map.share(Region::Wrong) > 0.0, "no cell is wrong");
+    // What is rejected is not taken for undecided.
+    let rigid = Family::of(&wall(1, "")).unwrap();
+    let (stiffness, damping) = rigid.usual_ranges();
+    let map = Map::new(&rigid, stiffness, damping, 12, || {});
+    for (k, b, region) in map.cells().filter(|cell| cell.2 == Region::Undecided) {
+        let undecided = assess(&rigid.member(k, b)).outcome.is_err_and(|why| why.is_undecided());
+        assert!(undecided, "{k} {b} {region:?}");
+    }
     // A canceller that adds more damping than its coupling can hold: there is no bound for its limits.
     let added = "type = \"free-mode-wall\"\nresidual = 0.05\nstiffness = 1\ndamping = 0\ndelay = 1\n\
                  one_sided = true";

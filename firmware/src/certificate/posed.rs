@@ -124,7 +124,13 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// not certified is told apart into what is rejected and what is left undecided.
     pub const fn answer(&self) -> Answer {
         match self.rule {
-            Rule::Exact => self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))),
+            // What is clear enough for "not certified" may not be for "rejected".
+            Rule::Exact => {
+                match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
+                    Answer::Undecided => self.exact(&self.coupled(None, &Closeness::TIGHT)),
+                    clear => clear,
+                }
+            }
             Rule::Nonlinear => {
                 // The index only has to exist, however large.
                 let alone = self.alone(&near(Interval::exact(f64::MAX)));

@@ -38,7 +38,7 @@ pub enum Kind {
 /// Which picture.
 #[derive(Debug, Subcommand)]
 pub enum Single {
-    /// The curves of (T z/(z-1)) E(z) of one or more scenes, with the line -delta
+    /// Nyquist curves of what is judged of one or more scenes, with the critical line
     Nyquist(nyquist::Arguments),
     /// Gain and phase of the open loop of device and controller, with its margins
     Bode(bode::Arguments),

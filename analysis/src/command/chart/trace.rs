@@ -28,8 +28,8 @@ pub struct Arguments {
     /// Title of the picture; otherwise the scene's or the file's name
     #[arg(long)]
     pub title: Option<String>,
-    /// Ends of the axes: --x of the time, --y of the angle
     #[command(flatten)]
+    #[allow(missing_docs)]
     pub window: WindowArguments,
     #[command(flatten)]
     #[allow(missing_docs)]
