@@ -170,19 +170,22 @@ mod tests {
             assert!((3.0 * margin.value / critical - 1.0).abs() < 1e-6, "{delay} {margin:?}");
             assert!(found.is_stable && found.phase_margin().unwrap().value > 0.0);
         }
-        let shaking = OpenLoop::of(&Experiment::at_rest(&file(200.0, 0.0, 2))).unwrap();
-        assert!(!shaking.is_stable && shaking.gain_reduction().is_some());
-        assert!(shaking.phase_margin().unwrap().value < 0.0);
+        let critical = Experiment::at_rest(&file(1.0, 0.0, 2));
+        let critical = critical_stiffness(&critical, Stride::default()).unwrap().unwrap();
+        let shaking = Experiment::at_rest(&file(1.1 * critical, 0.0, 2));
+        let shaking = OpenLoop::of(&shaking).unwrap();
+        assert!(!shaking.is_stable && shaking.phase_margin().unwrap().value < 0.0);
+        assert!((shaking.gain_reduction().unwrap().value * 1.1 - 1.0).abs() < 1e-6);
     }
 
     #[test]
     fn the_phase_margin_is_what_a_delay_may_take_of_it() {
-        let found = OpenLoop::of(&Experiment::at_rest(&file(3.0, 0.0, 0))).unwrap();
+        let found = OpenLoop::of(&Experiment::at_rest(&file(6.0, 0.0, 0))).unwrap();
         let margin = found.phase_margin().unwrap();
         // Lag of so many whole samples at the crossover, where the gain stays what it is.
         let lag = |samples: usize| 360.0 * margin.hertz * 0.001 * samples as f64;
         for delay in 1..=8 {
-            let experiment = Experiment::at_rest(&file(3.0, 0.0, delay));
+            let experiment = Experiment::at_rest(&file(6.0, 0.0, delay));
             let stability = stability::judge(&experiment, Stride::default()).unwrap();
             let stable = stability.verdict == stability::Verdict::Stable;
             assert_eq!(stable, lag(delay) < margin.value, "{delay} {margin:?}");

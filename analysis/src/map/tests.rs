@@ -133,10 +133,10 @@ fn nothing_that_the_dashed_border_encloses_is_rejected() {
 
 #[test]
 fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
-    let mut file = wall(1, STANDARD);
+    let mut file = wall(1, "");
     file.scene.device.passivity = Some(0.06);
     let family = Family::of(&file).unwrap();
-    let map = Map::new(&family, 0.0..80.0, 0.0..0.01, 20, || {});
+    let map = Map::new(&family, 0.0..60.0, 0.0..0.01, 20, || {});
     assert!(map.share(Region::Wrong) > 0.05, "{}", map.share(Region::Wrong));
     let of = |(k, b, region)| (region, assess(&family.member(k, b)).outcome.is_ok());
     for (region, certified) in map.cells().map(of) {
