@@ -22,8 +22,8 @@ use plant::SampledPlant;
 /// What is known of a scene, from the worst to the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Region {
-    /// Certified, and yet without a hand it does not come to rest: the device has less passivity
-    /// than its scene claims, or its torque is late.
+    /// Certified, and yet without a hand it does not come to rest: its torque is later than the
+    /// certificate takes it to be.
     Wrong,
     /// Even without a hand it does not come to rest.
     Unstable,
@@ -91,8 +91,8 @@ pub enum MapError {
 pub struct Family {
     scene: Scene,
     plant: SampledPlant,
-    /// Whether the verdict rests on what does not hold: the scene declares more passivity than the
-    /// device has damping, or its torque is later than the servo's timing says.
+    /// Whether the verdict rests on what does not hold: the torque is later than the certificate
+    /// takes it to be.
     may_be_wrong: bool,
 }
 
@@ -119,9 +119,7 @@ impl Family {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
         let tick = alone.tick(Stride::default())?;
-        let device = alone.scene.device;
-        let claims_too_much = device.passivity.is_some_and(|claimed| claimed > device.damping);
-        let may_be_wrong = claims_too_much || alone.latency > 0.0;
+        let may_be_wrong = alone.latency > 0.0;
         Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
     }
 
@@ -148,8 +146,8 @@ impl Family {
 
     /// What is known of one of the walls. Stability comes first, being by far the cheapest: no hand
     /// at all is a passive hand too, so what does not come to rest without one is not certified,
-    /// as long as the device is as passive and as fast as its scene says. Where it is not, the verdict
-    /// is asked for all the same, and may be wrong.
+    /// as long as the machine is what the certificate takes it to be. Where it is not, the verdict is
+    /// asked for all the same, and may be wrong.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
         let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);

@@ -86,7 +86,7 @@ fn every_picture_in_every_format() {
 #[test]
 fn the_numbers_of_every_picture_are_a_table() {
     let folder = folder();
-    let tables: [(&[&str], &str, usize); 6] = [
+    let tables: [(&[&str], &str, usize); 5] = [
         (&["nyquist", "wall.toml"], "scene,curve,angle (rad),frequency (Hz)", 1000),
         (&["bode", "wall.toml"], "scene,frequency (Hz),gain (1),phase (degrees)", 1000),
         (
@@ -96,7 +96,6 @@ fn the_numbers_of_every_picture_are_a_table() {
         ),
         (&["limits", "wall.toml"], "delay (samples),sample rate (Hz),largest stiffness", 200),
         (&["trace", "moving.toml"], "time,position,velocity,torque,hand,limit", 50),
-        (&["failures"], "device,method,steps a tick", 100),
     ];
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     for (arguments, header, rows) in tables {

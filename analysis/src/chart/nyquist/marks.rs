@@ -7,12 +7,12 @@ use plotters::prelude::*;
 use super::{Curve, Judged};
 use crate::chart::labels::{Block, Labels};
 use crate::chart::sheet::{Frame, Place, Sheet, whole};
-use crate::chart::{Drawn, LABEL, UNITS, pen, units};
+use crate::chart::{Drawn, LABEL, UNITS, units};
 use crate::quantity::significant;
 
 /// Half the width of a frequency's mark and of a margin's.
 const DOT: i32 = units(3);
-const SQUARE: i32 = units(5);
+const SQUARE: i32 = units(6);
 /// Two marks are at least so far apart.
 const APART: f64 = units(46) as f64;
 /// Frequencies that are marked, in each decade.
@@ -21,11 +21,22 @@ const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 const PIECES: usize = 60;
 
 /// Marks frequencies inside of a frame on what is judged, and where its phase margin is reached.
-pub(super) fn draw(sheet: &Sheet<'_>, scenes: &[Judged], frame: Frame) -> Drawn<()> {
+///
+/// Names keep clear of what is `written` already: corners of rectangles.
+pub(super) fn draw(
+    sheet: &Sheet<'_>,
+    scenes: &[Judged],
+    frame: Frame,
+    written: &[[(f64, f64); 2]],
+) -> Drawn<()> {
     let all = sheet.all();
     let corner = whole(&(all.right, all.bottom));
     let mut labels = Labels::within(Block::new((0, 0), corner));
     let judged = || scenes.iter().flat_map(judged_curves);
+    for corners in written {
+        let [from, to] = corners.map(|corner| whole(&sheet.place(corner)));
+        labels.keep_clear_along(from, to);
+    }
     let origin = sheet.place((0.0, 0.0));
     let lines = scenes.iter().filter_map(|scene| Some(sheet.place((-scene.limit?, 0.0)).0));
     for x in lines.chain([origin.0]).filter(|x| all.contains((*x, 0.0))) {
@@ -41,9 +52,10 @@ pub(super) fn draw(sheet: &Sheet<'_>, scenes: &[Judged], frame: Frame) -> Drawn<
     for (scene, curve) in judged() {
         if let Some((_, _, value)) = scene.phase_margin(curve) {
             let (x, y) = whole(&sheet.place(value));
-            let corners = [(x - SQUARE, y - SQUARE), (x + SQUARE, y + SQUARE)];
-            sheet.area.draw(&Rectangle::new(corners, WHITE.filled()))?;
-            sheet.area.draw(&Rectangle::new(corners, pen(2)))?;
+            for (half, colour) in [(SQUARE, BLACK), (SQUARE - units(2), WHITE)] {
+                let corners = [(x - half, y - half), (x + half, y + half)];
+                sheet.area.draw(&Rectangle::new(corners, colour.filled()))?;
+            }
         }
         for (hertz, place) in frequencies(sheet, scene, curve) {
             let far = |other: &Place| (other.0 - place.0).hypot(other.1 - place.1) >= APART;

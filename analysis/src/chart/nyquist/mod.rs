@@ -156,15 +156,16 @@ fn paint(area: &Area<'_>, scenes: &[Judged], wanted: &Window) -> Drawn<()> {
     for (line, frames) in patterns.iter().flatten().zip(&frames) {
         ways.extend(draw_curve(&sheet, line, frames)?);
     }
-    draw_bounds(&mut chart, scenes, &x, &y)?;
+    let mut written = draw_bounds(&mut chart, scenes, &x, &y)?;
     infinity::name(&sheet, &ways)?;
     let top = infinity::below(&sheet, &frames);
     for (row, (line, name)) in shown.iter().enumerate() {
-        name_line(&mut chart, (*line, name), top - 0.15 * row as f64, (&x, &y))?;
+        let top = top - 0.15 * row as f64;
+        written.push(name_line(&mut chart, (*line, name), top, (&x, &y))?);
     }
     label_minima(&mut chart, scenes, &x, y.end)?;
     let inner = frames.iter().flatten().last().copied().unwrap_or(sheet.all());
-    marks::draw(&sheet, scenes, inner)
+    marks::draw(&sheet, scenes, inner, &written)
 }
 
 /// The lines at minus the largest index that passes, each once and from the left, with what they are
@@ -178,13 +179,14 @@ fn critical_lines(scenes: &[Judged]) -> Vec<(f64, &'static str)> {
 }
 
 /// What is judged in place of a curve: an upright line that all of the scene's motion keeps right
-/// of.
+/// of. Gives the grounds of their names back.
 fn draw_bounds(
     chart: &mut Plane<'_, '_>,
     scenes: &[Judged],
     x: &Range<f64>,
     y: &Range<f64>,
-) -> Drawn<()> {
+) -> Drawn<Vec<[(f64, f64); 2]>> {
+    let mut written = Vec::new();
     for (index, scene) in scenes.iter().enumerate() {
         let Some(line) = scene.bound.map(|bound| -bound).filter(|line| x.contains(line)) else {
             continue;
@@ -199,10 +201,11 @@ fn draw_bounds(
         let right = left + (0.008 + 0.0086 * name.len() as f64) * width;
         let ground = [(left, level - 0.025 * height), (right, level + 0.025 * height)];
         chart.draw_series([Rectangle::new(ground, WHITE.filled())])?;
+        written.push(ground);
         let place = (left + 0.004 * width, level);
         chart.draw_series([Text::new(name, place, anchored(HPos::Left, VPos::Center))])?;
     }
-    Ok(())
+    Ok(written)
 }
 
 /// Ranges of the axes.
@@ -241,13 +244,13 @@ fn window(scenes: &[Judged], wanted: &Window) -> (Range<f64>, Range<f64>) {
 }
 
 /// Writes the name of a critical line on ground of its own, where curves may pass behind it; `top`
-/// is a part of the upper half of the picture.
+/// is a part of the upper half of the picture. Gives the ground back.
 fn name_line(
     chart: &mut Plane<'_, '_>,
     (line, name): (f64, &str),
     top: f64,
     (x, y): (&Range<f64>, &Range<f64>),
-) -> Drawn<()> {
+) -> Drawn<[(f64, f64); 2]> {
     let width = x.end - x.start;
     let right = line - 0.012 * width;
     // A part of the upper half as a height, wherever the axis is.
@@ -261,7 +264,7 @@ fn name_line(
         let place = (right, level(top - 0.04 - 0.07 * part as f64));
         chart.draw_series([Text::new(name, place, anchored(HPos::Right, VPos::Center))])?;
     }
-    Ok(())
+    Ok(ground)
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
