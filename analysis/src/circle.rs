@@ -82,6 +82,11 @@ pub fn poles(g: &Transfer) -> Vec<CirclePole> {
     found
 }
 
+/// The number of poles outside of the unit circle, beyond what counts as lying on it.
+pub fn outside(g: &Transfer) -> usize {
+    roots(g).into_iter().filter(|z| z.norm() >= 1.0 + ON_CIRCLE).count()
+}
+
 fn pole(theta: f64, is_simple: bool, k: Complex<f64>) -> CirclePole {
     CirclePole { theta, kind: if is_simple { Kind::Simple(k) } else { Kind::Repeated } }
 }

@@ -47,6 +47,7 @@ pub mod failures;
 pub mod limits;
 pub mod map;
 pub mod model;
+pub mod open_loop;
 pub mod response;
 pub mod simulation;
 pub mod stability;

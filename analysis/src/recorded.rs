@@ -28,6 +28,8 @@ const FINITE: &str = "a finite number";
 const TIME: Column = Column { names: &[SECONDS, "tick"], bound: FINITE };
 const SECONDS: &str = "time";
 const ANGLE: Column = Column { names: &["angle", "position"], bound: FINITE };
+const VELOCITY: Column = Column { names: &["velocity"], bound: FINITE };
+const HAND: Column = Column { names: &["hand"], bound: "a finite number, or nothing" };
 const TORQUE: Column = Column { names: &["torque"], bound: FINITE };
 const LIMIT: Column = Column { names: &["limit"], bound: "a reason" };
 
@@ -37,7 +39,8 @@ pub fn is_recorded(path: &Path) -> bool {
 }
 
 /// Reads a run: `tick` or `time` (s), `angle` or `position` (rad), `torque` (N m) and, where there
-/// is one, `limit`; other columns are passed over. `period` (s) turns ticks into seconds.
+/// are such, `velocity` (rad/s, where the times are in s), `hand` (N m) and `limit`; other columns are
+/// passed over. `period` (s) turns ticks into seconds.
 ///
 /// # Errors
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
@@ -49,12 +52,14 @@ pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RecordedError> {
 fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RecordedError> {
     let time = table.column(TIME)?;
     let (angle, torque) = (table.column(ANGLE)?, table.column(TORQUE)?);
-    let limit = table.find(LIMIT);
+    let (limit, hand) = (table.find(LIMIT), table.find(HAND));
     let own = if time.name == SECONDS { Clock::Seconds } else { Clock::Ticks };
     if own == Clock::Seconds && period.is_some() {
         return Err(RecordedError::PeriodKnown { file: table.file().to_owned() });
     }
     let clock = if period.is_some() { Clock::Seconds } else { own };
+    // One in rad/s belongs to times in s.
+    let velocity = table.find(VELOCITY).filter(|_| clock == Clock::Seconds);
     let mut trace = Trace { clock, ..Trace::default() };
     let finite = |value: &f64| value.is_finite();
     while let Some(row) = table.row()? {
@@ -64,8 +69,18 @@ fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, Reco
         }
         trace.time.push(at);
         trace.position.push(row.number(angle, finite)?);
+        if let Some(velocity) = velocity {
+            trace.velocity.push(row.number(velocity, finite)?);
+        }
+        if let Some(hand) = hand {
+            let is_known = !row.text(hand).is_empty();
+            trace.hand_torque.push(if is_known { row.number(hand, finite)? } else { f64::NAN });
+        }
         trace.torque.push(row.number(torque, finite)?);
         trace.limit.push(limit.map_or(Ok(Served::IN_FULL), |limit| served(&row, limit))?);
+    }
+    if trace.hand_torque.iter().all(|torque| torque.is_nan()) {
+        trace.hand_torque.clear();
     }
     Ok(trace)
 }

@@ -91,8 +91,9 @@ impl Page<'_> {
                     p { "The verdict rests on these, and says nothing where they do not hold." }
                     ul id="assumptions" { @for item in &report.assumptions { li { (item) } } }
                     h2 { "Pictures" }
-                    (figure("nyquist", &self.nyquist, "Nyquist curve of the environment, from \
-                        velocity to torque. It must stay on the right of the critical line."))
+                    (figure("nyquist", &self.nyquist, "Nyquist curves from velocity to torque. What \
+                        is judged is black: it must stay on the right of the critical line. What is \
+                        grey is shown beside it."))
                     (figure("map", &self.map, "What is known of walls with this scene's device, \
                         period, coupling and delay."))
                     (figure("motion", &self.motion, "What the scene's simulation does."))

@@ -210,7 +210,6 @@ pub fn trace(title: String, period: f64, run: &Run, script: &Script) -> Trace {
         torque: run.ticks.iter().map(|tick| tick.torque).collect(),
         limit: run.ticks.iter().map(|tick| Served::Ran(tick.limit)).collect(),
         release: Some(script.release).filter(|&release| release < time(run.ticks.len())),
-        face: None,
-        lost: None,
+        ..Trace::default()
     }
 }

@@ -28,12 +28,14 @@ pub struct Axes<'n> {
     pub most: (usize, usize),
     /// Size of the text.
     pub size: i32,
+    /// Whether all numbers have an exponent, so that several axes write them alike.
+    pub exponents: bool,
 }
 
 impl<'n> Axes<'n> {
     /// Axes of these names, as most charts have them.
     pub fn named(x: impl Into<Option<&'n str>>, y: &'n str) -> Self {
-        Self { x: x.into(), y, most: (11, 11), size: LABEL }
+        Self { x: x.into(), y, most: (11, 11), size: LABEL, exponents: false }
     }
 
     /// Draws axes, grid, names and numbers.
@@ -41,8 +43,9 @@ impl<'n> Axes<'n> {
         &self,
         chart: &mut ChartContext<'_, SVGBackend<'_>, Cartesian2d<X, Y>>,
     ) -> Drawn<()> {
-        let across = X::scale(&chart.x_range());
-        let up = Y::scale(&chart.y_range());
+        let like = |scale: Scale| if self.exponents { scale.with_exponents() } else { scale };
+        let across = like(X::scale(&chart.x_range()));
+        let up = like(Y::scale(&chart.y_range()));
         let (across, up) = (|value: &f64| across.number(*value), |value: &f64| up.number(*value));
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT)
@@ -108,6 +111,16 @@ impl Scale {
         Self { digits: 4, zero: 0.0, is_plain }
     }
 
+    /// Whether numbers have plain digits.
+    pub fn is_plain(&self) -> bool {
+        self.is_plain
+    }
+
+    /// The same with exponents.
+    pub fn with_exponents(self) -> Self {
+        Self { is_plain: false, ..self }
+    }
+
     /// A number.
     pub fn number(&self, value: f64) -> String {
         let nearest = rounded(value, self.digits);
@@ -143,6 +156,10 @@ mod tests {
         assert_eq!(written(Scale::logarithmic(&(1e-5..1.0)), &[1e-5, 0.1]), ["1e-5", "1e-1"]);
         let small = Scale::linear(&(0.0..2e-4));
         assert_eq!(written(small, &[0.0, 5e-5, 1.5e-4]), ["0", "5e-5", "1.5e-4"]);
+        // Beside one that needs exponents, another has them, too.
+        let plain = Scale::logarithmic(&(3.0..3e6));
+        assert!(plain.is_plain());
+        assert_eq!(written(plain.with_exponents(), &decades[..2]), ["1e1", "1e6"]);
         let large = Scale::linear(&(0.0..2e7));
         assert_eq!(written(large, &[5e6, 1e7, 1.5e7]), ["5e6", "1e7", "1.5e7"]);
     }

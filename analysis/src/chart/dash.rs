@@ -79,7 +79,16 @@ impl Dash {
         points: &[(i32, i32)],
         width: u32,
     ) -> super::Drawn<()> {
-        let style = BLACK.stroke_width(width * UNITS);
+        self.draw_styled(area, points, BLACK.stroke_width(width * UNITS))
+    }
+
+    /// Draws a line of another style than black.
+    pub(super) fn draw_styled(
+        self,
+        area: &super::Area<'_>,
+        points: &[(i32, i32)],
+        style: ShapeStyle,
+    ) -> super::Drawn<()> {
         for part in self.split(points) {
             area.draw(&PathElement::new(part, style))?;
         }

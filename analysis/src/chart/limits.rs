@@ -27,13 +27,31 @@ pub struct DelayCurve {
     pub points: Vec<Point>,
 }
 
+/// The scene itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Own {
+    /// Its sample rate in Hz.
+    pub rate: f64,
+    /// Stiffness of its wall in N m/rad.
+    pub stiffness: f64,
+    /// Delay of its wall in samples.
+    pub delay: usize,
+}
+
 /// Draws largest stiffness (thick, left axis) and torque ripple (thin, right axis) for several
-/// delays. The axes are set against each other so that the two groups do not cross. `note` says
-/// what the ripple was computed for.
+/// delays. The axes are set against each other so that the two groups do not cross, unless
+/// `wanted` says what the left one shall show. The scene's own rate is an upright line, and its wall a
+/// cross. `note` says what the ripple was computed for.
 ///
 /// # Errors
 /// Where there are fewer than two points.
-pub fn limits(title: &str, note: &str, curves: &[DelayCurve]) -> Result<Picture, ChartError> {
+pub fn limits(
+    title: &str,
+    note: &str,
+    curves: &[DelayCurve],
+    own: &Own,
+    wanted: Option<Range<f64>>,
+) -> Result<Picture, ChartError> {
     let all = || curves.iter().flat_map(|curve| &curve.points);
     let rates = span(all().map(|point| point.rate));
     let stiffness = span(all().map(|point| point.stiffness));
@@ -44,30 +62,33 @@ pub fn limits(title: &str, note: &str, curves: &[DelayCurve]) -> Result<Picture,
     let height = |range: &Range<f64>| range.end / range.start;
     let left = stiffness.start / (height(&ripple) * APART * APART)..stiffness.end * APART;
     let right = ripple.start / APART..ripple.end * height(&stiffness) * APART * APART;
-    let key = ROW * (curves.len() as i32 + 2) + 10;
+    let left = wanted.unwrap_or(left);
+    let key = ROW * (curves.len() as i32 + 3) + 10;
     let size = (SIZE.0, (SIZE.1 as i32 + key) as u32);
     draw_sized(size, |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
         let (plot, below) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
-        paint(&plot, curves, rates, left, right)?;
-        write_key(&below, note, curves)
+        paint(&plot, curves, (rates, left, right), own)?;
+        write_key(&below, note, curves, own)
     })
 }
 
 fn paint(
     area: &Area<'_>,
     curves: &[DelayCurve],
-    rates: Range<f64>,
-    left: Range<f64>,
-    right: Range<f64>,
+    (rates, left, right): (Range<f64>, Range<f64>, Range<f64>),
+    own: &Own,
 ) -> Drawn<()> {
+    // One kind of numbers on all axes.
+    let exponents = [&rates, &left, &right].iter().any(|r| !Scale::logarithmic(r).is_plain());
     let numbers = Scale::logarithmic(&right);
+    let numbers = if exponents { numbers.with_exponents() } else { numbers };
     let mut chart = axes::chart(area)
         .right_y_label_area_size(RIGHT_LABELS)
-        .build_cartesian_2d(rates.clone().log_scale(), left.log_scale())?
-        .set_secondary_coord(rates.log_scale(), right.log_scale());
+        .build_cartesian_2d(rates.clone().log_scale(), left.clone().log_scale())?
+        .set_secondary_coord(rates.clone().log_scale(), right.log_scale());
     let names = Axes::named("sample rate (Hz)", "largest certified stiffness (N m/rad)");
-    Axes { most: (12, 11), ..names }.draw(&mut chart)?;
+    Axes { most: (12, 11), exponents, ..names }.draw(&mut chart)?;
     chart
         .configure_secondary_axes()
         .axis_style(pen(1))
@@ -79,19 +100,42 @@ fn paint(
     for (index, curve) in curves.iter().enumerate() {
         let dash = Dash::of(index);
         let (main, second) = (chart.plotting_area(), chart.secondary_plotting_area());
-        let stiff = curve.points.iter().map(|p| main.map_coordinate(&(p.rate, p.stiffness)));
+        let seen = |p: &&Point| left.contains(&p.stiffness);
+        let stiff = curve.points.iter().filter(seen);
+        let stiff = stiff.map(|p| main.map_coordinate(&(p.rate, p.stiffness)));
         let ripple = curve.points.iter().filter_map(|p| Some((p.rate, p.ripple?)));
         let ripple = ripple.map(|point| second.map_coordinate(&point));
         let (x, y) = main.get_base_pixel();
         let area = main.strip_coord_spec();
-        let own = |(px, py): (i32, i32)| (px - x, py - y);
-        dash.draw(&area, &stiff.map(own).collect::<Vec<_>>(), 3)?;
-        dash.draw(&area, &ripple.map(own).collect::<Vec<_>>(), 1)?;
+        let place = |(px, py): (i32, i32)| (px - x, py - y);
+        dash.draw(&area, &stiff.map(place).collect::<Vec<_>>(), 3)?;
+        dash.draw(&area, &ripple.map(place).collect::<Vec<_>>(), 1)?;
+    }
+    if !rates.contains(&own.rate) && own.rate != rates.end {
+        return Ok(());
+    }
+    let (main, area) = (chart.plotting_area(), chart.plotting_area().strip_coord_spec());
+    let (x, y) = main.get_base_pixel();
+    let place = |stiffness: f64| {
+        let (px, py) = main.map_coordinate(&(own.rate, stiffness));
+        (px - x, py - y)
+    };
+    Dash::new(&[3, 3]).draw(&area, &[place(left.start), place(left.end)], 1)?;
+    let name = format!("{} Hz", significant(own.rate, 4));
+    let beside = place(left.start);
+    // On the side where there is room.
+    let right = beside.0 > area.dim_in_pixel().0 as i32 / 2;
+    let (side, gap) = if right { (HPos::Right, -units(6)) } else { (HPos::Left, units(6)) };
+    let corner = (beside.0 + gap, beside.1 - units(8));
+    area.draw(&Text::new(name, corner, anchored(side, VPos::Bottom)))?;
+    if left.contains(&own.stiffness) {
+        area.draw(&Cross::new(place(own.stiffness), units(7), WHITE.stroke_width(5 * UNITS)))?;
+        area.draw(&Cross::new(place(own.stiffness), units(7), pen(2)))?;
     }
     Ok(())
 }
 
-fn write_key(area: &Area<'_>, note: &str, curves: &[DelayCurve]) -> Drawn<()> {
+fn write_key(area: &Area<'_>, note: &str, curves: &[DelayCurve], own: &Own) -> Drawn<()> {
     let style = || anchored(HPos::Left, VPos::Center);
     let middle = |row: usize| units(ROW * row as i32 + ROW / 2);
     for (row, curve) in curves.iter().enumerate() {
@@ -108,8 +152,13 @@ fn write_key(area: &Area<'_>, note: &str, curves: &[DelayCurve]) -> Drawn<()> {
         let words = format!("delay {}{what}: {end}", curve.delay);
         area.draw(&Text::new(words, (units(102), y), style()))?;
     }
-    let notes =
-        ["thick, left axis: stiffness; thin, right axis: ripple".to_owned(), note.to_owned()];
+    let Own { rate, stiffness, delay } = own;
+    let (k, rate) = (significant(*stiffness, 4), significant(*rate, 5));
+    let notes = [
+        format!("cross: the scene, {k} N m/rad at {rate} Hz, delay {delay}"),
+        "thick, left axis: stiffness; thin, right axis: ripple".to_owned(),
+        note.to_owned(),
+    ];
     for (row, note) in notes.into_iter().enumerate() {
         let place = (units(20), middle(curves.len() + row));
         area.draw(&Text::new(note, place, style()))?;

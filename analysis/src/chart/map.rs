@@ -4,12 +4,12 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
+use super::hatch::Ground;
 use super::strips::polygons;
 use super::*;
+use crate::map::border::Border;
 use crate::map::{Map, Region};
 
-/// Height in pixels of the map's key, of two lines with a border's and a scene's.
-const KEY: i32 = 86;
 /// Height of a line of the key in pixels.
 const ROW: i32 = 22;
 
@@ -18,19 +18,28 @@ const ROW: i32 = 22;
 pub struct Overlay {
     /// What it is called.
     pub title: String,
-    /// Stiffness and damping along the closed form's border; empty where there is none.
-    pub border: Vec<(f64, f64)>,
+    /// The border that a closed form gives, where there is one.
+    pub border: Option<Border>,
     /// Stiffness and damping of the scene itself.
     pub scene: (f64, f64),
 }
 
-/// Grey of a region: the better, the lighter.
+/// Grey of a region: the better, the lighter. What is hatched is so on white.
 fn grey(region: Region) -> RGBColor {
     match region {
-        Region::Paper => WHITE,
+        Region::Paper | Region::Undecided | Region::Wrong => WHITE,
         Region::Exact => RGBColor(214, 214, 214),
-        Region::Stable => RGBColor(160, 160, 160),
+        Region::Rejected => RGBColor(160, 160, 160),
         Region::Unstable => RGBColor(96, 96, 96),
+    }
+}
+
+/// The lines over the regions in which a verdict is missing or wrong.
+fn hatching(region: Region) -> Option<Ground> {
+    match region {
+        Region::Undecided => Some(Ground::Rising),
+        Region::Wrong => Some(Ground::Crossed),
+        _ => None,
     }
 }
 
@@ -38,9 +47,23 @@ fn name(region: Region) -> &'static str {
     match region {
         Region::Paper => "certified by the paper's rule",
         Region::Exact => "certified by the exact rule only",
-        Region::Stable => "stable with no hand, not certified",
+        Region::Undecided => "undecided, stable with no hand",
+        Region::Rejected => "rejected, stable with no hand",
         Region::Unstable => "unstable with no hand",
+        Region::Wrong => "WRONG: certified, unstable",
     }
+}
+
+/// The regions of the key, the best first; what is rarely there only where it is.
+fn named(map: &Map) -> Vec<Region> {
+    let is_named = |region: &Region| hatching(*region).is_none() || map.share(*region) > 0.0;
+    Region::ALL.into_iter().rev().filter(is_named).collect()
+}
+
+/// Height in pixels of the map's key.
+fn key(map: &Map, overlay: &Overlay) -> i32 {
+    let entries = named(map).len() + usize::from(overlay.border.is_some()) + 1;
+    ROW * entries.div_ceil(2) as i32 + 20
 }
 
 /// Draws a map: the regions in greys, their key below, the border of the closed form as a broken
@@ -49,7 +72,7 @@ fn name(region: Region) -> &'static str {
 /// # Errors
 /// Where the drawing fails.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
-    let size = (SIZE.0, SIZE.1 + KEY as u32);
+    let size = (SIZE.0, SIZE.1 + key(map, overlay) as u32);
     draw_sized(size, |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(&overlay.title, text(TITLE))?;
         let (plot, key) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
@@ -79,12 +102,15 @@ fn regions(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
             chart.draw_series([seam])?;
         }
     }
+    hatch(&chart, map)?;
     Axes::named("stiffness (N m/rad)", "damping (N m s/rad)").draw(&mut chart)?;
     let axis = [(x.start, 0.0), (x.end, 0.0)];
     chart.draw_series([PathElement::new(axis, pen(1))])?;
-    let on_white = overlay.border.iter().copied();
-    chart.draw_series(LineSeries::new(on_white, WHITE.stroke_width(4 * UNITS)))?;
-    chart.draw_series(broken(overlay.border.iter().copied(), 9, 6, 3))?;
+    if let Some(Border { points, .. }) = &overlay.border {
+        let white = WHITE.stroke_width(4 * UNITS);
+        chart.draw_series(LineSeries::new(points.iter().copied(), white))?;
+        chart.draw_series(broken(points.iter().copied(), 9, 6, 3))?;
+    }
     let (k, b) = overlay.scene;
     if x.contains(&k) && y.contains(&b) {
         chart.draw_series([
@@ -95,29 +121,50 @@ fn regions(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
     Ok(())
 }
 
+/// Covers the regions that are hatched, column by column.
+fn hatch(chart: &Plane<'_, '_>, map: &Map) -> Drawn<()> {
+    let plot = chart.plotting_area();
+    let area = plot.strip_coord_spec();
+    let (width, height) = area.dim_in_pixel();
+    let along = |size: u32, index: usize, of: usize| (size as usize * index / of) as i32;
+    for column in 0..map.columns {
+        let x = along(width, column, map.columns)..along(width, column + 1, map.columns);
+        for row in 0..map.rows {
+            let Some(ground) = hatching(map.at(column, row)) else { continue };
+            let top = height as i32;
+            let y = top - along(height, row + 1, map.rows)..top - along(height, row, map.rows);
+            ground.fill(&area, &x, &y)?;
+        }
+    }
+    Ok(())
+}
+
 /// The regions that the map has, each with its grey, then the lines and the cross.
 fn write_key(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
     let cell = |index: usize| {
         (units(30 + 390 * (index % 2) as i32), units(ROW * (index / 2) as i32 + ROW / 2))
     };
     let style = || anchored(HPos::Left, VPos::Center);
-    for (index, region) in Region::ALL.into_iter().rev().enumerate() {
+    let regions = named(map);
+    for (index, &region) in regions.iter().enumerate() {
         let (x, y) = cell(index);
         let corners = [(x, y - units(7)), (x + units(34), y + units(7))];
         area.draw(&Rectangle::new(corners, grey(region).filled()))?;
+        if let Some(ground) = hatching(region) {
+            ground.fill(area, &(x..x + units(34)), &(y - units(7)..y + units(7)))?;
+        }
         area.draw(&Rectangle::new(corners, pen(1)))?;
         let share = crate::quantity::significant(100.0 * map.share(region), 3);
         let words = format!("{} ({share} %)", name(region));
         area.draw(&Text::new(words, (x + units(44), y), style()))?;
     }
-    if !overlay.border.is_empty() {
-        let (x, y) = cell(4);
+    if let Some(border) = &overlay.border {
+        let (x, y) = cell(regions.len());
         super::dash::Dash::of(4).draw(area, &[(x, y), (x + units(34), y)], 3)?;
-        let words = "closed form of the paper's border";
-        area.draw(&Text::new(words, (x + units(44), y), style()))?;
+        area.draw(&Text::new(border.name, (x + units(44), y), style()))?;
     }
     let (k, b) = overlay.scene;
-    let (x, y) = cell(5);
+    let (x, y) = cell(regions.len() + usize::from(overlay.border.is_some()));
     let seen = map.stiffness.contains(&k) && map.damping.contains(&b);
     if seen {
         area.draw(&Cross::new((x + units(17), y), units(7), pen(2)))?;

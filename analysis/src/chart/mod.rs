@@ -2,15 +2,19 @@
 //! they can be read in print.
 
 pub mod axes;
+pub mod bode;
 pub mod dash;
+pub mod data;
 pub mod failures;
 pub mod growth;
 pub mod hatch;
 pub mod identify;
+mod labels;
 pub mod limits;
 pub mod map;
 pub mod nyquist;
 pub mod picture;
+mod sheet;
 pub mod strips;
 pub mod trace;
 pub mod tradeoff;
@@ -25,6 +29,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use thiserror::Error;
 
+pub use data::{Cell, Chart, Data};
 pub use picture::{Output, Picture};
 
 /// Width and height of a picture in pixels.
@@ -54,6 +59,8 @@ const X_LABELS: i32 = units(48);
 const Y_LABELS: i32 = units(78);
 /// Grey of what is not allowed.
 const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);
+/// Grey of a curve that is shown beside what counts.
+const FAINT: RGBColor = RGBColor(150, 150, 150);
 /// Grey of grid lines.
 const GRID: RGBColor = RGBColor(235, 235, 235);
 
@@ -78,6 +85,15 @@ fn broken(
     DashedLineSeries::new(points, units(ink), units(gap), pen(width))
 }
 
+/// Ranges of the axes that somebody asks for in place of the usual ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Window {
+    /// Along the horizontal axis.
+    pub x: Option<Range<f64>>,
+    /// Along the vertical axis.
+    pub y: Option<Range<f64>>,
+}
+
 /// Why a picture could not be drawn.
 #[derive(Debug, Error)]
 pub enum ChartError {
@@ -89,11 +105,35 @@ pub enum ChartError {
         /// Why.
         source: std::io::Error,
     },
+    /// The numbers could not be written.
+    #[error("{path}: the numbers cannot be written: {source}")]
+    Data {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// The file's name does not say what kind of picture it is.
-    #[error("{path}: the name of a picture must end in .svg or .png")]
+    #[error(
+        "{path}: the name of a picture must end in .svg, .png or .pdf, that of its numbers in .csv"
+    )]
     Extension {
         /// The file.
         path: PathBuf,
+    },
+    /// The file of the numbers has another name.
+    #[error("{path}: the name of a picture's numbers must end in .csv")]
+    DataExtension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Both files are to have the numbers.
+    #[error("{output}: it has the numbers already; --csv {csv} goes with a picture")]
+    TwoTables {
+        /// The file of the picture.
+        output: PathBuf,
+        /// The file of the numbers.
+        csv: PathBuf,
     },
     /// The drawing failed.
     #[error("the picture cannot be drawn: {0}")]

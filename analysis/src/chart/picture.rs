@@ -1,4 +1,4 @@
-//! Pictures as files: SVG as drawn, PNG from the same drawing.
+//! Pictures as files: SVG as drawn, PNG and PDF from the same drawing.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,10 +29,11 @@ pub struct Output {
 enum Format {
     Svg,
     Png,
+    Pdf,
 }
 
 impl Output {
-    /// By the file's extension, `.svg` or `.png` in any case.
+    /// By the file's extension, `.svg`, `.png` or `.pdf` in any case.
     ///
     /// # Errors
     /// Where it has another one or none.
@@ -41,6 +42,7 @@ impl Output {
         let format = match extension.as_deref().map(str::to_ascii_lowercase).as_deref() {
             Some("svg") => Format::Svg,
             Some("png") => Format::Png,
+            Some("pdf") => Format::Pdf,
             _ => return Err(ChartError::Extension { path: path.to_owned() }),
         };
         Ok(Self { path: path.to_owned(), format })
@@ -67,6 +69,7 @@ impl Output {
         let bytes = match self.format {
             Format::Svg => picture.svg.clone().into_bytes(),
             Format::Png => picture.png(scale)?,
+            Format::Pdf => picture.pdf()?,
         };
         std::fs::write(&self.path, bytes)
             .map_err(|source| ChartError::Output { path: self.path.clone(), source })
@@ -105,6 +108,31 @@ impl Picture {
     }
 }
 
+/// Dots per inch of the pixels of a drawing on paper, as in CSS.
+const DOTS_PER_INCH: f32 = 96.0;
+
+impl Picture {
+    /// As PDF: lines that stay sharp, text that can be searched, and its letters embedded.
+    ///
+    /// # Errors
+    /// Where it cannot be drawn.
+    pub fn pdf(&self) -> Result<Vec<u8>, ChartError> {
+        // Of another version than that of the PNG, with types of its own.
+        use svg2pdf::usvg::fontdb::{Database, Source};
+        use svg2pdf::usvg::{Options, Tree};
+        use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
+
+        let mut fonts = Database::new();
+        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
+        fonts.set_sans_serif_family("DejaVu Sans");
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        let failed = |error: String| ChartError::Drawing(error);
+        let tree = Tree::from_str(&self.svg, &options).map_err(|e| failed(e.to_string()))?;
+        let page = PageOptions { dpi: DOTS_PER_INCH };
+        to_pdf(&tree, ConversionOptions::default(), page).map_err(|e| failed(e.to_string()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,12 +140,23 @@ mod tests {
 
     #[test]
     fn the_extension_says_what_is_written() {
-        let kinds = ["a.svg", "b.SVG", "c.png"].map(|name| Output::new(Path::new(name)).is_ok());
-        assert_eq!(kinds, [true; 3]);
-        for name in ["a.pdf", "svg", ""] {
+        let names = ["a.svg", "b.SVG", "c.png", "d.pdf"];
+        assert_eq!(names.map(|name| Output::new(Path::new(name)).is_ok()), [true; 4]);
+        for name in ["a.eps", "svg", ""] {
             let error = Output::new(Path::new(name)).unwrap_err().to_string();
-            assert!(error.ends_with("must end in .svg or .png"), "{error}");
+            assert!(error.contains("must end in .svg, .png or .pdf"), "{error}");
         }
+    }
+
+    #[test]
+    fn a_pdf_has_the_size_of_the_drawing_and_its_letters() {
+        let picture = growth("A title to be seen", 1e-3, &[0.0, 1.0, -2.0]).unwrap();
+        let pdf = picture.pdf().unwrap();
+        let has = |words: &[u8]| pdf.windows(words.len()).any(|window| window == words);
+        assert!(pdf.starts_with(b"%PDF-") && has(b"DejaVuSans"));
+        // 820 by 560 pixels of 1/96 inch, in points of 1/72.
+        assert!(has(b"/MediaBox [0 0 615 420]"));
+        assert_eq!(pdf, picture.pdf().unwrap());
     }
 
     #[test]

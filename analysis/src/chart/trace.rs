@@ -1,4 +1,4 @@
-//! Position and torque over time.
+//! Position, velocity and torque over time.
 
 use std::path::Path;
 
@@ -6,10 +6,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
+use super::dash::{Dash, SOLID};
 use super::hatch::Ground;
+use super::sheet::{Frame, whole};
 use super::*;
 use crate::file::SceneFile;
 use crate::quantity::{shortened, significant};
+use crate::simulation::drive::Drive;
 use crate::simulation::served::Served;
 use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
 
@@ -36,8 +39,15 @@ pub struct Trace {
     pub position: Vec<f64>,
     /// Where the hand wanted to be in rad, as long as it held the device.
     pub hand: Vec<f64>,
-    /// Coupling torque in N m.
+    /// Velocity in rad/s, a sample each; empty where it was not recorded, to be taken from the angle.
+    pub velocity: Vec<f64>,
+    /// Coupling torque in N m; the motor applies the opposite.
     pub torque: Vec<f64>,
+    /// Torque in N m with which the hand drives the device, in the direction of the angle; empty where
+    /// it is not known or there is none.
+    pub hand_torque: Vec<f64>,
+    /// What the torque is limited to, in N m.
+    pub torque_limit: Option<f64>,
     /// Why the torque is not what the scene asked for.
     pub limit: Vec<Served>,
     /// When the hand lets go, on the same clock.
@@ -59,12 +69,18 @@ impl Trace {
         let experiment = Experiment::of(file, folder)?;
         let motion = simulate(&experiment, Stride::default())?;
         let period = file.scene.timing.period;
+        let drive = |k: usize| experiment.drive.held(k) + experiment.drive.sine(k, period)[0];
+        let is_driven = experiment.drive != Drive::Free;
+        let driven = is_driven.then(|| (0..experiment.samples).map(drive).collect());
         let trace = Self {
             title: file.name.clone(),
             clock: Clock::Seconds,
             time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
             position: motion.position,
+            velocity: motion.velocity,
             torque: motion.torque,
+            hand_torque: driven.unwrap_or_default(),
+            torque_limit: file.scene.torque_limit,
             limit: motion.limit,
             face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
             ..Self::default()
@@ -74,11 +90,21 @@ impl Trace {
 
     /// Ends the run where a picture cannot show it any more, or where there is no more of it.
     pub fn as_far_as_drawable(mut self) -> Self {
-        let both = self.position.iter().zip(&self.torque);
-        let kept = both.take_while(|(x, f)| is_drawable(**x) && is_drawable(**f)).count();
+        let fine = |column: &[f64], i: usize| column.get(i).is_none_or(|value| is_drawable(*value));
+        let all = |&i: &usize| {
+            [&self.position, &self.velocity, &self.torque].iter().all(|column| fine(column, i))
+        };
+        let recorded = self.position.len().min(self.torque.len());
+        let kept = (0..recorded).take_while(all).count();
         self.lost = self.time.get(kept).copied();
         self.time.truncate(kept);
-        for column in [&mut self.position, &mut self.torque, &mut self.hand] {
+        for column in [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.torque,
+            &mut self.hand,
+            &mut self.hand_torque,
+        ] {
             column.truncate(kept);
         }
         self.limit.truncate(kept);
@@ -99,6 +125,46 @@ impl Trace {
         self.begin(0)..self.begin(self.time.len())
     }
 
+    /// Samples over which a velocity is taken that was not recorded: as many as a picture does not
+    /// show apart, so that the steps of the encoder do not hide it.
+    fn window(&self) -> usize {
+        (self.time.len() / 400).max(1)
+    }
+
+    /// The velocity as it was recorded, or the mean over a few samples.
+    fn velocities(&self) -> Vec<f64> {
+        if !self.velocity.is_empty() {
+            return self.velocity.clone();
+        }
+        let mean = |i: usize| {
+            let from = i.saturating_sub(self.window());
+            let to = if from == i { i + 1 } else { i };
+            let step = self.position[to] - self.position[from];
+            step / (self.time[to] - self.time[from])
+        };
+        (0..self.time.len()).map(mean).collect()
+    }
+
+    /// The numbers of the picture.
+    pub fn data(self) -> Data {
+        let (velocity, clock) = (self.velocities(), self.clock);
+        let rows = (0..self.time.len()).map(move |i| {
+            let known = |column: &[f64]| Cell::from(column.get(i).copied());
+            let limit = self.limit.get(i).map_or("", |limit| limit.as_str());
+            let torques = [known(&self.torque), known(&self.hand_torque)];
+            let motion = [self.time[i].into(), self.position[i].into(), known(&velocity)];
+            motion.into_iter().chain(torques).chain([limit.into()]).collect()
+        });
+        match clock {
+            Clock::Seconds => {
+                Data::new(&["time", "position", "velocity", "torque", "hand", "limit"], rows)
+            }
+            Clock::Ticks => {
+                Data::new(&["tick", "position", "velocity", "torque", "hand", "limit"], rows)
+            }
+        }
+    }
+
     /// What limited the torque, each once.
     fn reasons(&self) -> Vec<(Served, Ground)> {
         let occurs = |served: &Served| self.limit.contains(served);
@@ -109,57 +175,167 @@ impl Trace {
 
 /// Height of the line of the key that names the grounds, in pixels.
 const ROW: i32 = 24;
+/// Height of a line of words, in pixels.
+const LINE: i32 = 20;
+/// Letters of a line of words.
+const LETTERS: usize = 112;
+/// Heights of the panels, in pixels.
+const PANELS: [i32; 3] = [226, 186, 264];
+/// Which way is up.
+const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive in one direction; \
+                     the motor applies minus the coupling torque";
 
-/// Draws position above torque, over one time axis. Where the torque was limited or a tick was
-/// missed, the ground says why.
+/// Draws position above velocity and torque, over one time axis. Where the torque was limited or a
+/// tick was missed, the ground says why. `wanted` are times and angles to be shown in place of all.
 ///
 /// # Errors
 /// Where there are fewer than two samples.
-pub fn trace(trace: &Trace) -> Result<Picture, ChartError> {
+pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     let samples = trace.time.len();
     if samples < 2 || trace.position.len() != samples || trace.torque.len() != samples {
         return Err(ChartError::TooFewPoints);
     }
     let reasons = trace.reasons();
-    let key = if reasons.is_empty() { 0 } else { ROW };
-    draw_sized((SIZE.0, SIZE.1 + key as u32), |area| {
+    let words = wrapped(&words(trace));
+    let key = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
+    let height = TITLE_ROOM + key + PANELS.iter().sum::<i32>() + LINE + 4;
+    let times = wanted.x.clone().unwrap_or(trace.times());
+    draw_sized((SIZE.0, height as u32), |area| {
         let area =
-            area.margin(units(10), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
-        let area = area.titled(&legend(trace), text(LABEL))?;
-        let (grounds, area) = area.split_vertically(units(key));
+            area.margin(units(TOP), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
+        let (above, area) = area.split_vertically(units(key));
+        for (row, line) in words.iter().enumerate() {
+            let place = (units(SIZE.0 as i32 / 2), units(LINE * row as i32 + LINE / 2));
+            above.draw(&Text::new(line.clone(), place, anchored(HPos::Center, VPos::Center)))?;
+        }
+        let (_, grounds) = above.split_vertically(units(LINE * words.len() as i32));
         write_grounds(&grounds, &reasons)?;
-        let (upper, lower) = area.split_vertically(units(SIZE.1 as i32) * 48 / 100);
-        position(&upper, trace)?;
-        torque(&lower, trace, &reasons)
+        let (first, area) = area.split_vertically(units(PANELS[0]));
+        let (second, area) = area.split_vertically(units(PANELS[1]));
+        let (third, signs) = area.split_vertically(units(PANELS[2]));
+        position(&first, trace, &times, wanted.y.clone())?;
+        velocity(&second, trace, &times)?;
+        torque(&third, trace, &times, &reasons)?;
+        let place = (units(SIZE.0 as i32 / 2), units(LINE / 2));
+        let style = TextStyle::from((FONT, LABEL - units(2))).color(&BLACK);
+        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
+        signs.draw(&Text::new(SIGNS, place, style))
     })
 }
 
-fn position(area: &Area<'_>, trace: &Trace) -> Drawn<()> {
-    let range = span(trace.position.iter().chain(&trace.hand).copied());
-    let y = padded(range, 0.16);
-    let time = trace.times();
-    let mut chart = axes::chart(area)
-        .margin_right(MARGIN_RIGHT)
-        .x_label_area_size(units(24))
-        .build_cartesian_2d(time.clone(), y.clone())?;
-    Axes::named(None, "angle (rad)").draw(&mut chart)?;
+fn position(
+    area: &Area<'_>,
+    trace: &Trace,
+    times: &Range<f64>,
+    wanted: Option<Range<f64>>,
+) -> Drawn<()> {
+    let range = span(seen(&trace.position, trace, times).chain(seen(&trace.hand, trace, times)));
+    let y = wanted.unwrap_or(padded(range, 0.16));
+    let mut chart = panel(area, times, &y, None, "angle (rad)")?;
     if let Some(face) = trace.face.filter(|face| y.contains(face)) {
-        let line = [(time.start, face), (time.end, face)];
+        let line = [(times.start, face), (times.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
     }
-    chart.draw_series(broken(sampled(&trace.hand, trace), 6, 4, 1))?;
-    chart.draw_series(LineSeries::new(sampled(&trace.position, trace), pen(2)))?;
-    release(&mut chart, trace, &y, true)
+    draw_in(&chart, trace, &trace.hand, HAND, 1)?;
+    draw_in(&chart, trace, &trace.position, SOLID, 2)?;
+    release(&mut chart, trace, times, &y, true)
 }
 
+fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
+    let velocity = trace.velocities();
+    let y = padded(span(seen(&velocity, trace, times)), 0.12);
+    let name = match trace.clock {
+        Clock::Seconds => "velocity (rad/s)",
+        Clock::Ticks => "velocity (rad/tick)",
+    };
+    let mut chart = panel(area, times, &y, None, name)?;
+    if y.contains(&0.0) {
+        let zero = [(times.start, 0.0), (times.end, 0.0)];
+        chart.draw_series([PathElement::new(zero, FAINT.stroke_width(UNITS))])?;
+    }
+    draw_in(&chart, trace, &velocity, SOLID, 1)?;
+    release(&mut chart, trace, times, &y, false)
+}
+
+/// A panel with its axes.
+fn panel<'a, 'b>(
+    area: &'a Area<'b>,
+    times: &Range<f64>,
+    y: &Range<f64>,
+    x: Option<&str>,
+    name: &str,
+) -> Drawn<Plane<'a, 'b>> {
+    let below = if x.is_some() { X_LABELS } else { units(24) };
+    let mut chart = axes::chart(area)
+        .margin_top(units(8))
+        .margin_bottom(units(2))
+        .margin_right(MARGIN_RIGHT)
+        .x_label_area_size(below)
+        .build_cartesian_2d(times.clone(), y.clone())?;
+    Axes { most: (11, 7), ..Axes::named(x, name) }.draw(&mut chart)?;
+    Ok(chart)
+}
+
+/// A line through samples, as far as it is in the panel.
+fn draw_in(
+    chart: &Plane<'_, '_>,
+    trace: &Trace,
+    values: &[f64],
+    dash: Dash,
+    width: u32,
+) -> Drawn<()> {
+    let plot = chart.plotting_area();
+    let (x, y) = (plot.get_x_range(), plot.get_y_range());
+    let (w, h) = plot.dim_in_pixel();
+    let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
+    let place = |(time, value): (f64, f64)| {
+        (part(time, &x) * f64::from(w), (1.0 - part(value, &y)) * f64::from(h))
+    };
+    let frame = Frame { left: 0.0, top: 0.0, right: f64::from(w), bottom: f64::from(h) };
+    let places: Vec<_> = sampled(values, trace).into_iter().map(place).collect();
+    let area = plot.strip_coord_spec();
+    for line in Frame::clip(&places, |_| frame) {
+        let line: Vec<_> = line.iter().map(whole).collect();
+        dash.draw(&area, &line, width)?;
+    }
+    Ok(())
+}
+
+/// The samples at these times.
+fn seen<'v>(
+    values: &'v [f64],
+    trace: &'v Trace,
+    times: &'v Range<f64>,
+) -> impl Iterator<Item = f64> + 'v {
+    let both = trace.time.iter().zip(values);
+    both.filter(|(time, _)| times.contains(*time)).map(|(_, value)| *value)
+}
+
+/// How the hand is drawn, and what the torque is limited to.
+const HAND: Dash = Dash::new(&[6, 4]);
+const LIMIT: Dash = Dash::new(&[12, 4, 2, 4]);
+
 /// What the lines are, above the picture, where no curve can come in the way.
-fn legend(trace: &Trace) -> String {
+fn words(trace: &Trace) -> Vec<String> {
     let mut words = vec!["solid: device".to_owned()];
     if trace.face.is_some() {
         words.push("dotted: face of the wall".to_owned());
     }
     if !trace.hand.is_empty() {
-        words.push("broken: where the hand wants to be".to_owned());
+        words.push("broken: angle that the hand wants".to_owned());
+    }
+    if !trace.hand_torque.is_empty() {
+        words.push("broken: torque of the hand".to_owned());
+    }
+    if let Some(limit) = trace.torque_limit {
+        words.push(format!("dash-dotted: torque limit, {} N m", significant(limit, 4)));
+    }
+    if trace.velocity.is_empty() {
+        let few = match trace.window() {
+            1 => "two ticks' angles".to_owned(),
+            many => format!("angles {many} ticks apart"),
+        };
+        words.push(format!("velocity from {few}"));
     }
     if let Some(lost) = trace.lost {
         let unit = match trace.clock {
@@ -169,7 +345,21 @@ fn legend(trace: &Trace) -> String {
         let when = significant(lost, 6);
         words.push(format!("not drawn from {when} {unit} on: too large for a picture"));
     }
-    words.join("; ")
+    words
+}
+
+/// The words in lines that fit the picture.
+fn wrapped(words: &[String]) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words {
+        match lines.last_mut() {
+            Some(line) if line.len() + word.len() + 2 <= LETTERS => {
+                *line = format!("{line}; {word}");
+            }
+            _ => lines.push(word.clone()),
+        }
+    }
+    lines
 }
 
 /// What the grounds of the torque mean, side by side.
@@ -204,21 +394,43 @@ fn name(served: Served) -> &'static str {
     }
 }
 
-fn torque(area: &Area<'_>, trace: &Trace, reasons: &[(Served, Ground)]) -> Drawn<()> {
-    let y = padded(span(trace.torque.iter().copied()), 0.12);
-    let mut chart = axes::chart(area)
-        .margin_right(MARGIN_RIGHT)
-        .build_cartesian_2d(trace.times(), y.clone())?;
-    for &(served, ground) in reasons {
-        shade(&chart, trace, served, ground)?;
-    }
+fn torque(
+    area: &Area<'_>,
+    trace: &Trace,
+    times: &Range<f64>,
+    reasons: &[(Served, Ground)],
+) -> Drawn<()> {
+    let torques = seen(&trace.torque, trace, times).chain(seen(&trace.hand_torque, trace, times));
+    let range = span(torques);
+    // The limit on the side that the torque is on, and on the other if that is used, too.
+    let limits = trace.torque_limit.into_iter().flat_map(|limit| [limit, -limit]);
+    let near = |limit: &f64| {
+        let reached = if *limit > 0.0 { range.end } else { -range.start };
+        reached > 0.2 * limit.abs()
+    };
+    let limits: Vec<f64> = limits.filter(near).collect();
+    let y = padded(span([range.start, range.end].into_iter().chain(limits.iter().copied())), 0.12);
     let axis = match trace.clock {
         Clock::Seconds => "time (s)",
         Clock::Ticks => "time (ticks)",
     };
-    Axes::named(axis, "coupling torque (N m)").draw(&mut chart)?;
-    chart.draw_series(LineSeries::new(sampled(&trace.torque, trace), pen(1)))?;
-    release(&mut chart, trace, &y, false)
+    let mut chart = panel(area, times, &y, Some(axis), "torque (N m)")?;
+    for &(served, ground) in reasons {
+        shade(&chart, trace, served, ground)?;
+    }
+    let level = |value: f64| [(times.start, value), (times.end, value)];
+    if y.contains(&0.0) {
+        chart.draw_series([PathElement::new(level(0.0), FAINT.stroke_width(UNITS))])?;
+    }
+    for limit in limits {
+        let (plot, line) = (chart.plotting_area(), level(limit));
+        let (x, y) = plot.get_base_pixel();
+        let ends = line.map(|end| plot.map_coordinate(&end)).map(|(px, py)| (px - x, py - y));
+        LIMIT.draw(&plot.strip_coord_spec(), &ends, 1)?;
+    }
+    draw_in(&chart, trace, &trace.hand_torque, HAND, 1)?;
+    draw_in(&chart, trace, &trace.torque, SOLID, 2)?;
+    release(&mut chart, trace, times, &y, false)
 }
 
 /// Covers the ground of the samples that were served so.
@@ -227,18 +439,31 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, served: Served, ground: Ground) -
     let area = plot.strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
     let (left, bottom) = (plot.get_base_pixel().0, plot.get_y_range().start);
-    let place = |sample| plot.map_coordinate(&(trace.begin(sample), bottom)).0 - left;
-    for run in runs(&trace.limit, served, place) {
+    // A picture may show a part of the run.
+    let times = plot.get_x_range();
+    let place = |sample| {
+        let time = trace.begin(sample).clamp(times.start, times.end);
+        plot.map_coordinate(&(time, bottom)).0 - left
+    };
+    let first = trace.time.partition_point(|time| *time < times.start).saturating_sub(1);
+    let last = trace.time.partition_point(|time| *time < times.end);
+    for run in runs(&trace.limit[..last.min(trace.limit.len())], first, served, place) {
         ground.fill(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
     }
     Ok(())
 }
 
 /// Where samples that were served so are, in units of the drawing: at least a pixel each, and one
-/// where they are less than a pixel apart.
-fn runs(limit: &[Served], served: Served, place: impl Fn(usize) -> i32) -> Vec<Range<i32>> {
+/// where they are less than a pixel apart; those before the `first` left out.
+fn runs(
+    limit: &[Served],
+    first: usize,
+    served: Served,
+    place: impl Fn(usize) -> i32,
+) -> Vec<Range<i32>> {
     let mut runs: Vec<Range<i32>> = Vec::new();
-    for (sample, _) in limit.iter().enumerate().filter(|(_, is)| **is == served) {
+    let samples = limit.iter().enumerate().skip(first);
+    for (sample, _) in samples.filter(|(_, is)| **is == served) {
         let from = place(sample);
         let to = place(sample + 1).max(from + units(1));
         match runs.last_mut() {
@@ -249,12 +474,17 @@ fn runs(limit: &[Served], served: Served, place: impl Fn(usize) -> i32) -> Vec<R
     runs
 }
 
-fn release(chart: &mut Plane<'_, '_>, trace: &Trace, y: &Range<f64>, named: bool) -> Drawn<()> {
-    let Some(time) = trace.release else { return Ok(()) };
+fn release(
+    chart: &mut Plane<'_, '_>,
+    trace: &Trace,
+    times: &Range<f64>,
+    y: &Range<f64>,
+    named: bool,
+) -> Drawn<()> {
+    let Some(time) = trace.release.filter(|time| times.contains(time)) else { return Ok(()) };
     let line = [(time, y.start), (time, y.end)];
     chart.draw_series(broken(line, 8, 5, 1))?;
     if named {
-        let times = trace.times();
         let place = (time + 0.01 * (times.end - times.start), y.end);
         chart.draw_series([Text::new("lets go", place, anchored(HPos::Left, VPos::Top))])?;
     }
@@ -291,10 +521,10 @@ mod tests {
     fn samples_of_one_reason_are_one_ground_and_none_is_lost() {
         let [ran, missed] = [Served::IN_FULL, Served::Missed];
         let limit = [ran, missed, missed, ran, missed, ran, ran, ran, missed];
-        let wide = runs(&limit, missed, |sample| units(10 * sample as i32));
+        let wide = runs(&limit, 0, missed, |sample| units(10 * sample as i32));
         assert_eq!(wide, [units(10)..units(30), units(40)..units(50), units(80)..units(90)]);
         // Four samples a pixel.
-        let narrow = runs(&limit, missed, |sample| units(1) * sample as i32 / 4);
+        let narrow = runs(&limit, 0, missed, |sample| units(1) * sample as i32 / 4);
         assert_eq!((narrow.len(), &narrow[0]), (1, &(units(1) / 4..units(3))));
     }
 

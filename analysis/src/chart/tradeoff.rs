@@ -9,10 +9,9 @@ use super::axes::Axes;
 use super::*;
 use crate::tradeoff::{Axis, Method, Tradeoff};
 
-mod labels;
 mod marks;
 
-use labels::{Block, Labels};
+use super::labels::{Block, Labels};
 use marks::Mark;
 
 /// Width and height of a panel in pixels.
@@ -29,26 +28,66 @@ const SMALL: i32 = units(13);
 type Logarithmic<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// Draws a table.
+/// The most columns of panels beside each other: what can be read at the width of a page.
+const COLUMNS: usize = 2;
+
+/// The panels of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Panels {
+    /// The cases.
+    pub cases: Vec<String>,
+    /// Numbers of the errors among those of the subject.
+    pub errors: Vec<usize>,
+}
+
+impl Panels {
+    /// All panels of a table, in as many pictures as it takes for them to be legible: one, or one for
+    /// each error, with a word for its name.
+    pub fn all(table: &Tradeoff) -> Vec<(Option<&'static str>, Self)> {
+        let cases: Vec<_> = table.cases().into_iter().map(str::to_owned).collect();
+        let errors = table.subject.errors;
+        if errors.len() <= COLUMNS {
+            return vec![(None, Self { cases, errors: (0..errors.len()).collect() })];
+        }
+        let of = |error: usize| Self { cases: cases.clone(), errors: vec![error] };
+        let word = |error: usize| Some(errors[error].column.names[0]);
+        (0..errors.len()).map(|error| (word(error), of(error))).collect()
+    }
+
+    /// Columns and rows: a row for each case, or for two where there is but one error.
+    fn columns(&self) -> usize {
+        match self.errors.len() {
+            1 => self.cases.len().clamp(1, COLUMNS),
+            many => many,
+        }
+    }
+
+    fn each(&self) -> impl Iterator<Item = (&str, usize)> {
+        let of = |case| self.errors.iter().map(move |&error| (case, error));
+        self.cases.iter().map(String::as_str).flat_map(of)
+    }
+}
+
+/// Draws panels of a table.
 ///
 /// # Errors
 /// Where no method has a cost and an error, or the drawing fails.
-pub fn tradeoff(table: &Tradeoff) -> Result<Picture, ChartError> {
-    let (cases, errors) = (table.cases(), table.subject.errors);
+pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
+    let columns = panels.columns();
+    let rows_of_panels = panels.each().count().div_ceil(columns);
     let costs = range(table, &table.subject.cost, |method| method.cost());
     let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
-    let width = (PANEL.0 * errors.len() as u32).max(SIZE.0);
+    let width = (PANEL.0 * columns as u32).max(SIZE.0);
     let per_row = (width as i32 / ENTRY).max(1);
     // The families, and what a front is.
     let rows = rows(table, per_row) + 1;
-    let panels = (PANEL.1 * cases.len() as u32) as i32;
-    let size = (width, (TITLE_ROOM + panels + ROW * rows + 10) as u32);
+    let height = (PANEL.1 * rows_of_panels as u32) as i32;
+    let size = (width, (TITLE_ROOM + height + ROW * rows + 10) as u32);
     draw_sized(size, |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(table.subject.title, text(TITLE))?;
-        let (plots, below) = area.split_vertically(units(panels));
-        let plots = plots.split_evenly((cases.len(), errors.len()));
-        for (index, plot) in plots.iter().enumerate() {
-            let (case, error) = (cases[index / errors.len()], index % errors.len());
+        let (plots, below) = area.split_vertically(units(height));
+        let plots = plots.split_evenly((rows_of_panels, columns));
+        for (plot, (case, error)) in plots.iter().zip(panels.each()) {
             Panel { table, case, error }.paint(plot, costs.clone())?;
         }
         write_key(&below, table, per_row)

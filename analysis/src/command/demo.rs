@@ -16,7 +16,7 @@ use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
-use crate::chart::{ChartError, Output, Picture};
+use crate::chart::{ChartError, Output, Picture, Window};
 use crate::device::Motion;
 use crate::program::{self, Program};
 use crate::progress;
@@ -114,7 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         ),
     ];
     for (name, title, scene) in pictures {
-        write(folder, name, &nyquist(title, &[(name.to_owned(), scene)])?)?;
+        write(folder, name, &nyquist(title, &[(name.to_owned(), scene)], &Window::default())?)?;
     }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
@@ -184,7 +184,8 @@ fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), C
     let title = format!("{}: {}", program.name, script.story);
     let mut picture = scenario::trace(title, program.scene.timing.period, &outcome.run, &script);
     picture.face = face(&program.scene.environment);
-    Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture)?)?)
+    picture.torque_limit = program.scene.torque_limit;
+    Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture, &Window::default())?)?)
 }
 
 /// Writes a picture into the folder.

@@ -248,6 +248,24 @@ pub enum CommandError {
         /// Name of the scene.
         scene: String,
     },
+    /// One file cannot have the pictures of all topics.
+    #[error("{}: one picture shows one topic; name one of {topics}", picture.display())]
+    NoTopic {
+        /// The file.
+        picture: PathBuf,
+        /// What there is.
+        topics: String,
+    },
+    /// A table has no such panel.
+    #[error("there is no {what} `{word}`; there are {there}")]
+    NoPanel {
+        /// Case or error.
+        what: &'static str,
+        /// What was asked for.
+        word: String,
+        /// What there is.
+        there: String,
+    },
     /// A picture that does not show all of a run; exit status 1, for it shows the rest.
     #[error(
         "the run grows beyond what a picture can show: sample {sample} and all after it are left \

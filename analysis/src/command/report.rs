@@ -8,9 +8,9 @@ use clap::Args;
 use super::chart::map;
 use super::common::{Arithmetic, SceneArgument};
 use super::{Answer, CommandError};
-use crate::chart::ChartError;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::{Trace, trace};
+use crate::chart::{ChartError, Window};
 use crate::date;
 use crate::map::MapError;
 use crate::report::{Figure, Page};
@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Err(error @ (MapError::Device(_) | MapError::NoRange { .. })) => {
             missing(&error.to_string())
         }
-        drawn => Figure::Drawn(drawn?),
+        drawn => Figure::Drawn(drawn?.picture),
     };
     let motion = if file.simulation.is_some() {
         match Trace::simulated(&file, arguments.scene.folder()) {
@@ -61,12 +61,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     } else {
         missing("The scene has no [simulation] table, which would say what to simulate.")
     };
-    let nyquist = match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named) {
-        Err(ChartError::NoTransfer { .. }) => {
-            missing("The environment has no transfer function to draw.")
-        }
-        drawn => Figure::Drawn(drawn?),
-    };
+    let nyquist =
+        match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named, &Window::default()) {
+            Err(ChartError::NoTransfer { .. }) => {
+                missing("The environment has no transfer function to draw.")
+            }
+            drawn => Figure::Drawn(drawn?),
+        };
     let (path, date) = (arguments.scene.file.as_str(), date::today()?);
     let page = Page { report: &report, file: &file, path, date, nyquist, map, motion };
     std::fs::write(&arguments.output, page.html())
@@ -83,7 +84,7 @@ fn missing(why: &str) -> Figure {
 
 /// The picture of a run, or why there is none.
 fn motion(moved: &Trace) -> Result<Figure, ChartError> {
-    match (trace(moved), moved.lost) {
+    match (trace(moved, &Window::default()), moved.lost) {
         (Err(ChartError::TooFewPoints), Some(_)) => {
             Ok(missing("The motion is too large for a picture from its start on."))
         }

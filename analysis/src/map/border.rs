@@ -1,6 +1,6 @@
-//! Where the formulas of theory, section 5, put the border of what the paper's rule certifies.
+//! Where the formulas of theory, section 5, put the border of what is certified.
 
-use firmware::certificate::assess;
+use firmware::certificate::Posed;
 use firmware::environment::{Environment, Wall};
 use firmware::passivity::closed_form;
 use firmware::passivity::interval::Interval;
@@ -14,15 +14,74 @@ const POINTS: usize = 400;
 /// Halvings of the stiffness range: to a millionth of a pixel.
 const HALVINGS: usize = 40;
 
-/// Stiffness (N m/rad) and damping (N m s/rad) along the border on which the closed form of the
-/// environment's index reaches what the paper's rule leaves it; empty where there is no formula.
-pub fn closed_form_border(family: &Family, map: &Map) -> Vec<(f64, f64)> {
-    let limit = limit(family.scene());
+/// A border that a formula gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Border {
+    /// What it is the border of.
+    pub name: &'static str,
+    /// Stiffness (N m/rad) and damping (N m s/rad) along it.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Which formula is compared with which limit.
+#[derive(Clone, Copy)]
+enum Formula {
+    /// The index of the environment alone with what the paper's rule leaves it.
+    Paper,
+    /// The bound on the index of one-sided and limited scenes, with the same.
+    Bound,
+    /// Without a coupling the index of the environment a sample later, with `delta` (theory,
+    /// section 5: the standard coupling is worth one tick).
+    SampleLater,
+}
+
+impl Formula {
+    /// The one for these scenes, if there is one: of a scene that may miss updates, and has no
+    /// compliance, two indices count, and a coupling that is stiffer than the standard one leaves
+    /// the paper's rule nothing.
+    fn of(scene: &Scene) -> Option<Self> {
+        let posed = Posed::of(scene).ok()?;
+        let misses = scene.timing.worst_period.is_some_and(|worst| worst != scene.timing.period);
+        match (scene.coupling, is_linear(scene)) {
+            (Coupling::Rigid, true) if !misses => Some(Self::SampleLater),
+            (Coupling::Spring { .. }, true) => posed.paper_limit().map(|_| Self::Paper),
+            (_, false) => posed.limit().map(|_| Self::Bound),
+            _ => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "closed form of the paper's border",
+            Self::Bound => "closed form: the bound of one-sided or limited scenes",
+            Self::SampleLater => "closed form: the exact rule with a rigid coupling",
+        }
+    }
+
+    /// What the limit has over the index; `None` where one of them does not exist.
+    fn spare(self, scene: &Scene) -> Option<f64> {
+        let posed = Posed::of(scene).ok()?;
+        let (limit, index) = match self {
+            Self::Paper => (posed.paper_limit(), index_of(scene, 0)),
+            Self::Bound => (posed.limit(), posed.bound()),
+            Self::SampleLater => (posed.limit(), index_of(scene, 1)),
+        };
+        Some(limit?.midpoint() - index?.midpoint())
+    }
+}
+
+fn is_linear(scene: &Scene) -> bool {
+    scene.torque_limit.is_none() && crate::simulation::wall(scene).is_none_or(|w| !w.one_sided)
+}
+
+/// The border on which a closed form reaches its limit: none of the points that it encloses is
+/// rejected. `None` where there is no formula.
+pub fn closed_form_border(family: &Family, map: &Map) -> Option<Border> {
+    let formula = Formula::of(family.scene())?;
     let at = |index: usize| {
         let part = index as f64 / (POINTS - 1) as f64;
         let damping = map.damping.start + part * (map.damping.end - map.damping.start);
-        let spare =
-            |stiffness: f64| Some(limit - index_of(&family.member(stiffness, damping))?.midpoint());
+        let spare = |stiffness: f64| formula.spare(&family.member(stiffness, damping));
         let (mut low, mut high) = (map.stiffness.start.max(f64::MIN_POSITIVE), map.stiffness.end);
         if spare(low)? <= 0.0 || spare(high)? > 0.0 {
             return None;
@@ -33,25 +92,18 @@ pub fn closed_form_border(family: &Family, map: &Map) -> Vec<(f64, f64)> {
         }
         Some((low, damping))
     };
-    (0..POINTS).filter_map(at).collect()
+    let points: Vec<_> = (0..POINTS).filter_map(at).collect();
+    (points.len() > 1).then(|| Border { name: formula.name(), points })
 }
 
-/// What the paper's rule leaves to the environment: `K_vc T / 2`, and no more than `delta`.
-fn limit(scene: &Scene) -> f64 {
-    let delta = assess(scene).delta.midpoint();
-    match scene.coupling {
-        Coupling::Spring { stiffness } => delta.min(0.5 * stiffness * scene.timing.period),
-        Coupling::Rigid => delta,
-    }
-}
-
-/// The index in N m s/rad where there is a formula for it.
-fn index_of(scene: &Scene) -> Option<Interval> {
+/// The index in N m s/rad of an environment so many samples later, where there is a formula for it.
+fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
     let period = Interval::decimal(scene.timing.period);
     match scene.environment {
-        Environment::DelayedSpring(wall) => wall_index(&wall, period),
-        Environment::DamperWall(wall) => wall_index(&wall, period),
-        Environment::FreeModeWall { residual, wall } => {
+        Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
+            wall_index(&Wall { delay: wall.delay + later, ..wall }, period)
+        }
+        Environment::FreeModeWall { residual, wall } if later == 0 => {
             let Coupling::Spring { stiffness } = scene.coupling else { return None };
             let cancelled = Interval::decimal(scene.device.damping - residual);
             let (k, b) = numbers(&wall);
@@ -64,7 +116,9 @@ fn index_of(scene: &Scene) -> Option<Interval> {
                 _ => None,
             }
         }
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
+        Environment::FreeModeWall { .. }
+        | Environment::FreeMode { .. }
+        | Environment::Rational(_) => None,
     }
 }
 

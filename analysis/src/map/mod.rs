@@ -7,7 +7,7 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use firmware::certificate::{Posed, assess};
+use firmware::certificate::{Answer, Posed, assess};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Scene;
 use rayon::prelude::*;
@@ -22,19 +22,37 @@ use plant::SampledPlant;
 /// What is known of a scene, from the worst to the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Region {
+    /// Certified, and yet without a hand it does not come to rest: its torque is later than the
+    /// certificate takes it to be.
+    Wrong,
     /// Even without a hand it does not come to rest.
     Unstable,
-    /// Without a hand it comes to rest; some hand may make it oscillate.
-    Stable,
-    /// The exact rule proves it, the paper's does not.
+    /// Rejected: without a hand it comes to rest; some hand may make it oscillate.
+    Rejected,
+    /// Neither certified nor rejected; without a hand it comes to rest.
+    Undecided,
+    /// The exact rule certifies it, the paper's does not.
     Exact,
-    /// The paper's rule proves it.
+    /// The paper's rule certifies it.
     Paper,
 }
 
 impl Region {
     /// All, from the worst to the best.
-    pub const ALL: [Self; 4] = [Self::Unstable, Self::Stable, Self::Exact, Self::Paper];
+    pub const ALL: [Self; 6] =
+        [Self::Wrong, Self::Unstable, Self::Rejected, Self::Undecided, Self::Exact, Self::Paper];
+
+    /// In one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Unstable => "unstable",
+            Self::Rejected => "rejected",
+            Self::Undecided => "undecided",
+            Self::Exact => "certified-exact",
+            Self::Paper => "certified-paper",
+        }
+    }
 }
 
 /// Why there is no map.
@@ -73,6 +91,9 @@ pub enum MapError {
 pub struct Family {
     scene: Scene,
     plant: SampledPlant,
+    /// Whether the verdict rests on what does not hold: the torque is later than the certificate
+    /// takes it to be.
+    may_be_wrong: bool,
 }
 
 impl Family {
@@ -98,7 +119,8 @@ impl Family {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
         let tick = alone.tick(Stride::default())?;
-        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick) })
+        let may_be_wrong = alone.latency > 0.0;
+        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
     }
 
     /// The scene that the others differ from.
@@ -124,17 +146,18 @@ impl Family {
 
     /// What is known of one of the walls. Stability comes first, being by far the cheapest: no hand
     /// at all is a passive hand too, so what does not come to rest without one is not certified,
-    /// as long as the device is as passive as its scene says. Where it is not, the map shows what
-    /// it does.
+    /// as long as the machine is what the certificate takes it to be. Where it is not, the verdict is
+    /// asked for all the same, and may be wrong.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
-        if !self.plant.is_stable_under(&scene).unwrap_or(false) {
+        let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);
+        if !is_stable && !self.may_be_wrong {
             return Region::Unstable;
         }
-        match Posed::of(&scene) {
-            Ok(posed) if posed.passes_paper() => Region::Paper,
-            Ok(posed) if posed.passes_exact() => Region::Exact,
-            _ => Region::Stable,
+        match (is_stable, verdict(&scene)) {
+            (false, Region::Exact | Region::Paper) => Region::Wrong,
+            (false, _) => Region::Unstable,
+            (true, verdict) => verdict,
         }
     }
 
@@ -147,6 +170,29 @@ impl Family {
             Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
         };
         (0.0..1.8 * stiffest, -0.6 * delta..1.25 * delta)
+    }
+}
+
+/// The middle of one of so many equal parts of a range.
+fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
+    range.start + (range.end - range.start) * (index as f64 + 0.5) / parts as f64
+}
+
+/// What the certificate says of a scene.
+fn verdict(scene: &Scene) -> Region {
+    let posed = match Posed::of(scene) {
+        Ok(posed) => posed,
+        Err(rejection) if rejection.is_undecided() => return Region::Undecided,
+        Err(_) => return Region::Rejected,
+    };
+    // The paper's rule is stricter than the exact one, and cheaper.
+    if posed.passes_paper() {
+        return Region::Paper;
+    }
+    match posed.answer() {
+        Answer::Pass => Region::Exact,
+        Answer::Fail => Region::Rejected,
+        Answer::Undecided => Region::Undecided,
     }
 }
 
@@ -174,12 +220,9 @@ impl Map {
         side: usize,
         progress: impl Fn() + Sync,
     ) -> Self {
-        let middle = |range: &Range<f64>, index: usize| {
-            range.start + (range.end - range.start) * (index as f64 + 0.5) / side as f64
-        };
         let row = |row: usize| {
-            let damping = middle(&damping, row);
-            let region = |column| family.region(middle(&stiffness, column), damping);
+            let damping = middle(&damping, row, side);
+            let region = |column| family.region(middle(&stiffness, column, side), damping);
             let regions: Vec<Region> = (0..side).map(region).collect();
             progress();
             regions
@@ -191,6 +234,16 @@ impl Map {
     /// What is known of a cell.
     pub fn at(&self, column: usize, row: usize) -> Region {
         self.regions[row * self.columns + column]
+    }
+
+    /// Each cell, by rising damping and then stiffness: stiffness (N m/rad) and damping
+    /// (N m s/rad) of its middle, and what is known of it.
+    pub fn cells(self) -> impl Iterator<Item = (f64, f64, Region)> {
+        let Self { stiffness, damping, columns, rows, regions } = self;
+        regions.into_iter().enumerate().map(move |(index, region)| {
+            let (column, row) = (index % columns, index / columns);
+            (middle(&stiffness, column, columns), middle(&damping, row, rows), region)
+        })
     }
 
     /// The part of the cells that a region has, from 0 to 1.

@@ -3,7 +3,7 @@
 
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::Scene;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schur_cohn::all_inside;
 use crate::response::Response;
@@ -45,6 +45,12 @@ impl SampledPlant {
             adjugate = product + DMatrix::identity(n, n) * coefficient;
         }
         Self { numerator, denominator }
+    }
+
+    /// Value at `z`.
+    pub fn at(&self, z: Complex<f64>) -> Complex<f64> {
+        let horner = |p: &[f64]| p.iter().fold(Complex::new(0.0, 0.0), |sum, c| sum * z + *c);
+        horner(&self.numerator) / horner(&self.denominator)
     }
 
     /// Whether the loop of this plant and a scene's controller dies away from any start: all roots

@@ -24,9 +24,9 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn every_picture_as_svg_and_as_png() {
+fn every_picture_in_every_format() {
     let folder = folder();
-    let pictures: [(&[&str], &[&str]); 5] = [
+    let pictures: [(&[&str], &[&str]); 6] = [
         (&["nyquist", "wall.toml"], &["critical line", "-delta = -0.022", "-alpha = -0.021"]),
         (
             &["nyquist", "wall.toml", "late.toml", "free.toml"],
@@ -36,14 +36,37 @@ fn every_picture_as_svg_and_as_png() {
             &["map", "wall.toml", "--points", "2500"],
             &["stiffness (N m/rad)", "closed form", "scene"],
         ),
-        (&["limits", "wall.toml"], &["sample rate (Hz)", "torque ripple", "delay 4"]),
-        (&["trace", "moving.toml"], &["time (s)", "angle (rad)", "torque limit"]),
+        (
+            &["limits", "wall.toml"],
+            &[
+                "sample rate (Hz)",
+                "torque ripple",
+                "delay 4",
+                "1000 Hz",
+                "cross: the scene, 22 N m/rad",
+            ],
+        ),
+        (
+            &["trace", "moving.toml"],
+            &["time (s)", "angle (rad)", "velocity (rad/s)", "torque limit, 0.1 N m", "signs: "],
+        ),
+        (
+            &["bode", "wall.toml", "late.toml"],
+            &[
+                "frequency (Hz)",
+                "phase (degrees)",
+                "gain margin",
+                "phase margin",
+                "late, in no hand",
+            ],
+        ),
     ];
     for (arguments, words) in pictures {
-        for file in ["out.svg", "out.png"] {
+        for file in ["out.svg", "out.png", "out.pdf"] {
             let run = chart(folder.path(), &[arguments, &["-o", file]].concat());
             assert_eq!(run.status.code(), Some(0), "{run:?}");
-            assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
+            let prints = arguments[0] == "bode";
+            assert!(run.stdout.is_empty() != prints && run.stderr.is_empty(), "{run:?}");
         }
         let svg = std::fs::read_to_string(folder.path().join("out.svg")).unwrap();
         for word in words {
@@ -55,7 +78,93 @@ fn every_picture_as_svg_and_as_png() {
         }
         let png = std::fs::read(folder.path().join("out.png")).unwrap();
         assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000);
+        let pdf = std::fs::read(folder.path().join("out.pdf")).unwrap();
+        assert!(pdf.starts_with(b"%PDF-") && pdf.len() > 5_000, "{}", pdf.len());
     }
+}
+
+#[test]
+fn the_numbers_of_every_picture_are_a_table() {
+    let folder = folder();
+    let tables: [(&[&str], &str, usize); 5] = [
+        (&["nyquist", "wall.toml"], "scene,curve,angle (rad),frequency (Hz)", 1000),
+        (&["bode", "wall.toml"], "scene,frequency (Hz),gain (1),phase (degrees)", 1000),
+        (
+            &["map", "wall.toml", "--points", "100"],
+            "stiffness (N m/rad),damping (N m s/rad),region",
+            100,
+        ),
+        (&["limits", "wall.toml"], "delay (samples),sample rate (Hz),largest stiffness", 200),
+        (&["trace", "moving.toml"], "time,position,velocity,torque,hand,limit", 50),
+    ];
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    for (arguments, header, rows) in tables {
+        let beside =
+            chart(folder.path(), &[arguments, &["-o", "a.svg", "--csv", "b.csv"]].concat());
+        assert_eq!(beside.status.code(), Some(0), "{beside:?}");
+        let alone = chart(folder.path(), &[arguments, &["-o", "c.CSV"]].concat());
+        assert_eq!(alone.status.code(), Some(0), "{alone:?}");
+        let table = read("b.csv");
+        assert!(table == read("c.CSV") && read("a.svg").contains("<svg"));
+        assert!(table.starts_with(header), "{arguments:?}: {}", &table[..100]);
+        assert!(table.lines().count() > rows, "{arguments:?}: {}", table.lines().count());
+    }
+    // What a trace has written, a trace draws.
+    let trace = chart(folder.path(), &["trace", "moving.toml", "-o", "trace.csv"]);
+    assert_eq!(trace.status.code(), Some(0), "{trace:?}");
+    assert!(svg(folder.path(), &["trace", "trace.csv"]).contains("torque limit"));
+    // The curve that is judged, and the line: the certificate's alpha is in the table.
+    let run = chart(folder.path(), &["nyquist", "wall.toml", "-o", "n.csv"]);
+    assert_eq!(run.status.code(), Some(0));
+    let table = read("n.csv");
+    let reals =
+        table.lines().skip(1).map(|row| row.split(',').nth(4).unwrap().parse::<f64>().unwrap());
+    assert!((reals.fold(f64::INFINITY, f64::min) + 0.021).abs() < 1e-9);
+}
+
+#[test]
+fn axes_end_where_they_are_told_to() {
+    let folder = folder();
+    let cases: [(&[&str], &str); 6] = [
+        (&["nyquist", "wall.toml", "--x=-0.0403..0.01", "--y", "-0.02..0.02"], "-0.04"),
+        (&["bode", "wall.toml", "--x", "1..500", "--y", "0.5..20"], "\n1\n"),
+        (&["map", "wall.toml", "--points", "100", "--x", "0..777", "--y=0..0.01"], "\n700\n"),
+        (&["limits", "wall.toml", "--x", "100..200", "--y", "1..50"], "\n100\n"),
+        (&["limits", "wall.toml", "--rates", "100:200"], "\n100\n"),
+        (&["trace", "moving.toml", "--x", "0.0005..0.0042", "--y", "-7..7"], "\n0.004\n"),
+    ];
+    for (arguments, number) in cases {
+        let drawn = svg(folder.path(), arguments);
+        assert!(drawn.contains(number), "{arguments:?}");
+    }
+}
+
+#[test]
+fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
+    let folder = folder();
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
+    let kept = kept.to_str().unwrap();
+    let chosen = |more: &[&str]| {
+        let common = ["tradeoff", "servo", "--draw-only", "-o", kept, "--picture", "chosen.svg"];
+        chart(folder.path(), &[&common, more].concat())
+    };
+    let run = chosen(&["--case", "damper_wall", "--case", "free_mode", "--error", "cycle"]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let drawn = std::fs::read_to_string(folder.path().join("chosen.svg")).unwrap();
+    assert!(drawn.contains("free_mode") && !drawn.contains("delayed_spring"));
+    assert!(drawn.contains("limit cycle (rad)") && !drawn.contains("error of the torque"));
+    for (more, words) in [
+        (&["--case", "none"][..], "there is no case `none`; there are delayed_spring, damper_wall"),
+        (&["--error", "noise"], "there is no error `noise`; there are error, error_at_1_rad"),
+    ] {
+        let run = chosen(more);
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.code() == Some(2) && said.contains(words), "{said}");
+    }
+    let all = chart(folder.path(), &["tradeoff", "--draw-only", "-o", kept, "--picture", "a.svg"]);
+    assert!(String::from_utf8(all.stderr).unwrap().contains("one picture shows one topic"));
+    let alone = chart(folder.path(), &["tradeoff", "servo", "--case", "damper_wall"]);
+    assert!(String::from_utf8(alone.stderr).unwrap().contains("--picture"));
 }
 
 fn svg(folder: &Path, arguments: &[&str]) -> String {
@@ -139,6 +248,7 @@ fn extreme_numbers_come_to_an_end() {
             &["nyquist", "x.toml", "-o", "x.svg"],
             &["limits", "x.toml", "-o", "x.svg"],
             &["trace", "x.toml", "-o", "x.svg"],
+            &["bode", "x.toml", "-o", "x.svg"],
         ] {
             let run = chart(folder.path(), arguments);
             let said = String::from_utf8(run.stderr).unwrap();
@@ -152,15 +262,36 @@ fn extreme_numbers_come_to_an_end() {
         assert!(report.status.code().is_some() && !said.contains("panicked"), "{to}: {said}");
     }
     let map = chart(folder.path(), &["map", "wall.toml", "--damping", "0:1e308", "-o", "x.svg"]);
-    assert!(String::from_utf8(map.stderr).unwrap().contains("beyond the range of a map"));
+    assert!(
+        String::from_utf8(map.stderr).unwrap().contains("is not a range that an axis can show")
+    );
 }
 
 #[test]
 fn what_cannot_be_drawn_is_a_bad_question() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("taken.svg")).unwrap();
-    let questions: [(&[&str], &str); 14] = [
-        (&["nyquist", "wall.toml", "-o", "a.pdf"], "a.pdf: the name of a picture must end in"),
+    let questions: [(&[&str], &str); 24] = [
+        (&["nyquist", "wall.toml", "-o", "a.eps"], "a.eps: the name of a picture must end in"),
+        (
+            &["nyquist", "wall.toml", "-o", "a.svg", "--csv", "b.txt"],
+            "b.txt: the name of a picture's numbers must end in .csv",
+        ),
+        (
+            &["nyquist", "wall.toml", "-o", "b.csv", "--csv", "c.csv"],
+            "b.csv: it has the numbers already; --csv c.csv goes with a picture",
+        ),
+        (&["limits", "wall.toml", "-o", "no/b.csv"], "no/b.csv: the numbers cannot be written"),
+        (&["nyquist", "wall.toml", "--x", "9..3", "-o", "a.svg"], "9 must be less than 3"),
+        (&["nyquist", "wall.toml", "--y", "0..x", "-o", "a.svg"], "`x` is not a number"),
+        (&["nyquist", "wall.toml", "--y", "7", "-o", "a.svg"], "two numbers with .. between"),
+        (
+            &["nyquist", "wall.toml", "--x", "1..1.0000000000001", "-o", "a.svg"],
+            "from 1e0 to 1.0000000000001e0 is not a range that an axis can show",
+        ),
+        (&["bode", "wall.toml", "--x=-1..10", "-o", "a.svg"], "-1 must be above 0"),
+        (&["limits", "wall.toml", "--y", "0..10", "-o", "a.svg"], "0 must be above 0"),
+        (&["trace", "moving.toml", "--torque-limit", "0", "-o", "a.svg"], "greater than 0"),
         (&["nyquist", "wall.toml", "-o", "picture"], "picture: the name of a picture must end"),
         (&["nyquist", "wall.toml", "-o", "no/a.svg"], "no/a.svg: the picture cannot be written"),
         (&["nyquist", "wall.toml", "-o", "taken.svg"], "taken.svg: the picture cannot be written"),

@@ -522,4 +522,26 @@ impl Loop {
         };
         Ok(Self { environment, controller, equivalent })
     }
+
+    /// `E'` where torques are latched and updates may be missed, which is judged beside
+    /// [`Loop::equivalent`]: behind the coupling that is standard for the declared passivity. `None`
+    /// where no update is missed.
+    ///
+    /// # Errors
+    /// As [`Loop::of`].
+    pub const fn equivalent_where_latched(scene: &Scene) -> Result<Option<Transfer>, Unbuildable> {
+        if first_invalid::<true>(scene).is_some() {
+            return Err(Unbuildable::OutOfRange);
+        }
+        let n = Numbers::of(scene, Format::F64);
+        let Some(excess) = n.excess_where_latched() else { return Ok(None) };
+        let environment = match transfer::<true>(&scene.environment, &n) {
+            Ok(environment) => environment,
+            Err(error) => return Err(error),
+        };
+        match environment.behind(excess) {
+            Ok(equivalent) => Ok(Some(equivalent)),
+            Err(error) => Err(error),
+        }
+    }
 }

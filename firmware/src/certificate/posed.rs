@@ -120,6 +120,48 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         }
     }
 
+    /// The answer of the rule that the verdict follows, as [`super::assess`] comes to it: what is
+    /// not certified is told apart into what is rejected and what is left undecided.
+    pub const fn answer(&self) -> Answer {
+        match self.rule {
+            // What is clear enough for "not certified" may not be for "rejected".
+            Rule::Exact => {
+                match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
+                    Answer::Undecided => self.exact(&self.coupled(None, &Closeness::TIGHT)),
+                    clear => clear,
+                }
+            }
+            Rule::Nonlinear => {
+                // The index only has to exist, however large.
+                let alone = self.alone(&near(Interval::exact(f64::MAX)));
+                match (&alone, self.bound) {
+                    (Ok(_), None) => Answer::Undecided,
+                    _ => self.paper(&alone),
+                }
+            }
+        }
+    }
+
+    /// What the bound on the index of a one-sided or limited scene is, in N m s/rad; `None` where
+    /// none is known, and for linear scenes.
+    pub const fn bound(&self) -> Option<Interval> {
+        self.bound
+    }
+
+    /// What the deciding index has to stay below, in N m s/rad; `None` where the rule passes none.
+    pub const fn limit(&self) -> Option<Interval> {
+        match self.rule {
+            Rule::Exact => Some(exact_limit(&self.numbers)),
+            Rule::Nonlinear => self.paper_limit(),
+        }
+    }
+
+    /// What the index of the environment alone has to stay below for equations 17 to 19, in
+    /// N m s/rad; `None` where they pass none: without compliance, and above the standard coupling.
+    pub const fn paper_limit(&self) -> Option<Interval> {
+        paper_limit(&self.numbers)
+    }
+
     /// Whether equations 17 to 19 prove the scene.
     pub const fn passes_paper(&self) -> bool {
         let Some(limit) = paper_limit(&self.numbers) else { return false };

@@ -9,8 +9,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::Curve;
-use super::sheet::{Frame, Place, Sheet};
+use super::judged::Branch;
 use crate::chart::dash::Dash;
+use crate::chart::sheet::{Frame, Place, Sheet};
 use crate::chart::{Drawn, anchored, units};
 use crate::circle::{CirclePole, Kind};
 
@@ -33,7 +34,7 @@ pub(super) fn is_drawn(pole: &CirclePole) -> bool {
 }
 
 /// The frame of each pole of each curve, the later ones inside of the earlier.
-pub(super) fn frames(sheet: &Sheet<'_>, curves: &[Curve]) -> Vec<Vec<Frame>> {
+pub(super) fn frames(sheet: &Sheet<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
     let all = sheet.all();
     let mut level = 0;
     let mut frame = |_: &CirclePole| {
@@ -76,12 +77,11 @@ pub(super) fn draw(sheet: &Sheet<'_>, curve: &Curve, frames: &[Frame]) -> Drawn<
 /// is not, which is left out.
 fn ends(sheet: &Sheet<'_>, curve: &Curve, pole: usize, frame: &Frame) -> Option<(Place, Place)> {
     let branch = |end: usize| curve.branches.iter().find(|b| b.poles[end] == Some(pole));
-    let places =
-        |b: &'_ super::Branch| b.values.iter().map(|&v| sheet.place(v)).collect::<Vec<_>>();
+    let places = |b: &'_ Branch| b.values.iter().map(|&v| sheet.place(v)).collect::<Vec<_>>();
     let from = branch(1).map(places).map(|line| frame.exit(line.into_iter()));
     let to = branch(0).map(places).map(|line| frame.exit(line.into_iter().rev()));
     // At rest and at half the sample rate the other side is the mirrored one.
-    let mirrored = |end: Option<Place>| end.map(|end| sheet.mirrored(end));
+    let mirrored = |end: Option<Place>| end.map(|end| frame.nearest(sheet.mirrored(end)));
     let (from, to) = match (from, to) {
         (None, None) => return None,
         (Some(from), None) => (from?, mirrored(from)?),

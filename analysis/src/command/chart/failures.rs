@@ -1,11 +1,12 @@
 //! `haptic chart failures`: which springs methods of integration call stable, and which are.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::OutputArguments;
-use crate::chart::{self, Picture};
+use crate::chart::{self, Chart, Data};
 use crate::command::CommandError;
-use crate::failures::region::Region;
+use crate::failures::region::{METHODS, Region};
+use crate::simulation::method::Method;
 
 /// Arguments of `haptic chart failures`.
 #[derive(Debug, Args)]
@@ -16,6 +17,36 @@ pub struct Arguments {
 }
 
 /// Looks for the limits and draws them.
-pub fn draw() -> Result<Picture, CommandError> {
-    Ok(chart::failures::failures(&Region::all()?)?)
+pub fn draw() -> Result<Chart, CommandError> {
+    let regions = Region::all()?;
+    let picture = chart::failures::failures(&regions)?;
+    let rows = regions.into_iter().flat_map(|region| {
+        let Region { device, truth, certified, apparent } = region;
+        METHODS.into_iter().zip(apparent).flat_map(move |(method, points)| {
+            points.into_iter().map(move |(steps, stiffness)| {
+                vec![
+                    device.into(),
+                    word(method).as_str().into(),
+                    steps.into(),
+                    stiffness.into(),
+                    truth.into(),
+                    certified.into(),
+                ]
+            })
+        })
+    });
+    let header = &[
+        "device",
+        "method",
+        "steps a tick",
+        "apparent limit (N m/rad)",
+        "limit (N m/rad)",
+        "certified (N m/rad)",
+    ];
+    Ok(Chart { picture, data: Data::new(header, rows) })
+}
+
+/// What the method is called on the command line.
+fn word(method: Method) -> String {
+    method.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::OutputArguments;
-use crate::chart::{self, Picture};
+use crate::chart::{self, Chart, Data};
 use crate::command::CommandError;
 use crate::command::identify::{Reading, of_file, positive};
 
@@ -30,10 +30,21 @@ pub struct Arguments {
 }
 
 /// Draws the responses.
-pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let Arguments { file, counts_per_rev, reading, .. } = arguments;
     let found = of_file(file, *counts_per_rev, reading)?;
     let name = || file.file_stem().unwrap_or_default().to_string_lossy();
     let title = arguments.title.clone().unwrap_or_else(|| format!("Measured: {}", name()));
-    Ok(chart::identify::identify(&title, &found)?)
+    let picture = chart::identify::identify(&title, &found)?;
+    let rows: Vec<_> = found
+        .responses
+        .iter()
+        .map(|response| {
+            let hertz = response.omega / std::f64::consts::TAU;
+            vec![hertz.into(), response.admittance.re.into(), response.admittance.im.into()]
+        })
+        .collect();
+    let header =
+        &["frequency (Hz)", "real part of J (rad/(N m s))", "imaginary part of J (rad/(N m s))"];
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }

@@ -5,12 +5,12 @@ use std::ops::Range;
 use clap::Args;
 use firmware::scene::Coupling;
 
-use super::{OutputArguments, number, range};
-use crate::chart::limits::DelayCurve;
-use crate::chart::{self, ChartError, Picture};
+use super::{OutputArguments, number, positive_range};
+use crate::chart::limits::{DelayCurve, Own};
+use crate::chart::{self, Chart, ChartError, Data};
 use crate::command::CommandError;
 use crate::command::common::SceneArgument;
-use crate::limits::{Curves, Limit, at_period, largest_stiffness, with_wall};
+use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
 use crate::map::MapError;
 use crate::progress;
 use crate::quantity::{shortened, significant};
@@ -22,9 +22,13 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
-    /// Sample rates from:to in Hz
-    #[arg(long, value_name = "FROM:TO", value_parser = positive_range, default_value = "500:100000")]
+    /// Sample rates in Hz, the horizontal axis
+    #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = positive_range,
+          default_value = "500..100000", allow_hyphen_values = true)]
     pub rates: Range<f64>,
+    /// Stiffness in N m/rad, the vertical axis; otherwise all that there is to see
+    #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
+    pub y: Option<Range<f64>>,
     /// Counts of the encoder a turn
     #[arg(long, value_name = "N", value_parser = counts, default_value = "65536")]
     pub counts_per_rev: f64,
@@ -42,11 +46,13 @@ const DELAYS: usize = 4;
 const RATES: usize = 61;
 
 /// Looks for the limits and draws them.
-pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
-    if wall(&file.scene).is_none() {
+    let Some(wall) = wall(&file.scene) else {
         return Err(MapError::NoWall { scene: file.name }.into());
-    }
+    };
+    let rate = 1.0 / file.scene.timing.period;
+    let own = Own { rate, stiffness: wall.stiffness, delay: wall.delay };
     let curves = Curves {
         rates: arguments.rates.clone(),
         points: RATES,
@@ -75,15 +81,21 @@ pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
         significant(100.0 * curves.used, 3)
     );
     let title = format!("{}: how stiff, how fast", shortened(&file.name, 48));
-    chart::limits::limits(&title, &note, &drawn).map_err(|error| match error {
+    let picture = chart::limits::limits(&title, &note, &drawn, &own, arguments.y.clone());
+    let picture = picture.map_err(|error| match error {
         ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },
         other => other.into(),
-    })
-}
-
-fn positive_range(text: &str) -> Result<Range<f64>, String> {
-    let range = range(text)?;
-    if range.start > 0.0 { Ok(range) } else { Err(format!("{} must be above 0", range.start)) }
+    })?;
+    let rows = drawn.into_iter().flat_map(|curve| {
+        let delay = curve.delay as f64;
+        let row = move |point: Point| {
+            vec![delay.into(), point.rate.into(), point.stiffness.into(), point.ripple.into()]
+        };
+        curve.points.into_iter().map(row)
+    });
+    let header =
+        &["delay (samples)", "sample rate (Hz)", "largest stiffness (N m/rad)", "ripple (N m)"];
+    Ok(Chart { picture, data: Data::new(header, rows) })
 }
 
 fn counts(text: &str) -> Result<f64, String> {

@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::{OutputArguments, range};
 use crate::chart::map::Overlay;
-use crate::chart::{self, Picture};
+use crate::chart::{self, Chart, Data};
 use crate::command::CommandError;
 use crate::command::common::SceneArgument;
 use crate::file::SceneFile;
 use crate::map::border::closed_form_border;
-use crate::map::{Family, Map, MapError};
+use crate::map::{Family, Map, MapError, Region};
 use crate::progress;
 use crate::quantity::{shortened, significant};
 use crate::simulation::wall;
@@ -22,11 +22,13 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
-    /// Stiffness from:to in N m/rad; otherwise about twice the stiffest certified spring's
-    #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
+    /// Stiffness in N m/rad, the horizontal axis; otherwise about twice the stiffest certified spring's
+    #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = range,
+          allow_hyphen_values = true)]
     pub stiffness: Option<Range<f64>>,
-    /// Damping from:to in N m s/rad; otherwise about as far as the device's own goes
-    #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
+    /// Damping in N m s/rad, the vertical axis; otherwise about as far as the device's own goes
+    #[arg(long, visible_alias = "y", value_name = "MIN..MAX", value_parser = range,
+          allow_hyphen_values = true)]
     pub damping: Option<Range<f64>>,
     /// Number of scenes to judge, on a square grid
     #[arg(long, value_name = "N", default_value_t = 1_000_000,
@@ -38,7 +40,7 @@ pub struct Arguments {
 }
 
 /// Judges the walls and draws them.
-pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let side = (arguments.points as f64).sqrt().ceil() as usize;
     let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
@@ -53,7 +55,7 @@ pub fn of_file(
     file: &SceneFile,
     (stiffness, damping): Ranges,
     side: usize,
-) -> Result<Picture, MapError> {
+) -> Result<Chart, MapError> {
     let family = Family::of(file)?;
     let usual = family.usual_ranges();
     let (stiffness, damping) = (stiffness.unwrap_or(usual.0), damping.unwrap_or(usual.1));
@@ -71,5 +73,8 @@ pub fn of_file(
         border: closed_form_border(&family, &map),
         scene: wall.map_or((0.0, 0.0), |wall| (wall.stiffness, wall.damping)),
     };
-    Ok(chart::map::map(&map, &overlay)?)
+    let picture = chart::map::map(&map, &overlay)?;
+    let row = |(k, b, region): (f64, f64, Region)| vec![k.into(), b.into(), region.as_str().into()];
+    let header = &["stiffness (N m/rad)", "damping (N m s/rad)", "region"];
+    Ok(Chart { picture, data: Data::new(header, map.cells().map(row)) })
 }

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use super::OutputArguments;
-use crate::chart::{self, Picture};
+use super::{OutputArguments, WindowArguments};
+use crate::chart::{self, Chart};
 use crate::command::CommandError;
 use crate::file;
 
@@ -18,11 +18,14 @@ pub struct Arguments {
     pub title: Option<String>,
     #[command(flatten)]
     #[allow(missing_docs)]
+    pub window: WindowArguments,
+    #[command(flatten)]
+    #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
 /// Draws the curves.
-pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
+pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let files: Result<Vec<_>, _> = arguments.files.iter().map(|file| file::load(file)).collect();
     let scenes: Vec<_> = files?.into_iter().map(|file| (file.name, file.scene)).collect();
     let title = match (&arguments.title, &scenes[..]) {
@@ -30,5 +33,6 @@ pub fn draw(arguments: &Arguments) -> Result<Picture, CommandError> {
         (None, [(name, _)]) => name.clone(),
         _ => "From velocity to torque: (T z/(z-1)) E(z)".to_owned(),
     };
-    Ok(chart::nyquist::nyquist(&title, &scenes)?)
+    let picture = chart::nyquist::nyquist(&title, &scenes, &arguments.window.window())?;
+    Ok(Chart { picture, data: chart::nyquist::data(&scenes)? })
 }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::OutputArguments;
+use super::{Files, OutputArguments, WindowArguments};
 use crate::chart::trace::{Trace, trace};
-use crate::chart::{ChartError, Output};
+use crate::chart::{Chart, ChartError};
 use crate::command::common::folder;
 use crate::command::{Answer, CommandError};
 use crate::file::{self, Purpose};
@@ -22,22 +22,28 @@ pub struct Arguments {
     /// Period of the servo in s, for a .csv that counts ticks
     #[arg(long, value_name = "SECONDS", value_parser = crate::command::identify::positive)]
     pub period: Option<f64>,
+    /// Torque limit in N m to be drawn; of a scene file it is known
+    #[arg(long, value_name = "N M", value_parser = crate::command::identify::positive)]
+    pub torque_limit: Option<f64>,
     /// Title of the picture; otherwise the scene's or the file's name
     #[arg(long)]
     pub title: Option<String>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub window: WindowArguments,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub output: OutputArguments,
 }
 
 /// Draws the run and writes the picture; no, where it cannot show all of it.
-pub fn run(arguments: &Arguments, output: &Output) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments, files: &Files) -> Result<Answer, CommandError> {
     let run = load(arguments)?;
     let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });
-    match (trace(&run), left_out) {
+    match (trace(&run, &arguments.window.window()), left_out) {
         (Err(ChartError::TooFewPoints), Some(left_out)) => Err(left_out),
         (drawn, left_out) => {
-            output.write(&drawn?)?;
+            files.write(Chart { picture: drawn?, data: run.data() })?;
             left_out.map_or(Ok(Answer::Yes), Err)
         }
     }
@@ -53,6 +59,7 @@ fn load(arguments: &Arguments) -> Result<Trace, CommandError> {
         let file = file::load_for(Purpose::Simulate, &arguments.file)?;
         Trace::simulated(&file, folder(&arguments.file))?
     };
+    drawn.torque_limit = arguments.torque_limit.or(drawn.torque_limit);
     if let Some(title) = &arguments.title {
         drawn.title.clone_from(title);
     }

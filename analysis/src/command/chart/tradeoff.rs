@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Output};
 use crate::command::{Answer, CommandError};
 use crate::program::{self, Program};
@@ -29,6 +30,15 @@ pub struct Arguments {
     /// Folder of the tables and pictures; that of this repository's unless it is given
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
+    /// Draw into this file only, .svg, .png or .pdf, the panels of these cases and errors
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// A case to be drawn, by its name in the table; otherwise all
+    #[arg(long, value_name = "CASE", requires = "picture")]
+    pub case: Vec<String>,
+    /// An error to be drawn, by its column in the table; otherwise all
+    #[arg(long, value_name = "COLUMN", requires = "picture")]
+    pub error: Vec<String>,
 }
 
 /// What is compared.
@@ -97,6 +107,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         let path = path.to_owned();
         move |source| CommandError::Unwritable { path, source }
     };
+    if let (Some(picture), Topic::All) = (&arguments.picture, arguments.topic) {
+        let topics = TOPICS.map(|topic| topic.subject().name).join(", ");
+        return Err(CommandError::NoTopic { picture: picture.clone(), topics });
+    }
+    let picture = arguments.picture.as_deref().map(Output::new).transpose()?;
     std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
     for topic in arguments.topic.topics() {
         let file = |extension| folder.join(topic.subject().name).with_extension(extension);
@@ -112,13 +127,55 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             }
         }
         let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
-        let picture = chart::tradeoff::tradeoff(&tradeoff)?;
-        for extension in ["svg", "png"] {
-            Output::new(&file(extension))?.write_scaled(&picture, SCALE)?;
+        match &picture {
+            Some(output) => {
+                let panels = arguments.panels(&tradeoff)?;
+                output.write(&chart::tradeoff::tradeoff(&tradeoff, &panels)?)?;
+            }
+            None => draw(&tradeoff, folder)?,
         }
         print!("{}", fronts(&tradeoff));
     }
     Ok(Answer::Yes)
+}
+
+/// Draws all panels of a table into a folder, as SVG and as PNG.
+fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
+    let name = tradeoff.subject.name;
+    for (word, panels) in Panels::all(tradeoff) {
+        let picture = chart::tradeoff::tradeoff(tradeoff, &panels)?;
+        let name = word.map_or_else(|| name.to_owned(), |word| format!("{name}-{word}"));
+        for extension in ["svg", "png"] {
+            let file = folder.join(&name).with_extension(extension);
+            Output::new(&file)?.write_scaled(&picture, SCALE)?;
+        }
+    }
+    Ok(())
+}
+
+impl Arguments {
+    /// The panels that are asked for.
+    fn panels(&self, tradeoff: &Tradeoff) -> Result<Panels, CommandError> {
+        let cases = tradeoff.cases();
+        let columns: Vec<_> = tradeoff.subject.errors.iter().map(|e| e.column.names[0]).collect();
+        let known = |asked: &[String], there: &[&str], what| match asked
+            .iter()
+            .find(|word| !there.contains(&word.as_str()))
+        {
+            Some(word) => {
+                Err(CommandError::NoPanel { what, word: word.clone(), there: there.join(", ") })
+            }
+            None => Ok(()),
+        };
+        known(&self.case, &cases, "case")?;
+        known(&self.error, &columns, "error")?;
+        let is_asked = |asked: &[String], word: &str| {
+            asked.is_empty() || asked.iter().any(|asked| asked == word)
+        };
+        let cases = cases.into_iter().filter(|case| is_asked(&self.case, case));
+        let errors = (0..columns.len()).filter(|&error| is_asked(&self.error, columns[error]));
+        Ok(Panels { cases: cases.map(str::to_owned).collect(), errors: errors.collect() })
+    }
 }
 
 /// What a tick of any scene takes, for which there is no picture.

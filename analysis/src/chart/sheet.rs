@@ -1,14 +1,14 @@
-//! The plane of a Nyquist picture in units of the drawing, and what lies inside of a frame.
+//! A plane in units of the drawing, and what lies inside of a frame.
 
 use plotters::prelude::*;
 
 use crate::chart::dash::Dash;
-use crate::chart::{Area, Drawn, Plane, units};
+use crate::chart::{Area, Drawn, Plane, pen, units};
 
 /// A place in units of the drawing, from the upper left corner of the plot.
 pub(super) type Place = (f64, f64);
 
-/// The plot: real parts to the right, imaginary parts upwards, zero in the middle of the height.
+/// The plot: real parts to the right, imaginary parts upwards.
 pub(super) struct Sheet<'a> {
     pub(super) area: Area<'a>,
     x: (f64, f64),
@@ -37,7 +37,7 @@ impl<'a> Sheet<'a> {
 
     /// Where its conjugate is drawn.
     pub(super) fn mirrored(&self, (x, y): Place) -> Place {
-        (x, self.size.1 - y)
+        (x, 2.0 * self.place((0.0, 0.0)).1 - y)
     }
 
     /// The whole of it.
@@ -47,8 +47,13 @@ impl<'a> Sheet<'a> {
 
     /// Draws a line so many pixels wide.
     pub(super) fn line(&self, dash: Dash, places: &[Place], width: u32) -> Drawn<()> {
+        self.line_in(dash, places, pen(width))
+    }
+
+    /// Draws a line of another style than black.
+    pub(super) fn line_in(&self, dash: Dash, places: &[Place], style: ShapeStyle) -> Drawn<()> {
         let points: Vec<_> = places.iter().map(whole).collect();
-        dash.draw(&self.area, &points, width)
+        dash.draw_styled(&self.area, &points, style)
     }
 
     /// Draws the head of an arrow in the middle of a line, or at another part of its length.
@@ -79,7 +84,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-fn whole(place: &Place) -> (i32, i32) {
+pub(super) fn whole(place: &Place) -> (i32, i32) {
     (place.0.round() as i32, place.1.round() as i32)
 }
 
@@ -102,6 +107,11 @@ impl Frame {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }
 
+    /// The place inside or on the border that is nearest to one.
+    pub(super) fn nearest(&self, (x, y): Place) -> Place {
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+    }
+
     /// Where the line from an inner place to an outer one crosses the border.
     pub(super) fn crossing(&self, inner: Place, outer: Place) -> Place {
         let part = |from: f64, to: f64, low: f64, high: f64| {
@@ -113,7 +123,7 @@ impl Frame {
             .clamp(0.0, 1.0);
         let x = inner.0 + t * (outer.0 - inner.0);
         let y = inner.1 + t * (outer.1 - inner.1);
-        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+        self.nearest((x, y))
     }
 
     /// Where a line leaves the frame for good; `None` where it ends inside, or never comes in.

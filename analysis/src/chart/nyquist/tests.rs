@@ -1,0 +1,147 @@
+use firmware::certificate::assess;
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use super::*;
+
+fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
+    Wall { stiffness, damping, delay, filter: None, face: 0.0, one_sided: false }
+}
+
+fn scene(environment: Environment, coupling: Coupling) -> Scene {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling,
+        environment,
+        torque_limit: None,
+    }
+}
+
+fn rational(numerator: &[f64], denominator: &[f64], delay: usize) -> Rational {
+    let [numerator, denominator] = [numerator, denominator].map(|p| Coefficients::new(p).unwrap());
+    Rational { numerator, denominator, delay, unit_zeros: 0 }
+}
+
+fn judged(scene: &Scene) -> Judged {
+    Judged::of("a scene", scene).unwrap()
+}
+
+#[test]
+fn what_is_drawn_of_a_rigid_coupling_crosses_the_line_where_the_scene_is_rejected() {
+    let rejected = scene(Environment::DamperWall(wall(20.0, 0.01, 1)), Coupling::Rigid);
+    assert!(assess(&rejected).outcome.is_err());
+    let found = judged(&rejected);
+    let least = |role| {
+        let curve = found.curves.iter().find(|curve| curve.role == role).unwrap();
+        curve.values().map(|value| value.0).fold(f64::INFINITY, f64::min)
+    };
+    // The environment alone, which was drawn before, keeps clear.
+    let line = -found.limit.unwrap();
+    assert!(least(Role::Alone) > line && least(Role::Judged) < line);
+    assert!(found.clearance() < 0.0 && found.gain_margin().unwrap() < 1.0);
+    let named = [("rigid".to_owned(), rejected)];
+    let picture = nyquist("rigid", &named, &Window::default()).unwrap();
+    assert!(picture.svg().contains("environment without its coupling, not judged"));
+}
+
+/// A scene of any kind, on both sides of its limit.
+fn random(random: &mut fastrand::Rng) -> Scene {
+    let between =
+        |random: &mut fastrand::Rng, from: f64, to: f64| from + (to - from) * random.f64();
+    let delay = random.usize(0..4);
+    let mut wall = wall(between(random, -4.0, 40.0), between(random, -0.01, 0.03), delay);
+    if random.u8(0..4) == 0 {
+        wall.filter = Some(between(random, 0.0, 0.95));
+    }
+    wall.one_sided = random.u8(0..4) == 0;
+    let residual = between(random, 0.0, 0.03);
+    let environment = match random.u8(0..5) {
+        0 => Environment::FreeMode { residual, delay },
+        1 => Environment::FreeModeWall { residual, wall },
+        2 => {
+            let numerator = [between(random, -20.0, 20.0), between(random, -20.0, 20.0)];
+            let denominator = [1.0, between(random, -1.2, 1.2), between(random, -0.9, 0.9)];
+            Environment::Rational(rational(&numerator, &denominator, delay))
+        }
+        _ => Environment::DamperWall(wall),
+    };
+    let coupling = match random.u8(0..4) {
+        0 => Coupling::Rigid,
+        1 => Coupling::Spring { stiffness: 44.0 },
+        _ => Coupling::Spring { stiffness: between(random, 10.0, 90.0) },
+    };
+    let mut scene = scene(environment, coupling);
+    if random.u8(0..4) == 0 {
+        scene.timing.worst_period = Some(between(random, 0.001, 0.003));
+    }
+    if random.u8(0..6) == 0 {
+        scene.torque_limit = Some(1.0);
+    }
+    scene
+}
+
+#[test]
+fn the_drawn_side_of_the_line_is_the_verdict() {
+    let mut seed = fastrand::Rng::with_seed(7);
+    let (mut passed, mut failed, mut by_role) = (0, 0, std::collections::BTreeMap::new());
+    for _ in 0..600 {
+        let scene = random(&mut seed);
+        let Ok(found) = Judged::of("random", &scene) else { continue };
+        let clearance = found.clearance();
+        let near = found.limit.is_some_and(|limit| clearance.abs() < 1e-4 * limit);
+        match assess(&scene).outcome {
+            // So near the line that a picture does not show the side.
+            _ if near => {}
+            Ok(()) => {
+                assert!(clearance > 0.0, "{clearance} {scene:?}");
+                passed += 1;
+            }
+            // No bound, or poles that cannot be told from the circle.
+            Err(rejection) if rejection.is_undecided() => {
+                assert!(clearance.is_nan() || clearance <= 0.0, "{clearance} {scene:?}");
+            }
+            Err(rejection) => {
+                assert!(clearance < 0.0, "{clearance} {rejection} {scene:?}");
+                failed += 1;
+            }
+        }
+        for curve in &found.curves {
+            *by_role.entry(curve.role.as_str()).or_insert(0) += 1;
+        }
+    }
+    assert!(passed > 40 && failed > 200, "{passed} {failed}");
+    assert!(by_role.len() == 4 && by_role.values().all(|count| *count > 20), "{by_role:?}");
+}
+
+#[test]
+fn margins_are_what_it_takes_to_touch_the_line() {
+    const STANDARD: Coupling = Coupling::Spring { stiffness: 44.0 };
+    // alpha = K T / 2 + B = 0.021
+    let found = judged(&scene(Environment::DamperWall(wall(22.0, 0.01, 1)), STANDARD));
+    assert!((found.gain_margin().unwrap() - 22.0 / 21.0).abs() < 1e-9);
+    // Its curve goes to infinity, where any lag turns it across the line.
+    assert!(found.phase_margin(&found.curves[0]).is_none());
+    // A circle around the origin of radius B: never as far as the line.
+    let damper = judged(&scene(Environment::DamperWall(wall(0.0, 0.01, 1)), STANDARD));
+    assert!(damper.phase_margin(&damper.curves[0]).is_none());
+    // One whose delayed value is at -B only where it is far below: turned by what is found, the
+    // least real part is on the line.
+    let environment = rational(&[27.0, -27.0], &[1.0, -0.5], 1);
+    let found = judged(&scene(Environment::Rational(environment), STANDARD));
+    let (turn, _, _) = found.phase_margin(&found.curves[0]).unwrap();
+    let (sin, cos) = turn.sin_cos();
+    let turned = found.curves[0].values().map(|(re, im)| re * cos + im * sin);
+    let least = turned.fold(f64::INFINITY, f64::min);
+    assert!((least + 0.022).abs() < 1e-5, "{least} {turn}");
+}
+
+#[test]
+fn ranges_of_the_axes_are_those_that_are_asked_for() {
+    let named =
+        [("w".to_owned(), scene(Environment::DamperWall(wall(9.0, 0.0, 1)), Coupling::Rigid))];
+    let usual = nyquist("w", &named, &Window::default()).unwrap();
+    let wanted = Window { x: Some(-0.03..0.0), y: Some(0.25..0.75) };
+    let asked = nyquist("w", &named, &wanted).unwrap();
+    assert!(asked.svg().contains("\n0.6\n") && !usual.svg().contains("\n0.6\n"));
+}
