@@ -123,7 +123,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
-        let (passed, underrun, raw) = (hardware.passed(), hardware.underrun(), hardware.count());
+        let (passed, raw) = (hardware.passed(), hardware.count());
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
         // One jump each, none of them taken in a usual tick: conditions that are put together first
@@ -141,9 +141,6 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         if output.limit == LimitReason::NotANumber {
             self.not_a_number(hardware, inbox);
-        }
-        if underrun {
-            self.underrun(hardware, inbox);
         }
         let mut attend = inbox.asked();
         let mut code = output.code;

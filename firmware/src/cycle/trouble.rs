@@ -100,17 +100,6 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
-    /// A converter that wanted a code before there was one.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn underrun(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) {
-        self.fail(Fault::Underrun, hardware, inbox);
-    }
-
     /// A tick that took longer than any before; gives its slack. Without any the code was late
     /// for the update that it was for, and the motor has a torque that the environment does not know
     /// of: no worst period covers that.

@@ -117,7 +117,7 @@ fn a_new_set_starts_at_rest_where_the_device_is() {
     bench.requests.submit(set(&program, &[(Parameter::Damping, 0.014)])).unwrap();
     assert_eq!(swing(&mut bench), spring);
     // And so does one that is armed: what it remembers of a fault is not what the motor did.
-    bench.board.underrun = true;
+    bench.board.elapsed = PERIOD;
     bench.stand(900, 20);
     bench.requests.arm();
     assert_eq!(swing(&mut bench), spring);
