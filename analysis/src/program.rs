@@ -11,15 +11,15 @@ pub mod free_mode;
 // No scene, and so not among them: what a device is measured with.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
+#[path = "../../firmware/src/bin/supervised_spring.rs"]
+pub mod supervised_spring;
 
 use std::io;
 
-use firmware::boot;
-use firmware::cycle::Options;
 use firmware::environment::Renderable;
 use firmware::number::Number;
 use firmware::scene::Scene;
-use firmware::servo::{BuildError, Latched, RenderingOptions, Servo, Transducers};
+use firmware::servo::{BuildError, Latched, Servo, Transducers};
 use serde::Serialize;
 
 use crate::controller::{Controller, controller};
@@ -105,19 +105,20 @@ impl Program {
         (self.listen)(plant, address, clock)
     }
 
-    /// The program of that name.
+    /// The program of that name, among those whose servo needs nothing but counts.
     pub fn find(name: &str) -> Option<&'static Self> {
         ALL.iter().find(|program| program.name == name)
     }
+
+    /// All programs, also the one that needs a host.
+    pub fn every() -> impl Iterator<Item = &'static Self> {
+        ALL.iter().chain([&SUPERVISED])
+    }
 }
 
-macro_rules! programs {
-    ($($module:ident, $script:path;)*) => {
-        /// Names of all programs, in the order in which they are shown.
-        pub const NAMES: &[&str] = &[$(stringify!($module)),*];
-
-        /// All programs, in the same order.
-        pub const ALL: &[Program] = &[$(Program {
+macro_rules! program {
+    ($module:ident, $script:path) => {
+        Program {
             name: stringify!($module),
             scene: $module::SCENE.as_data(),
             transducers: $module::TRANSDUCERS,
@@ -133,15 +134,20 @@ macro_rules! programs {
                 }
             },
             listen: |plant, address, clock| {
-                let program = boot::Program {
-                    scene: $module::SCENE,
-                    transducers: $module::TRANSDUCERS,
-                    rendering: RenderingOptions::DEFAULT,
-                    options: Options::DEFAULT,
-                };
+                let program = $module::PROGRAM;
                 Twin::start::<_, f32, Latched>(stringify!($module), program, plant, address, clock)
             },
-        }),*];
+        }
+    };
+}
+
+macro_rules! programs {
+    ($($module:ident, $script:path;)*) => {
+        /// Names of the programs that are shown and measured, in the order in which they are shown.
+        pub const NAMES: &[&str] = &[$(stringify!($module)),*];
+
+        /// These programs, in the same order.
+        pub const ALL: &[Program] = &[$(program!($module, $script)),*];
     };
 }
 
@@ -150,6 +156,10 @@ programs! {
     damper_wall, Script::push_and_let_go;
     free_mode, Script::swing_and_let_go;
 }
+
+/// What the options do. Not among the others: it lets the device go where no host is heard, as in a
+/// simulation there is none.
+pub static SUPERVISED: Program = program!(supervised_spring, Script::push_and_let_go);
 
 #[cfg(test)]
 mod tests {

@@ -42,8 +42,8 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Runs a program in a simulated hand until the time is up or Ctrl-C.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let name = &arguments.scene;
-    let program = Program::find(name).ok_or_else(|| {
-        let programs = program::ALL.iter().map(|program| program.name).collect::<Vec<_>>();
+    let program = Program::every().find(|program| program.name == name).ok_or_else(|| {
+        let programs = Program::every().map(|program| program.name).collect::<Vec<_>>();
         CommandError::NoScene { name: name.clone(), programs: programs.join(", ") }
     })?;
     let (enough, wait) = mpsc::channel();

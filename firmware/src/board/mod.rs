@@ -91,8 +91,18 @@ impl core::fmt::Display for StartError {
 ///
 /// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), the
 /// transducers, and the type to compute in: `float` by default, `fixed` with the feature
-/// `fixed-point`; and, if it is known, the dry `friction` of the device in N m, by which the
-/// certificate says whether it comes to rest. On a board the program runs the servo; on the host it prints the certificate.
+/// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
+///
+/// What may follow, in this order, are constant expressions:
+///
+/// - `friction`: the dry friction of the device in N m, if it is known, by which the certificate says
+///   whether it comes to rest;
+/// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
+///   injected: `RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT }`;
+/// - `options`: [`Options`](crate::cycle::Options), such as what to do when the host falls silent:
+///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`.
+///
+/// All of it together is the program's constant `PROGRAM`.
 #[macro_export]
 macro_rules! scene_program {
     (
@@ -101,8 +111,19 @@ macro_rules! scene_program {
         transducers: $transducers:ident,
         float: $float:ty,
         fixed: $fixed:ty
-        $(, friction: $friction:expr)? $(,)?
+        $(, friction: $friction:expr)?
+        $(, rendering: $rendering:expr)?
+        $(, options: $options:expr)?
+        $(,)?
     ) => {
+        /// What is flashed: the scene, sensor and motor, and the options.
+        pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
+            scene: *$certified.scene(),
+            transducers: $transducers,
+            rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
+            options: $crate::or_default!($crate::cycle::Options $(, $options)?),
+        };
+
         /// The certificate of the coefficients that the program multiplies by: where rounding
         /// them to its number format took it away, this does not compile.
         pub const CERTIFIED_AS_IT_RUNS: $crate::certificate::Certified<
@@ -125,12 +146,33 @@ macro_rules! scene_program {
             #[allow(unused_mut, unused_assignments)]
             let mut friction = None;
             $(friction = Some($friction);)?
-            let steps = $crate::certificate::Steps::of(&$transducers, friction);
-            print!("{}", $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps));
+            let steps = $crate::certificate::Steps::of(&PROGRAM.transducers, friction);
+            let injection = PROGRAM.rendering.injection;
+            print!(
+                "{}",
+                $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps, injection)
+            );
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_program!($scene: $environment, CERTIFIED_AS_IT_RUNS, $transducers, $crate::chosen_number!($float, $fixed));
+        $crate::board_program!(
+            $environment,
+            PROGRAM,
+            CERTIFIED_AS_IT_RUNS,
+            $crate::chosen_number!($float, $fixed)
+        );
+    };
+}
+
+/// An optional argument of a macro, or its type's default.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! or_default {
+    ($options:ty) => {
+        <$options>::DEFAULT
+    };
+    ($options:ty, $given:expr) => {
+        $given
     };
 }
 

@@ -187,7 +187,7 @@ async fn yield_now() {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         $crate::board_chip!();
 
         /// The scene, as late as the board's converter: where it is not, this does not compile.
@@ -219,12 +219,7 @@ macro_rules! board_program {
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::boot::Program {
-                scene: *TIMED.scene(),
-                transducers: $transducers,
-                rendering: $crate::servo::RenderingOptions::DEFAULT,
-                options: $crate::cycle::Options::DEFAULT,
-            };
+            let program = $crate::boot::Program { scene: *TIMED.scene(), ..$program };
             let name = env!("CARGO_BIN_NAME");
             let places =
                 $crate::board::stm32::Places { servo: &PLACE, meeting: &MEETING, link: &LINK };

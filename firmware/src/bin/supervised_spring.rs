@@ -1,0 +1,49 @@
+//! A spring that pushes only while its host looks on, and that takes back what its lateness gives: the
+//! options of a program, on top of a scene.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use firmware::certificate::Certified;
+use firmware::cycle::{LinkPolicy, Options};
+use firmware::encoder::CounterWidth;
+use firmware::environment::DelayedSpring;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::{RenderingOptions, Transducers};
+
+/// What the hand feels.
+pub type Environment = DelayedSpring<1>;
+
+/// The scene: half as stiff as the device allows, which leaves room for damping.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: DelayedSpring { stiffness: 14.0 },
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+/// The sensor and the motor that it runs on.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+    largest_speed: 100.0,
+};
+
+/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+pub type Fixed = fixed::types::I8F24;
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: Fixed,
+    // Damping while the motor has put more energy into the hand than came back. More than the scene
+    // leaves room for does not compile.
+    rendering: RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT },
+    // Half a second without a word from the host, and the torque fades out.
+    options: Options { link: LinkPolicy::Release, link_timeout: 0.5, ..Options::DEFAULT },
+}
