@@ -6,6 +6,7 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod period;
 pub mod play;
 pub mod question;
 pub mod report;
@@ -49,43 +50,9 @@ pub mod stm32;
 #[allow(unsafe_code)]
 pub mod stm32f405;
 
-use crate::text::Written;
-
 /// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
 /// boards' clocks divide into within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
-
-/// What stops a board before its servo runs. The motor has not been driven then.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StartError {
-    /// The scene did not pass when it was certified again on the board.
-    Rejected(crate::certificate::Rejection),
-    /// The scene cannot be rendered in its number format with its transducers.
-    Unbuildable(crate::servo::BuildError),
-    /// The board's timer cannot pace this period.
-    Period {
-        /// The scene's period in s.
-        period: f64,
-        /// The longest period in s that the timer can pace.
-        longest: f64,
-    },
-}
-
-impl core::fmt::Display for StartError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Rejected(rejection) => write!(f, "refused on the board: {rejection}"),
-            Self::Unbuildable(error) => write!(f, "no servo can be built: {error}"),
-            Self::Period { period, longest } => write!(
-                f,
-                "the period {period} s is not between 0 and {longest} s, the longest that the \
-                 board's timer can pace",
-                period = Written(*period),
-                longest = Written(*longest),
-            ),
-        }
-    }
-}
 
 /// Makes a program of a certified scene.
 ///
@@ -102,7 +69,8 @@ impl core::fmt::Display for StartError {
 /// - `options`: [`Options`](crate::cycle::Options), such as what to do when the host falls silent:
 ///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`.
 ///
-/// All of it together is the program's constant `PROGRAM`.
+/// All of it together is the program's constant `PROGRAM`. Numbers that no board could run with do not
+/// compile either.
 #[macro_export]
 macro_rules! scene_program {
     (
@@ -122,6 +90,15 @@ macro_rules! scene_program {
             transducers: $transducers,
             rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
             options: $crate::or_default!($crate::cycle::Options $(, $options)?),
+        };
+
+        // Apart from the constant itself, which others use: then the compiler says it once.
+        const _: $crate::boot::Program<$environment> = PROGRAM.checked();
+
+        // Where a board refuses the scene itself, it says so at more length.
+        const _: () = match CERTIFIED_AS_IT_RUNS.time::<$crate::servo::Simultaneous>() {
+            Ok(timed) => PROGRAM.rendering.checked_beside(timed.room()),
+            Err(_) => (),
         };
 
         /// The certificate of the coefficients that the program multiplies by: where rounding

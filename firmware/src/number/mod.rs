@@ -19,7 +19,7 @@ pub use truncated::Truncated;
 
 use core::fmt;
 
-use crate::text::{Text, Written};
+use crate::text::Text;
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
@@ -134,10 +134,22 @@ pub struct OutOfRange {
     pub format: Format,
 }
 
+impl OutOfRange {
+    /// The error as a sentence.
+    pub const fn sentence(&self) -> Text<128> {
+        let mut t = Text::new();
+        t.push_number(self.value);
+        t.push(" does not fit ");
+        t.push(self.format.name().as_str());
+        t.push(": its magnitude may be at most ");
+        t.push_number(self.bound);
+        t
+    }
+}
+
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, bound, format) = (Written(self.value), Written(self.bound), self.format);
-        write!(f, "{value} does not fit {format}: its magnitude may be at most {bound}")
+        f.write_str(self.sentence().as_str())
     }
 }
 

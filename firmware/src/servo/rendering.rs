@@ -29,6 +29,25 @@ impl RenderingOptions {
     pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
 }
 
+impl RenderingOptions {
+    /// For constants: a compile error where the damping that is injected does not fit into the room
+    /// that a scene leaves; see [`Timed::room`].
+    ///
+    /// # Panics
+    /// If it does not; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn checked_beside(&self, room: f64) {
+        if let Some(damping) = self.injection {
+            if let Err(error) = BuildError::unless_positive("injected damping", damping) {
+                error.refuse();
+            }
+            if damping >= room {
+                BuildError::Injection { damping, room }.refuse();
+            }
+        }
+    }
+}
+
 impl Default for RenderingOptions {
     fn default() -> Self {
         Self::DEFAULT

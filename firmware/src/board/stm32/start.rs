@@ -70,6 +70,17 @@ where
     })
 }
 
+/// A program as this board has it, or a compile error: the counter's width is the board's, whatever the
+/// program was first written for.
+///
+/// # Panics
+/// Where the counter would wrap unseen; in a constant that is the compile error.
+#[track_caller]
+pub const fn fitted<E: Copy>(program: Program<E>) -> Program<E> {
+    let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
+    Program { transducers, ..program }.checked()
+}
+
 /// Everything from reset to the first tick; gives what the task below the servo works with.
 ///
 /// In a frame of its own, which is gone when that task judges a set: judging takes most of the
@@ -87,9 +98,6 @@ where
 {
     let port = connect().serial;
     let period = period(program.scene.timing.period);
-    // The counter's width is the board's, whatever the program was first written for.
-    let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
-    let program = Program { transducers, ..program };
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
@@ -196,6 +204,9 @@ macro_rules! board_program {
             $crate::board::stm32::Mode,
         > = $certified.timed::<$crate::board::stm32::Mode>();
 
+        /// What this board runs.
+        const FITTED: $crate::boot::Program<$environment> = $crate::board::stm32::fitted($program);
+
         static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
             $crate::board::place::Place::empty();
         static MEETING: $crate::board::seat::Meeting<
@@ -219,7 +230,7 @@ macro_rules! board_program {
 
         #[cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::boot::Program { scene: *TIMED.scene(), ..$program };
+            let program = $crate::boot::Program { scene: *TIMED.scene(), ..FITTED };
             let name = env!("CARGO_BIN_NAME");
             let places =
                 $crate::board::stm32::Places { servo: &PLACE, meeting: &MEETING, link: &LINK };
