@@ -12,6 +12,9 @@ mod rounding;
 mod tests;
 mod truncated;
 
+/// The crate of the fixed-point formats, in the version that is meant.
+pub use fixed;
+
 pub use arithmetic::{Arithmetic, InEach};
 pub use fixed_point::Scaled;
 pub use rounding::Rounding;

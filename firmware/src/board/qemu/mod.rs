@@ -93,7 +93,7 @@ macro_rules! board_program {
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
             let program = $crate::boot::Program { scene: *TIMED.scene(), ..$program };
             let compiler = $certified.assessment();
@@ -127,7 +127,7 @@ macro_rules! board_sweep {
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
             $crate::board::qemu::measure(&$sweep, &PLACE)
         }

@@ -213,22 +213,24 @@ macro_rules! board_program {
             $environment,
             $number,
             $crate::board::stm32::Mode,
-        > = static_cell::StaticCell::new();
+        > = $crate::__private::static_cell::StaticCell::new();
 
         static LINK: $crate::board::stm32::LinkPlace<$environment, $number> =
-            static_cell::StaticCell::new();
+            $crate::__private::static_cell::StaticCell::new();
 
         $crate::board_tick!();
 
         /// Below the servo: a task may not be generic, so each program has its own.
-        #[embassy_executor::task]
+        #[$crate::__private::embassy_executor::task(
+                    embassy_executor = $crate::__private::embassy_executor
+                )]
         async fn serve(
             link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
         ) -> ! {
             link.serve().await
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
             let program = $crate::boot::Program { scene: *TIMED.scene(), ..FITTED };
             let name = env!("CARGO_BIN_NAME");
@@ -258,13 +260,36 @@ macro_rules! board_chip {
 #[macro_export]
 macro_rules! board_tick {
     () => {
-        /// A tick.
-        #[unsafe(no_mangle)]
-        #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
-        unsafe extern "C" fn TIM6_DAC() {
-            // SAFETY: this is the handler of the interrupt that is enabled once the place is
-            // filled, and no interrupt interrupts itself.
-            unsafe { PLACE.get() }.tick();
+        $crate::in_fast_memory! {
+            /// A tick.
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn TIM6_DAC() {
+                // SAFETY: this is the handler of the interrupt that is enabled once the place is
+                // filled, and no interrupt interrupts itself.
+                unsafe { PLACE.get() }.tick();
+            }
         }
+    };
+}
+
+/// A function that is fetched without a wait, where a board can. The feature is asked here, since in
+/// the macro above it would be one of the program's crate.
+#[cfg(feature = "fast-memory")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! in_fast_memory {
+    ($($function:tt)*) => {
+        #[unsafe(link_section = ".fast")]
+        $($function)*
+    };
+}
+
+/// A function that is fetched from flash.
+#[cfg(not(feature = "fast-memory"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! in_fast_memory {
+    ($($function:tt)*) => {
+        $($function)*
     };
 }
