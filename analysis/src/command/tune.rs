@@ -14,6 +14,10 @@ use crate::link::{Address, Link};
 use crate::scope::words;
 
 /// Arguments of `haptic tune`.
+///
+/// A board that is armed lets go of the device while it swaps a set in: its torque fades out, the new
+/// set starts at rest where the device is, and its torque fades in. With the usual fading of 0.1 s and a
+/// period of 1 ms that takes up to 36 ms; the answer says how long at most.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
@@ -56,6 +60,8 @@ struct Report<'a> {
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,
+    /// The longest time in s for which a change takes the torque away.
+    longest_gap: f64,
     parameters: serde_json::Map<String, serde_json::Value>,
     state: &'static str,
     fault: Option<String>,
@@ -84,6 +90,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
+        if refused.is_none() && !arguments.changes.is_empty() {
+            let sentence = words::gap(&status, link.board());
+            sentence.map_or(Ok(()), |sentence| writeln!(io::stdout(), "{sentence}"))?;
+        }
     }
     Ok(if refused.is_none() { Answer::Yes } else { Answer::No })
 }
@@ -157,6 +167,7 @@ fn report<'a>(
         refused,
         sets: running.sets,
         margin: running.margin,
+        longest_gap: board.longest_gap,
         parameters: running.values.iter().map(named).collect(),
         state: status.state.as_str(),
         fault: status.fault.map(|fault| fault.to_string()),

@@ -9,7 +9,7 @@ use clap::Args;
 use super::run::Flashed;
 use super::{Answer, CommandError, seconds, virtual_board as board};
 use crate::link::Address;
-use crate::program::{self, Program};
+use crate::program::Program;
 use crate::rig::SimulatedDevice;
 use crate::toolchain::{Board, NumberFormat};
 use crate::twin::{Clock, Twin};

@@ -1,5 +1,6 @@
 //! What stops the servo, found in a tick. Kept out of line, like all that is rare.
 
+use super::swap::ARMING;
 use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
@@ -139,6 +140,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         self.link_lost = true;
         if self.link == LinkPolicy::Release && self.state.is_armed() {
+            self.ramp = ARMING;
             self.begin_fading_out(Goal::Stop(self.lost()));
         }
     }

@@ -222,8 +222,8 @@ macro_rules! board_program {
 
         /// Below the servo: a task may not be generic, so each program has its own.
         #[$crate::__private::embassy_executor::task(
-                    embassy_executor = $crate::__private::embassy_executor
-                )]
+                                    embassy_executor = $crate::__private::embassy_executor
+                                )]
         async fn serve(
             link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
         ) -> ! {
