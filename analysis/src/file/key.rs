@@ -100,6 +100,10 @@ const DELAY: u32 = MAX_DELAY as u32;
 const TABLE: Bound = Bound::Other("a table");
 const POLYNOMIAL: Bound =
     Bound::Other("a list of 1 to 9 finite numbers, descending powers of z, not all of them 0");
+const DELAYED_POLYNOMIAL: Bound = Bound::Other(
+    "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0; zeros at its end are \
+     delay, and may be 8 more, together with `delay`",
+);
 
 keys! {
     /// What the person calls the scene.
@@ -167,7 +171,7 @@ keys! {
     /// Numerator of a rational environment.
     NUMERATOR = "environment.numerator", "", POLYNOMIAL;
     /// Denominator of a rational environment.
-    DENOMINATOR = "environment.denominator", "", POLYNOMIAL;
+    DENOMINATOR = "environment.denominator", "", DELAYED_POLYNOMIAL;
     /// Zeros at z = 1 that multiply the numerator.
     UNIT_ZEROS = "environment.unit_zeros", "", Bound::Whole(0, DEGREE);
 

@@ -1,7 +1,7 @@
 //! A scene file's tables turned into a [`Scene`].
 
 use firmware::certificate::Steps;
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall};
 use firmware::scene::{Coupling, Scene, Timing};
 
 use super::device::{self, Purpose};
@@ -138,9 +138,10 @@ fn wall(section: &mut Section<'_>) -> Result<Wall, Fault> {
 }
 
 fn rational(section: &mut Section<'_>) -> Result<Rational, Fault> {
-    let numerator = polynomial(section, &key::NUMERATOR)?;
-    let denominator = polynomial(section, &key::DENOMINATOR)?;
+    let numerator = polynomial(section, &key::NUMERATOR, 0)?.0;
     let delay = whole(section.optional(&key::DELAY_SAMPLES)?);
+    let (denominator, more) = polynomial(section, &key::DENOMINATOR, MAX_DELAY - delay)?;
+    let delay = delay + more;
     let unit_zeros = section.found(&key::UNIT_ZEROS)?;
     if let Some(Found { value, span }) = &unit_zeros
         && numerator.as_slice().len() - 1 + whole(Some(*value)) > MAX_DEGREE
@@ -152,11 +153,21 @@ fn rational(section: &mut Section<'_>) -> Result<Rational, Fault> {
     Ok(Rational { numerator, denominator, delay, unit_zeros })
 }
 
-/// Descending coefficients without leading zeros; a denominator must have one that is not zero.
-fn polynomial(section: &mut Section<'_>, key: &Key) -> Result<Coefficients, Fault> {
-    let Some(Found { value, span }) = section.list(key)? else {
+/// Descending coefficients without leading zeros; a denominator must have one that is not zero. And how
+/// many of the zeros at its end, up to `most`, were too many for the degree and taken off.
+fn polynomial(
+    section: &mut Section<'_>,
+    key: &Key,
+    most: usize,
+) -> Result<(Coefficients, usize), Fault> {
+    let Some(Found { mut value, span }) = section.list(key)? else {
         return Err(section.missing(key));
     };
+    let mut taken = 0;
+    while taken < most && value.len() > MAX_DEGREE + 1 && value.last() == Some(&0.0) {
+        value.pop();
+        taken += 1;
+    }
     let leading = value.iter().position(|&coefficient| coefficient != 0.0);
     let significant = match leading {
         Some(first) => &value[first..],
@@ -165,7 +176,8 @@ fn polynomial(section: &mut Section<'_>, key: &Key) -> Result<Coefficients, Faul
     };
     let coefficients =
         if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
-    coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))
+    let coefficients = coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))?;
+    Ok((coefficients, taken))
 }
 
 /// A number whose bound is [`key::Bound::Whole`]; zero where it was left out.
