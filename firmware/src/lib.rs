@@ -49,6 +49,6 @@ pub mod board;
 pub mod __private {
     pub use cortex_m_rt;
     #[cfg(feature = "stm32")]
-    pub use embassy_executor;
+    pub use embassy_executor::{self, task};
     pub use static_cell;
 }

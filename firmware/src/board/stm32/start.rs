@@ -221,9 +221,7 @@ macro_rules! board_program {
         $crate::board_tick!();
 
         /// Below the servo: a task may not be generic, so each program has its own.
-        #[$crate::__private::embassy_executor::task(
-                                    embassy_executor = $crate::__private::embassy_executor
-                                )]
+        #[$crate::__private::task(embassy_executor = $crate::__private::embassy_executor)]
         async fn serve(
             link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
         ) -> ! {
