@@ -14,11 +14,11 @@ use crate::link::{Address, Link};
 use crate::scope::words;
 
 /// Arguments of `haptic tune`.
-///
-/// A board that is armed lets go of the device while it swaps a set in: its torque fades out, the new
-/// set starts at rest where the device is, and its torque fades in. With the usual fading of 0.1 s and a
-/// period of 1 ms that takes up to 36 ms; the answer says how long at most.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+A board that is armed lets go of the device while it swaps a set in: its torque fades out, the new set \
+starts at rest where the device is, and its torque fades in. With the usual fading of 0.1 s and a period \
+of 1 ms that takes up to 36 ms; the answer says how long at most.")]
 pub struct Arguments {
     /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
@@ -80,6 +80,7 @@ struct Report<'a> {
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let changes = collect(&arguments.changes)?;
     let mut link = Link::open(&arguments.port)?;
+    let swaps = !changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
         Outcome::Done => None,
@@ -90,9 +91,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
-        if refused.is_none() && !arguments.changes.is_empty() {
-            let sentence = words::gap(&status, link.board());
-            sentence.map_or(Ok(()), |sentence| writeln!(io::stdout(), "{sentence}"))?;
+        if refused.is_none() && swaps {
+            writeln!(io::stdout(), "{}", words::gap(link.board()))?;
         }
     }
     Ok(if refused.is_none() { Answer::Yes } else { Answer::No })

@@ -42,12 +42,10 @@ pub fn worst_slack(status: &Status, board: &Board) -> Option<f64> {
     (counts <= board.timer_counts).then(|| f64::from(counts) / f64::from(board.timer_counts))
 }
 
-/// What a change of its numbers has just cost a board that is armed.
-pub fn gap(status: &Status, board: &Board) -> Option<String> {
+/// What a change of its numbers costs a board that is armed.
+pub fn gap(board: &Board) -> String {
     let gap = significant(1e3 * board.longest_gap, 3);
-    let sentence =
-        format!("the torque was released for up to {gap} ms while the set was swapped in");
-    status.state.is_armed().then_some(sentence)
+    format!("the torque was released for up to {gap} ms while the set was swapped in")
 }
 
 /// Energy that went into the hand.
