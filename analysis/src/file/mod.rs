@@ -26,10 +26,10 @@
 //! `delay`), `free-mode-wall` (`residual` and the keys of a wall) and `rational` (`numerator`,
 //! `denominator`; optional: `delay`, `unit_zeros`; zeros at the denominator's end are delay as well).
 //! A wall must say its delay, because a delay that is forgotten is one that is not accounted for.
-//! `[simulation]`, `[human]` and `[limits]` are optional; `limits.torque` makes the torque limit part of what is certified. With the angle
-//! of one encoder count, `limits.encoder_step`, with the torque at the converter's largest code,
-//! `limits.full_scale`, and with `device.friction` the certificate says whether the device comes
-//! to rest.
+//! `[simulation]`, `[human]` and `[limits]` are optional; `limits.torque` makes the torque limit part of
+//! what is certified. With the angle of one encoder count, `limits.encoder_step`, with the torque at the
+//! converter's largest code, `limits.full_scale`, and with `device.friction` the certificate says
+//! whether the device comes to rest.
 //!
 //! ```toml
 //! [simulation]
