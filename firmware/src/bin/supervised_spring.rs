@@ -44,6 +44,6 @@ firmware::scene_program! {
     // Damping while the motor has put more energy into the hand than came back. More than the scene
     // leaves room for does not compile.
     rendering: RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT },
-    // Half a second without a word from the host, and the torque fades out.
-    options: Options { link: LinkPolicy::Release, link_timeout: 0.5, ..Options::DEFAULT },
+    // A second without a word from the host, and the torque fades out.
+    options: Options { link: LinkPolicy::Release, ..Options::DEFAULT },
 }

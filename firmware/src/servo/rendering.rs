@@ -16,7 +16,8 @@ use crate::tuning::Tunable;
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderingOptions {
-    /// Time in s in which the clamp opens from nothing to the torque limit, and closes.
+    /// Time in s in which the clamp opens from nothing to the torque limit, and closes; for another set
+    /// of parameters a tenth of it ([`longest_gap`](crate::cycle::longest_gap)).
     pub fade: f64,
     /// Damping in N m s/rad that is injected while more energy has gone into the hand than came
     /// out of it; `None`: the energy is only watched.

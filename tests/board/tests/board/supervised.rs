@@ -17,7 +17,7 @@ use crate::device::{InHand, Sample};
 use crate::scenes::width;
 
 /// Samples of silence after which the host counts as lost.
-const SILENCE: u64 = 500;
+const SILENCE: u64 = 1000;
 /// Samples in which the clamp opens or closes, and a few for what begins and ends there.
 const FADING: u64 = 110;
 /// Samples between two words to a board that is looked after.
