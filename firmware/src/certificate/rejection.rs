@@ -172,11 +172,8 @@ impl Rejection {
                 t.push(" N m s/rad leaves nothing to spend; it must be greater than 0");
             }
             Self::UnstablePole { reflection, of_coupling, .. } => {
-                t.push(if *of_coupling {
-                    "behind this coupling the environment has a pole outside the unit circle, which alone it has not (reflection coefficient "
-                } else {
-                    "the environment has a pole outside the unit circle (reflection coefficient "
-                });
+                t.push(if *of_coupling { "behind this coupling " } else { "" });
+                t.push("the environment has a pole outside the unit circle (reflection coefficient ");
                 t.push_number(reflection.lo());
                 t.push(", must be below 1)");
             }
@@ -215,11 +212,12 @@ impl Rejection {
                 write_doubt(&mut t, *doubt, *index, *limit);
             }
         }
-        self.remedies().write(&mut t);
+        let written = self.remedies().write(&mut t);
         if let Self::UnstablePole { behind_standard: Some((coupling, remedy)), .. } = self {
-            t.push("; behind a coupling of ");
+            t.push(if written == 0 { "; it would pass" } else { ", or" });
+            t.push(" behind a coupling of ");
             t.push_number(*coupling);
-            t.push(" N m/rad it would pass with ");
+            t.push(" N m/rad with ");
             remedy.write(&mut t);
         }
         t

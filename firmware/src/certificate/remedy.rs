@@ -155,7 +155,8 @@ impl Remedies {
         }
     }
 
-    pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
+    /// Appends the remedies; gives their number.
+    pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) -> usize {
         let mut written = 0;
         let mut i = 0;
         while i < CANDIDATES {
@@ -166,6 +167,7 @@ impl Remedies {
             }
             i += 1;
         }
+        written
     }
 }
 

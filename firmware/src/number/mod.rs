@@ -138,21 +138,21 @@ pub struct OutOfRange {
 }
 
 impl OutOfRange {
-    /// The error as a sentence.
-    pub const fn sentence(&self) -> Text<128> {
-        let mut t = Text::new();
+    /// Appends the error as a sentence.
+    pub(crate) const fn write<const N: usize>(&self, t: &mut Text<N>) {
         t.push_number(self.value);
         t.push(" does not fit ");
         t.push(self.format.name().as_str());
         t.push(": its magnitude may be at most ");
         t.push_number(self.bound);
-        t
     }
 }
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.sentence().as_str())
+        let mut sentence = Text::<128>::new();
+        self.write(&mut sentence);
+        f.write_str(sentence.as_str())
     }
 }
 

@@ -124,7 +124,7 @@ impl BuildError {
                 t.push("the ");
                 t.push(name);
                 t.push(": ");
-                t.push(reason.sentence().as_str());
+                reason.write(&mut t);
             }
             Self::Uncertified { format } => {
                 t.push("the scene is certified, but not with its coefficients rounded to ");
@@ -184,10 +184,7 @@ impl BuildError {
                 t.push_number(period::SHORTEST);
                 t.push(" and ");
                 t.push_number(period::LONGEST);
-                t.push(
-                    " s: in less a board cannot finish a tick, and for more its watchdog does not \
-                     wait",
-                );
+                t.push(" s, what a board can pace");
             }
         }
         t
