@@ -17,12 +17,12 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 1
+PROTOCOL = 2
 BAUD = 460800
 
 STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
-FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 4: "underrun", 5: "link-lost",
+FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost",
           6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
@@ -38,7 +38,8 @@ FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
 FIELDS = {
     "welcome": [("protocol", "u"), ("program", "text")],
     "board": [("period", "f64"), ("timer_counts", "u"), ("counts_per_turn", "f64"),
-              ("full_scale_torque", "f64"), ("energy_step", "f64")],
+              ("full_scale_torque", "f64"), ("energy_step", "f64"),
+              ("longest_gap", "f64")],
     "running": [("sets", "u"), ("margin", ("option", "f64")),
                 ("values", ("list", [("parameter", "u"), ("value", "f64")]))],
     "status": [

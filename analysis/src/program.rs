@@ -12,6 +12,8 @@ pub mod free_mode;
 // No scene, and so not among them: what a device is measured with.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
+#[path = "../../firmware/src/bin/supervised_spring.rs"]
+pub mod supervised_spring;
 
 use std::io;
 use std::sync::OnceLock;
@@ -110,7 +112,12 @@ impl Program {
 
     /// The program of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
-        ALL.iter().chain(MORE.get()).find(|program| program.name == name)
+        Self::every().chain(MORE.get()).find(|program| program.name == name)
+    }
+
+    /// All programs of this build, also the one that needs a host.
+    pub fn every() -> impl Iterator<Item = &'static Self> {
+        ALL.iter().chain([&SUPERVISED])
     }
 }
 
@@ -152,12 +159,7 @@ macro_rules! program {
                 }
             },
             listen: |plant, address, clock| {
-                let program = ::firmware::boot::Program {
-                    scene: $module::SCENE,
-                    transducers: $module::TRANSDUCERS,
-                    rendering: ::firmware::servo::RenderingOptions::DEFAULT,
-                    options: ::firmware::cycle::Options::DEFAULT,
-                };
+                let program = $module::PROGRAM;
                 $crate::twin::Twin::start::<_, f32, ::firmware::servo::Latched>(
                     stringify!($module),
                     program,
@@ -181,6 +183,10 @@ macro_rules! programs {
 }
 
 programs!(delayed_spring, damper_wall, free_mode);
+
+/// What the options do. Not among the others: it lets the device go where no host is heard, as in a
+/// simulation there is none.
+pub static SUPERVISED: Program = crate::program!(supervised_spring);
 
 #[cfg(test)]
 mod tests {

@@ -4,13 +4,16 @@
 
 use core::hint::black_box;
 
+use crate::board::period;
 use crate::cycle::{Cycle, Hardware, Options, Requests};
 use crate::dac::DacCode;
 use crate::environment::Renderable;
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+use crate::servo::{
+    BuildError, OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers,
+};
 use crate::tuning::{self, Prepared, Tunable};
 
 /// What a board has besides, before its servo runs.
@@ -38,6 +41,39 @@ pub struct Program<E> {
     pub rendering: RenderingOptions,
     /// What the cycle does beside it.
     pub options: Options,
+}
+
+impl<E: Copy> Program<E> {
+    /// Whether a board could run with these numbers, as far as that is the same for every number
+    /// format. The scene's certificate is another matter.
+    ///
+    /// # Errors
+    /// What is wrong, with its value and its bound.
+    pub const fn check(&self) -> Result<(), BuildError> {
+        let Scene { timing, torque_limit, .. } = self.scene;
+        if let Err(error) = period::check(timing.period) {
+            return Err(error);
+        }
+        if let Err(error) = self.transducers.check(timing, torque_limit) {
+            return Err(error);
+        }
+        if let Err(error) = BuildError::unless_positive("time of fading", self.rendering.fade) {
+            return Err(error);
+        }
+        BuildError::unless_positive("link's timeout", self.options.link_timeout)
+    }
+
+    /// For constants: the same program, or a compile error that says what no board could run with.
+    ///
+    /// # Panics
+    /// Where [`Program::check`] fails; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn checked(self) -> Self {
+        match self.check() {
+            Ok(()) => self,
+            Err(error) => error.refuse(),
+        }
+    }
 }
 
 /// A board whose servo may run.

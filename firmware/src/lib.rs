@@ -43,7 +43,12 @@ pub mod wire;
 
 pub mod board;
 
-// Its examples are tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub mod readme {}
+/// What a program's macros name besides this crate, for programs of crates that depend on nothing else.
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
+#[doc(hidden)]
+pub mod __private {
+    pub use cortex_m_rt;
+    #[cfg(feature = "stm32")]
+    pub use embassy_executor::{self, task};
+    pub use static_cell;
+}

@@ -19,3 +19,9 @@ pub mod rounding;
 pub mod rules;
 pub mod scenes;
 pub mod vectors;
+
+/// The examples of the README are tests, of this package and not of the firmware's: who has that alone
+/// has no README above it.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub mod readme {}

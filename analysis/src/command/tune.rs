@@ -15,6 +15,10 @@ use crate::scope::words;
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+A board that is armed lets go of the device while it swaps a set in: its torque fades out, the new set \
+starts at rest where the device is, and its torque fades in. With the usual fading of 0.1 s and a period \
+of 1 ms that takes up to 36 ms; the answer says how long at most.")]
 pub struct Arguments {
     /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
@@ -42,6 +46,8 @@ struct Report<'a> {
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,
+    /// The longest time in s for which a change takes the torque away.
+    longest_gap: f64,
     parameters: serde_json::Map<String, serde_json::Value>,
     state: &'static str,
     fault: Option<String>,
@@ -60,6 +66,7 @@ struct Report<'a> {
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let changes = collect(&arguments.changes)?;
     let mut link = Link::open(&arguments.port)?;
+    let swaps = !changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
         Outcome::Done => None,
@@ -70,6 +77,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
+        if refused.is_none() && swaps {
+            writeln!(io::stdout(), "{}", words::gap(link.board()))?;
+        }
     }
     Ok(if refused.is_none() { Answer::Yes } else { Answer::No })
 }
@@ -132,6 +142,7 @@ fn report<'a>(
         refused,
         sets: running.sets,
         margin: running.margin,
+        longest_gap: board.longest_gap,
         parameters: running.values.iter().map(named).collect(),
         state: status.state.as_str(),
         fault: status.fault.map(|fault| fault.to_string()),

@@ -157,6 +157,11 @@ const POLYNOMIAL: Bound = Bound::Other(
     Form::Numbers,
     "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0",
 );
+const DELAYED_POLYNOMIAL: Bound = Bound::Other(
+    Form::Numbers,
+    "a list of 1 to 9 finite numbers, descending powers of z, not all of them 0; zeros at its end are \
+     delay, and may be 8 more, together with `delay`",
+);
 
 keys! {
     /// Name of the scene, as reports and pictures show it.
@@ -257,7 +262,7 @@ keys! {
     NUMERATOR = "environment.numerator", "", POLYNOMIAL,
         Needed, "[5.0, -2.0]";
     /// Denominator of the environment.
-    DENOMINATOR = "environment.denominator", "", POLYNOMIAL,
+    DENOMINATOR = "environment.denominator", "", DELAYED_POLYNOMIAL,
         Needed, "[1.0, -0.3, 0.1, 0.0]";
     /// Zeros at z = 1 that multiply the numerator. With them its degree is at most 8.
     UNIT_ZEROS = "environment.unit_zeros", "", Bound::Whole(0, DEGREE),

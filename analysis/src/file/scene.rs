@@ -1,7 +1,7 @@
 //! A scene file's tables turned into a [`Scene`].
 
 use firmware::certificate::Steps;
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall};
 use firmware::scene::{Coupling, Scene, Timing};
 
 use super::device::{self, Purpose};
@@ -167,12 +167,13 @@ fn wall(section: &mut Section<'_>) -> Read<Wall> {
 }
 
 fn rational(section: &mut Section<'_>) -> Read<Rational> {
-    let numerator = polynomial(section, &key::NUMERATOR);
-    let denominator = polynomial(section, &key::DENOMINATOR);
+    let numerator = polynomial(section, &key::NUMERATOR, 0);
     let delay = section.whole(&key::DELAY_SAMPLES);
+    let room = MAX_DELAY - delay.as_ref().map_or(0, |delay| *delay);
+    let denominator = polynomial(section, &key::DENOMINATOR, room);
     let unit_zeros = section.found(&key::UNIT_ZEROS);
-    let (numerator, denominator) = (numerator?, denominator?);
-    let (delay, unit_zeros) = (delay?, unit_zeros?);
+    let ((numerator, _), (denominator, more)) = (numerator?, denominator?);
+    let (delay, unit_zeros) = (delay? + more, unit_zeros?);
     let zeros = unit_zeros.as_ref().map_or(0, |found| found.value as usize);
     if let Some(Found { span, .. }) = unit_zeros
         && numerator.as_slice().len() - 1 + zeros > MAX_DEGREE
@@ -183,11 +184,21 @@ fn rational(section: &mut Section<'_>) -> Read<Rational> {
     Ok(Rational { numerator, denominator, delay, unit_zeros: zeros })
 }
 
-/// Descending coefficients without leading zeros; a denominator must have one that is not zero.
-fn polynomial(section: &mut Section<'_>, key: &Key) -> Read<Coefficients> {
-    let Some(Found { value, span }) = section.list(key)? else {
+/// Descending coefficients without leading zeros; a denominator must have one that is not zero. And how
+/// many of the zeros at its end, up to `most`, were too many for the degree and taken off.
+fn polynomial(
+    section: &mut Section<'_>,
+    key: &Key,
+    most: usize,
+) -> Read<(Coefficients, usize)> {
+    let Some(Found { mut value, span }) = section.list(key)? else {
         return Err(section.missing(key));
     };
+    let mut taken = 0;
+    while taken < most && value.len() > MAX_DEGREE + 1 && value.last() == Some(&0.0) {
+        value.pop();
+        taken += 1;
+    }
     let leading = value.iter().position(|&coefficient| coefficient != 0.0);
     let significant = match leading {
         Some(first) => &value[first..],
@@ -196,7 +207,8 @@ fn polynomial(section: &mut Section<'_>, key: &Key) -> Read<Coefficients> {
     };
     let coefficients =
         if value.len() > MAX_DEGREE + 1 { None } else { Coefficients::new(significant) };
-    coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))
+    let coefficients = coefficients.ok_or_else(|| section.out_of_bounds(key, key.path, &span))?;
+    Ok((coefficients, taken))
 }
 
 /// Whether a parsed file has nothing in it.

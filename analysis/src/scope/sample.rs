@@ -103,6 +103,7 @@ mod tests {
         counts_per_turn: 4000.0,
         full_scale_torque: 2.047,
         energy_step: 1e-6,
+        longest_gap: 0.036,
     };
 
     fn frame(tick: u32, count: i32) -> Frame {

@@ -19,6 +19,7 @@ const BOARD: Board = Board {
     counts_per_turn: 1000.0,
     full_scale_torque: 2.0,
     energy_step: 1e-6,
+    longest_gap: 0.036,
 };
 
 const STATUS: Status = Status {

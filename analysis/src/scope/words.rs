@@ -46,6 +46,12 @@ pub fn worst_slack(status: &Status, board: &Board) -> Option<f64> {
     (counts <= board.timer_counts).then(|| f64::from(counts) / f64::from(board.timer_counts))
 }
 
+/// What a change of its numbers costs a board that is armed.
+pub fn gap(board: &Board) -> String {
+    let gap = significant(1e3 * board.longest_gap, 3);
+    format!("the torque was released for up to {gap} ms while the set was swapped in")
+}
+
 /// Energy that went into the hand.
 pub fn energy(status: &Status, board: &Board) -> String {
     let joule = |steps: i64| significant(steps as f64 * board.energy_step, 3);

@@ -240,6 +240,21 @@ impl Toolchain {
         self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
     }
 
+    /// Builds a package of somebody else's, in a folder outside of the workspace, for the boards, as
+    /// programs are that are flashed, and gives the program of that name.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
+        let _alone = self.workspace.lock("build")?;
+        let profile = self.workspace.root.join(FLASH);
+        let mut cargo = self.cargo();
+        cargo.current_dir(folder).args(["--release", "--bin", name, "--target", TARGET]);
+        ran(name, cargo.arg("--config").arg(profile))?;
+        let built = self.target_folder().join(TARGET).join("release").join(name);
+        Program::at(self.workspace.keep(&built, &format!("foreign-{name}"))?)
+    }
+
     /// What a board's program may take of its memory.
     ///
     /// # Errors

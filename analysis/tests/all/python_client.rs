@@ -90,6 +90,7 @@ fn reads_every_message_to_the_host() {
         counts_per_turn: 61_440.0,
         full_scale_torque: 2.0,
         energy_step: 0.25,
+        longest_gap: 0.036,
     };
     let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
     let running = Running { sets: 2, margin: None, values };
@@ -108,7 +109,7 @@ fn reads_every_message_to_the_host() {
     let read = json!([
         ["welcome", {"protocol": PROTOCOL, "program": "damper_wall"}],
         ["board", {"period": 0.001, "timer_counts": 170_000, "counts_per_turn": 61_440.0,
-                   "full_scale_torque": 2.0, "energy_step": 0.25}],
+                   "full_scale_torque": 2.0, "energy_step": 0.25, "longest_gap": 0.036}],
         ["running", {"sets": 2, "margin": null, "values": [{"parameter": 15, "value": 0.1}]}],
         ["status", {"state": 4, "fault": code, "link_lost": true, "tick": u32::MAX,
                     "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,

@@ -1,7 +1,12 @@
 //! Scene files: what is read, what is refused and with which words, and that nothing panics.
 
+use std::path::Path;
+
 use crate::common::WALL;
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for};
+use analysis::simulation::{Experiment, Stride, simulate};
+use analysis::stability::judge;
+use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Coupling;
 use proptest::prelude::*;
@@ -196,6 +201,44 @@ fn polynomials_are_bounded() {
     assert!(with("[1, \"a\"]", "[1]", 0).unwrap_err().contains("numerator[1]"));
     assert!(with("[1, 1e999]", "[1]", 0).unwrap_err().contains("numerator[1]"));
     assert!(with("[1,2]", "[1]", 8).unwrap_err().contains("unit_zeros"));
+    // Zeros at a denominator's end are delay, of which there are eight samples.
+    assert_eq!(with("[1]", "[1,2,3,4,5,6,7,8,9,0,0,0,0,0,0,0,0]", 0), Ok(()));
+    for denominator in ["[1,2,3,4,5,6,7,8,9,0,0,0,0,0,0,0,0,0]", "[1,2,3,4,5,6,7,8,9,10]"] {
+        assert!(with("[1]", denominator, 0).unwrap_err().contains("zeros at its end are delay"));
+    }
+}
+
+/// Degree six with five samples of delay, in the denominator and beside it: the same to everybody who
+/// looks at it.
+#[test]
+fn delay_in_a_denominator_is_delay() {
+    let with = |denominator: &str, delay: u32| {
+        let environment = format!(
+            "type = \"rational\"\nnumerator = [0.6, 0.2, 0, 0, 0.1, 0, 0.1]\n\
+             denominator = [{denominator}]\ndelay = {delay}"
+        );
+        let wall = &WALL[WALL.find("type").unwrap()..];
+        let text = WALL.replace(wall, &environment) + SIMULATION;
+        file::parse("scene.toml", Format::Toml, &text).unwrap()
+    };
+    const SIMULATION: &str = "\n[simulation]\nsamples = 200\nvelocity = 0.1\n";
+    let beside = with("1, -0.2, 0, 0, 0, 0, 0.01", 5);
+    let certified = certify(&beside.scene).unwrap();
+    let experiment = |file: &SceneFile| Experiment::of(file, Path::new(".")).unwrap();
+    let moves = |file: &SceneFile| simulate(&experiment(file), Stride::default()).unwrap();
+    let stability = |file: &SceneFile| judge(&experiment(file), Stride::default()).unwrap();
+    assert!(moves(&beside).torque.iter().any(|torque| *torque != 0.0));
+    for (denominator, delay) in [
+        ("1, -0.2, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 0", 0),
+        ("1, -0.2, 0, 0, 0, 0, 0.01, 0, 0", 3),
+        ("0, 1, -0.2, 0, 0, 0, 0, 0.01, 0", 4),
+    ] {
+        let inside = with(denominator, delay);
+        assert_eq!(inside.scene.environment.delay(), 5);
+        assert_eq!(certify(&inside.scene).unwrap(), certified, "{denominator}");
+        assert_eq!(moves(&inside), moves(&beside), "{denominator}");
+        assert_eq!(stability(&inside), stability(&beside), "{denominator}");
+    }
 }
 
 #[test]

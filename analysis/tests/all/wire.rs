@@ -148,6 +148,26 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     // The clamp opens again, for as long as that takes.
     let state = said["state"].as_str().unwrap();
     assert!(["settling", "fading-in", "running"].contains(&state), "{state}");
+    assert!((said["longest_gap"].as_f64().unwrap() - 0.036).abs() < 1e-9, "{said}");
+}
+
+/// Somebody may lean on the wall that is changed.
+#[test]
+fn tune_says_for_how_long_an_armed_board_lets_go() {
+    let rig = Rig::new(Clock::Free);
+    let said = "the torque was released for up to 36 ms";
+    for (arguments, lets_go) in [
+        (&["tune", "stiffness=12"][..], true),
+        (&["tune"], false),
+        (&["tune", "stiffness=30"], false),
+        (&["tune", "stiffness=13", "--disarm"], false),
+        (&["tune", "stiffness=14", "--arm"], false),
+    ] {
+        let output = rig.haptic(arguments);
+        assert_eq!(text(&output.stdout).contains(said), lets_go, "{arguments:?}: {output:?}");
+    }
+    let help = rig.haptic(&["tune", "--help"]);
+    assert!(text(&help.stdout).contains("lets go of the device"), "{help:?}");
 }
 
 #[test]

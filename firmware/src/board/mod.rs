@@ -6,6 +6,7 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod period;
 pub mod play;
 pub mod question;
 pub mod report;
@@ -49,50 +50,27 @@ pub mod stm32;
 #[allow(unsafe_code)]
 pub mod stm32f405;
 
-use crate::text::Written;
-
 /// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
 /// boards' clocks divide into within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
-
-/// What stops a board before its servo runs. The motor has not been driven then.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StartError {
-    /// The scene did not pass when it was certified again on the board.
-    Rejected(crate::certificate::Rejection),
-    /// The scene cannot be rendered in its number format with its transducers.
-    Unbuildable(crate::servo::BuildError),
-    /// The board's timer cannot pace this period.
-    Period {
-        /// The scene's period in s.
-        period: f64,
-        /// The longest period in s that the timer can pace.
-        longest: f64,
-    },
-}
-
-impl core::fmt::Display for StartError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Rejected(rejection) => write!(f, "refused on the board: {rejection}"),
-            Self::Unbuildable(error) => write!(f, "no servo can be built: {error}"),
-            Self::Period { period, longest } => write!(
-                f,
-                "the period {period} s is not between 0 and {longest} s, the longest that the \
-                 board's timer can pace",
-                period = Written(*period),
-                longest = Written(*longest),
-            ),
-        }
-    }
-}
 
 /// Makes a program of a certified scene.
 ///
 /// Takes the scene, its certificate (a constant, so that an unsafe scene does not compile), the
 /// transducers, and the type to compute in: `float` by default, `fixed` with the feature
-/// `fixed-point`; and, if it is known, the dry `friction` of the device in N m, by which the
-/// certificate says whether it comes to rest. On a board the program runs the servo; on the host it prints the certificate.
+/// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
+///
+/// What may follow, in this order, are constant expressions:
+///
+/// - `friction`: the dry friction of the device in N m, if it is known, by which the certificate says
+///   whether it comes to rest;
+/// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
+///   injected: `RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT }`;
+/// - `options`: [`Options`](crate::cycle::Options), such as what to do when the host falls silent:
+///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`.
+///
+/// All of it together is the program's constant `PROGRAM`. Numbers that no board could run with do not
+/// compile either.
 #[macro_export]
 macro_rules! scene_program {
     (
@@ -101,8 +79,28 @@ macro_rules! scene_program {
         transducers: $transducers:ident,
         float: $float:ty,
         fixed: $fixed:ty
-        $(, friction: $friction:expr)? $(,)?
+        $(, friction: $friction:expr)?
+        $(, rendering: $rendering:expr)?
+        $(, options: $options:expr)?
+        $(,)?
     ) => {
+        /// What is flashed: the scene, sensor and motor, and the options.
+        pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
+            scene: *$certified.scene(),
+            transducers: $transducers,
+            rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
+            options: $crate::or_default!($crate::cycle::Options $(, $options)?),
+        };
+
+        // Apart from the constant itself, which others use: then the compiler says it once.
+        const _: $crate::boot::Program<$environment> = PROGRAM.checked();
+
+        // Where a board refuses the scene itself, it says so at more length.
+        const _: () = match CERTIFIED_AS_IT_RUNS.time::<$crate::servo::Simultaneous>() {
+            Ok(timed) => PROGRAM.rendering.checked_beside(timed.room()),
+            Err(_) => (),
+        };
+
         /// The certificate of the coefficients that the program multiplies by: where rounding
         /// them to its number format took it away, this does not compile.
         pub const CERTIFIED_AS_IT_RUNS: $crate::certificate::Certified<
@@ -125,12 +123,33 @@ macro_rules! scene_program {
             #[allow(unused_mut, unused_assignments)]
             let mut friction = None;
             $(friction = Some($friction);)?
-            let steps = $crate::certificate::Steps::of(&$transducers, friction);
-            print!("{}", $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps));
+            let steps = $crate::certificate::Steps::of(&PROGRAM.transducers, friction);
+            let injection = PROGRAM.rendering.injection;
+            print!(
+                "{}",
+                $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps, injection)
+            );
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_program!($scene: $environment, CERTIFIED_AS_IT_RUNS, $transducers, $crate::chosen_number!($float, $fixed));
+        $crate::board_program!(
+            $environment,
+            PROGRAM,
+            CERTIFIED_AS_IT_RUNS,
+            $crate::chosen_number!($float, $fixed)
+        );
+    };
+}
+
+/// An optional argument of a macro, or its type's default.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! or_default {
+    ($options:ty) => {
+        <$options>::DEFAULT
+    };
+    ($options:ty, $given:expr) => {
+        $given
     };
 }
 

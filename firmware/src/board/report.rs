@@ -11,15 +11,23 @@ use crate::scene::Scene;
 pub struct Report {
     assessment: Assessment,
     margin: Option<f64>,
+    injection: Option<f64>,
     assumptions: Assumptions,
 }
 
 impl Report {
-    /// Of a certified scene, of the same scene with its environment as data, and of the machine.
-    pub fn new<E>(certified: &Certified<Scene<E>>, data: &Scene, steps: &Steps) -> Self {
+    /// Of a certified scene, of the same scene with its environment as data, of the machine, and of
+    /// the damping in N m s/rad that is injected.
+    pub fn new<E>(
+        certified: &Certified<Scene<E>>,
+        data: &Scene,
+        steps: &Steps,
+        injection: Option<f64>,
+    ) -> Self {
         let assessment = *certified.assessment();
-        let margin = assessment.margin_on_board(data);
-        Self { assessment, margin, assumptions: Assumptions::of(data, &assessment, steps) }
+        let margin = assessment.margin_injecting(data, injection.unwrap_or(0.0));
+        let assumptions = Assumptions::of(data, &assessment, steps);
+        Self { assessment, margin, injection, assumptions }
     }
 }
 
@@ -40,6 +48,9 @@ impl fmt::Display for Report {
             }
         }
         writeln!(f, "{:<14} {}", "delta", Enclosure(delta))?;
+        if let Some(injection) = self.injection {
+            writeln!(f, "injects        up to {injection} N m s/rad where there is a deficit")?;
+        }
         if let Some(margin) = self.margin {
             writeln!(f, "margin         {margin:.9} N m s/rad")?;
         }

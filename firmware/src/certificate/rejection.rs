@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::parameter::InvalidParameter;
-use super::remedy::Remedies;
+use super::remedy::{Remedies, Remedy};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::Doubt;
@@ -33,6 +33,13 @@ pub enum Rejection {
     UnstablePole {
         /// Schur-Cohn reflection coefficient that shows it: at least 1.
         reflection: Interval,
+        /// Whether the environment alone has none: then the coupling makes it.
+        of_coupling: bool,
+        /// Changes of one number that would pass, where the coupling makes it.
+        remedies: Remedies,
+        /// The same for the stiffness behind the standard coupling in N m/rad, where that does not do
+        /// by itself.
+        behind_standard: Option<(f64, Remedy)>,
     },
     /// A repeated pole on the unit circle, counting the integrator from velocity to position.
     RepeatedUnitPole {
@@ -128,7 +135,8 @@ impl Rejection {
     /// Changes of one number that would make the scene pass, each of them tried.
     pub const fn remedies(&self) -> Remedies {
         match self {
-            Self::Shortage { remedies, .. }
+            Self::UnstablePole { remedies, .. }
+            | Self::Shortage { remedies, .. }
             | Self::Missed { remedies, .. }
             | Self::Coupling { remedies, .. }
             | Self::Undecided { remedies, .. } => *remedies,
@@ -163,7 +171,8 @@ impl Rejection {
                 t.push_number(delta.midpoint());
                 t.push(" N m s/rad leaves nothing to spend; it must be greater than 0");
             }
-            Self::UnstablePole { reflection } => {
+            Self::UnstablePole { reflection, of_coupling, .. } => {
+                t.push(if *of_coupling { "behind this coupling " } else { "" });
                 t.push("the environment has a pole outside the unit circle (reflection coefficient ");
                 t.push_number(reflection.lo());
                 t.push(", must be below 1)");
@@ -203,7 +212,14 @@ impl Rejection {
                 write_doubt(&mut t, *doubt, *index, *limit);
             }
         }
-        self.remedies().write(&mut t);
+        let written = self.remedies().write(&mut t);
+        if let Self::UnstablePole { behind_standard: Some((coupling, remedy)), .. } = self {
+            t.push(if written == 0 { "; it would pass" } else { ", or" });
+            t.push(" behind a coupling of ");
+            t.push_number(*coupling);
+            t.push(" N m/rad with ");
+            remedy.write(&mut t);
+        }
         t
     }
 }
@@ -328,11 +344,21 @@ mod tests {
         let doubt = Doubt::ResidueSign;
         let (index, limit) = (Some(long), Some(long));
         let undecided = Rejection::Undecided { doubt, index, limit, remedies };
-        for rejection in [coupling, shortage, undecided] {
+        let last = "device passivity >= 1.23e-22 N m s/rad";
+        let behind_standard = Some((LONG, all[0]));
+        let pole = Rejection::UnstablePole {
+            reflection: long,
+            of_coupling: true,
+            remedies,
+            behind_standard,
+        };
+        let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
+        let all = [(coupling, last), (shortage, last), (undecided, last), (pole, range)];
+        for (rejection, end) in all {
             let sentence = rejection.sentence_in(Format::Fixed { fraction_bits: 16 });
             let sentence = sentence.as_str();
             assert!(sentence.len() < Sentence::CAPACITY, "{}: {sentence}", sentence.len());
-            assert!(sentence.ends_with("device passivity >= 1.23e-22 N m s/rad"), "{sentence}");
+            assert!(sentence.ends_with(end), "{sentence}");
         }
     }
 }

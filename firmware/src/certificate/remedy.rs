@@ -11,7 +11,7 @@ use super::rejection::Rejection;
 use super::varied::{FARTHEST, Varied};
 use crate::environment::Environment;
 use crate::number::Format;
-use crate::scene::Scene;
+use crate::scene::{Coupling, Scene};
 use crate::text::Text;
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
@@ -40,7 +40,7 @@ impl Remedy {
         Self { parameter, lowest: Some(value), highest: None }
     }
 
-    const fn write<const N: usize>(&self, t: &mut Text<N>) {
+    pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
         let (name, unit) = self.parameter.name_and_unit();
         let is_one_value = matches!((self.lowest, self.highest), (Some(a), Some(b)) if a == b);
         match self.lowest {
@@ -155,7 +155,8 @@ impl Remedies {
         }
     }
 
-    pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) {
+    /// Appends the remedies; gives their number.
+    pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) -> usize {
         let mut written = 0;
         let mut i = 0;
         while i < CANDIDATES {
@@ -166,6 +167,7 @@ impl Remedies {
             }
             i += 1;
         }
+        written
     }
 }
 
@@ -181,6 +183,10 @@ pub(super) const fn with_remedies<const RATIONAL: bool>(
         | Rejection::Missed { remedies, .. }
         | Rejection::Coupling { remedies, .. }
         | Rejection::Undecided { remedies, .. } => *remedies = search::<RATIONAL>(scene, format),
+        Rejection::UnstablePole { of_coupling: true, remedies, behind_standard, .. } => {
+            *remedies = search::<RATIONAL>(scene, format);
+            *behind_standard = softer_behind_standard::<RATIONAL>(scene, format);
+        }
         _ => {}
     }
     out
@@ -201,6 +207,28 @@ const fn search<const RATIONAL: bool>(scene: &Scene, format: Format) -> Remedies
         i += 1;
     }
     found
+}
+
+/// The stiffness with which the scene passes behind the standard coupling to three digits, on the soft
+/// side, where that coupling alone is not enough. In a frame of its own, for the second scene.
+#[inline(never)]
+const fn softer_behind_standard<const RATIONAL: bool>(
+    scene: &Scene,
+    format: Format,
+) -> Option<(f64, Remedy)> {
+    let numbers = Numbers::of(scene, format);
+    let standard = numbers.delta.double().div(numbers.period).midpoint();
+    let stiffness = Digits::of(standard, Side::Below).value();
+    let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
+    let own = shortage::<RATIONAL>(&standard, format);
+    if matches!(own, Some(own) if own < 0.0) {
+        return None;
+    }
+    let varied = Varied::<RATIONAL> { scene: &standard, format, parameter: Parameter::Stiffness };
+    match varied.remedy(own) {
+        Some(remedy) => Some((stiffness, remedy)),
+        None => None,
+    }
 }
 
 /// What the scene lacks as it is.
@@ -275,5 +303,67 @@ const fn needed_passivity<const RATIONAL: bool>(scene: &Scene, format: Format) -
     match PosedIn::<RATIONAL>::in_format(scene, format) {
         Ok(posed) => posed.needed_passivity(),
         Err(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::certify;
+    use crate::environment::Wall;
+    use crate::scene::{Device, Timing};
+
+    fn scene(stiffness: f64, coupling: Coupling) -> Scene {
+        Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling,
+            environment: Environment::DamperWall(Wall {
+                stiffness,
+                damping: 0.01,
+                filter: None,
+                delay: 1,
+                face: 0.0,
+                one_sided: false,
+            }),
+            torque_limit: None,
+        }
+    }
+
+    /// The README's wall, too stiff for its device and with a coupling that makes it swing by itself.
+    #[test]
+    fn a_pole_that_the_coupling_makes_has_remedies() {
+        for coupling in [Coupling::Rigid, Coupling::Spring { stiffness: 1e4 }] {
+            let rejection = certify(&scene(100.0, coupling)).unwrap_err();
+            let sentence = rejection.sentence();
+            let sentence = sentence.as_str();
+            assert_eq!(rejection.reason(), "unstable_pole", "{sentence}");
+            assert!(sentence.contains("behind this coupling"), "{sentence}");
+            let softer = rejection.remedies().iter().find_map(|remedy| match remedy.parameter {
+                Parameter::Stiffness => remedy.highest,
+                _ => None,
+            });
+            let softer = softer.unwrap_or_else(|| panic!("{sentence}"));
+            assert!(certify(&scene(softer, coupling)).is_ok(), "{sentence}");
+            let Rejection::UnstablePole { behind_standard: Some((stiffness, remedy)), .. } =
+                rejection
+            else {
+                panic!("{sentence}");
+            };
+            let (standard, most) = (Coupling::Spring { stiffness }, remedy.highest.unwrap());
+            assert_eq!((stiffness, most), (44.0, 23.9), "{sentence}");
+            assert!(most > softer && certify(&scene(most, standard)).is_ok(), "{sentence}");
+        }
+        // Nothing is said of a coupling where the environment swings alone.
+        let mut alone = scene(20.0, Coupling::Rigid);
+        alone.environment = Environment::Rational(crate::environment::Rational {
+            numerator: crate::environment::Coefficients::new(&[1.0]).unwrap(),
+            denominator: crate::environment::Coefficients::new(&[1.0, -1.5]).unwrap(),
+            delay: 0,
+            unit_zeros: 0,
+        });
+        let rejection = certify(&alone).unwrap_err();
+        assert_eq!((rejection.reason(), rejection.remedies()), ("unstable_pole", Remedies::NONE));
+        assert!(!rejection.to_string().contains("coupling"), "{rejection}");
     }
 }

@@ -218,7 +218,8 @@ fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
 
 /// The norm from a rational environment's sums to its torque, for all of them: a sum a degree, and
 /// `1 / denominator` from each.
-fn sections(rational: &Rational) -> Option<f64> {
+fn sections(written: &Rational) -> Option<f64> {
+    let rational = written.cancelled();
     let denominator = Polynomial::descending(rational.denominator.as_slice(), false);
     let leading = Polynomial::ascending(&[denominator.leading()]);
     let norm = l1_norm(&Transfer::new(leading, denominator))?;

@@ -251,7 +251,8 @@ const fn exact_outcome(
         },
         (Err(Obstacle::Undecided(doubt)), _) => Err(from_obstacle(Obstacle::Undecided(*doubt))),
         (Err(_), Ok(_)) if blames_coupling => Err(coupling_rejection(n, out)),
-        (Err(_), Err(obstacle)) | (Err(obstacle), Ok(_)) => Err(from_obstacle(*obstacle)),
+        (Err(obstacle), Ok(_)) => Err(of_coupling(*obstacle)),
+        (Err(_), Err(obstacle)) => Err(from_obstacle(*obstacle)),
     }
 }
 
@@ -312,9 +313,23 @@ const fn nonlinear_outcome(
     }
 }
 
+/// The rejection of an environment that has no such obstacle without its coupling.
+const fn of_coupling(obstacle: Obstacle) -> Rejection {
+    let mut out = from_obstacle(obstacle);
+    if let Rejection::UnstablePole { of_coupling, .. } = &mut out {
+        *of_coupling = true;
+    }
+    out
+}
+
 const fn from_obstacle(obstacle: Obstacle) -> Rejection {
     match obstacle {
-        Obstacle::UnstablePole { reflection } => Rejection::UnstablePole { reflection },
+        Obstacle::UnstablePole { reflection } => Rejection::UnstablePole {
+            reflection,
+            of_coupling: false,
+            remedies: Remedies::NONE,
+            behind_standard: None,
+        },
         Obstacle::RepeatedUnitPole { cos_theta } => Rejection::RepeatedUnitPole { cos_theta },
         Obstacle::ResidueAngle { cos_theta } => Rejection::ResidueAngle { cos_theta },
         Obstacle::NegativeResidue { residue } => Rejection::NegativeResidue { residue },

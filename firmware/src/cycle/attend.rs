@@ -1,14 +1,9 @@
 //! What a tick does beside rendering while the servo is not simply running: requests, ramps and
 //! swaps. Kept out of line, so that the usual tick does not pay for it.
 
+use super::swap::{ARMING, SETTLING, SWAPPING};
 use super::*;
-use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
-
-/// Ticks that a new set runs without torque before its clamp opens. It starts at rest where the device
-/// is, whatever it remembers for however long; after these ticks its delay, and the velocity that is
-/// delayed with it, are of how the device moves now.
-const SETTLING: u32 = MAX_DELAY as u32 + 2;
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     /// Whatever is not a tick of a running servo that nobody asks anything.
@@ -54,6 +49,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             // Whatever the environment remembers from before a fault, the motor did not do.
             self.rendering.rest_here();
             hardware.amplifier(true);
+            self.ramp = ARMING;
             self.state = State::FadingIn;
         }
         match (self.state, self.goal) {
@@ -67,6 +63,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
 
     fn disarm(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
         if self.state.is_armed() {
+            self.ramp = ARMING;
             self.begin_fading_out(Goal::Release);
         } else {
             inbox.tell(Notice::Disarmed);
@@ -82,15 +79,19 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
 
     fn close_for_a_set(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
         if inbox.has_set() {
+            self.ramp = SWAPPING;
             self.begin_fading_out(Goal::Render);
         }
     }
 
     fn fade_in(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
         if inbox.has_set() {
-            self.begin_fading_out(Goal::Render);
-        } else if self.rendering.servo_mut().open() {
-            self.state = State::Running;
+            return self.begin_fading_out(Goal::Render);
+        }
+        for _ in 0..self.ramp {
+            if self.rendering.servo_mut().open() {
+                self.state = State::Running;
+            }
         }
     }
 
@@ -101,7 +102,9 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     ) {
         // Shut before this tick, so that this tick's code was mid-scale.
         if !self.rendering.servo().is_shut() {
-            self.rendering.servo_mut().close();
+            for _ in 0..self.ramp {
+                self.rendering.servo_mut().close();
+            }
             return;
         }
         match self.goal {

@@ -27,11 +27,6 @@ pub trait Hardware {
     /// Timer counts since the period of this tick began; at least a period once the next one has
     /// begun.
     fn elapsed(&mut self) -> u32;
-    /// Whether the converter wanted a code before there was one, since the last call.
-    #[inline(always)]
-    fn underrun(&mut self) -> bool {
-        false
-    }
     /// Feeds the watchdog.
     fn feed(&mut self);
     /// Keeps a [`Retained`] record in memory that outlives a reset, or clears it. Rare.

@@ -17,6 +17,7 @@ mod in_time;
 mod mailbox;
 mod options;
 mod state;
+mod swap;
 mod trouble;
 
 pub use frame::{Frame, FrameSink};
@@ -26,6 +27,7 @@ pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{LinkPolicy, Options};
 pub use state::{Notice, State, Status};
+pub use swap::longest_gap;
 
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
@@ -65,6 +67,8 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     longest: u32,
     /// Whether a tick was not in time.
     was_late: bool,
+    /// Steps of the clamp a tick.
+    ramp: u32,
     /// Ticks until the samples of a new set have filled its memory.
     settling: u32,
     /// What was last found that stops a servo, and the ticks since then without amplifier.
@@ -105,6 +109,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             missed: 0,
             longest: 0,
             was_late: false,
+            ramp: swap::ARMING,
             settling: 0,
             trouble: None,
             calm: 0,
@@ -123,7 +128,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         inbox: &mut Inbox<'_, Rendering<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
-        let (passed, underrun, raw) = (hardware.passed(), hardware.underrun(), hardware.count());
+        let (passed, raw) = (hardware.passed(), hardware.count());
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
         // One jump each, none of them taken in a usual tick: conditions that are put together first
@@ -141,9 +146,6 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         if output.limit == LimitReason::NotANumber {
             self.not_a_number(hardware, inbox);
-        }
-        if underrun {
-            self.underrun(hardware, inbox);
         }
         let mut attend = inbox.asked();
         let mut code = output.code;

@@ -1,5 +1,6 @@
 //! What stops the servo, found in a tick. Kept out of line, like all that is rare.
 
+use super::swap::ARMING;
 use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
@@ -100,17 +101,6 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
-    /// A converter that wanted a code before there was one.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn underrun(
-        &mut self,
-        hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
-    ) {
-        self.fail(Fault::Underrun, hardware, inbox);
-    }
-
     /// A tick that took longer than any before; gives its slack. Without any the code was late
     /// for the update that it was for, and the motor has a torque that the environment does not know
     /// of: no worst period covers that.
@@ -150,6 +140,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
         self.link_lost = true;
         if self.link == LinkPolicy::Release && self.state.is_armed() {
+            self.ramp = ARMING;
             self.begin_fading_out(Goal::Stop(self.lost()));
         }
     }

@@ -68,7 +68,7 @@ impl Environment {
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => wall.delay,
             Self::FreeMode { delay, .. } => *delay,
-            Self::Rational(rational) => rational.delay,
+            Self::Rational(rational) => rational.whole_delay(),
         }
     }
 }

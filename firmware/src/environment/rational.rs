@@ -1,5 +1,6 @@
 //! Any proper rational environment.
 
+use super::MAX_DELAY;
 use super::delay_line::{DelayLine, VariableDelay};
 use super::law::{Law, Renderable, Setting};
 use crate::coupling::{Offer, Slopes};
@@ -11,6 +12,9 @@ pub const MAX_DEGREE: usize = 8;
 
 /// Any proper rational `E(z)` up to degree 8, with up to 8 samples of delay on top:
 /// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
+///
+/// Zeros at the end of the denominator are delay, too, and count as such where the numerator has as
+/// many degrees less.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rational {
     /// Numerator, descending powers of z.
@@ -78,6 +82,15 @@ impl Coefficients {
             i += 1;
         }
         true
+    }
+
+    /// The degree; 0 for the zero polynomial.
+    const fn degree(&self) -> usize {
+        let mut i = 0;
+        while i < self.len && self.values[i] == 0.0 {
+            i += 1;
+        }
+        (self.len - i).saturating_sub(1)
     }
 
     /// The coefficients from the leading one that is not zero on.
@@ -199,14 +212,14 @@ impl<N: Number> Renderable<N> for Rational {
             feedthrough: BuildError::coefficient::<N>("numerator coefficient", of(0).0)?,
             sections,
             degree,
-            delay: VariableDelay::at_rest(self.delay)?,
+            delay: VariableDelay::at_rest(cancelled.delay)?,
         })
     }
 }
 
 impl Rational {
     /// The same transfer function without the factors `z - 1` and `z + 1` that numerator and
-    /// denominator have in common: this is what is judged and what runs.
+    /// denominator have in common, and with its delay apart: this is what is judged and what runs.
     ///
     /// A common factor does not show in the transfer function, but in a difference equation it is a
     /// mode that does not decay, and that each rounding drives further.
@@ -214,7 +227,26 @@ impl Rational {
         let mut out = *self;
         out.cancel(1.0);
         out.cancel(-1.0);
+        out.move_delay();
         out
+    }
+
+    /// Its delay in whole samples, in the denominator or beside it.
+    pub(crate) const fn whole_delay(&self) -> usize {
+        self.cancelled().delay
+    }
+
+    /// Takes poles at `z = 0` out of the denominator, each a sample of delay. What is left has to be
+    /// proper, and the delay one that can be stored.
+    const fn move_delay(&mut self) {
+        let zeros = if self.numerator.is_zero() { 0 } else { self.unit_zeros };
+        while self.delay < MAX_DELAY
+            && self.denominator.degree() > self.numerator.degree() + zeros
+            && self.denominator.values[self.denominator.len - 1] == 0.0
+        {
+            self.denominator.len -= 1;
+            self.delay += 1;
+        }
     }
 
     const fn cancel(&mut self, root: f64) {
@@ -299,6 +331,51 @@ mod tests {
                     .iter()
                     .all(|section| { section.denominator.abs() <= 0.5 })
             );
+        }
+    }
+
+    #[test]
+    fn zeros_at_the_end_of_the_denominator_are_delay() {
+        let written = |zeros: usize, delay| {
+            let mut denominator = vec![1.0, -0.5];
+            denominator.resize(2 + zeros, 0.0);
+            Rational { delay, ..rational(&[8.0, -2.0], &denominator, 0) }
+        };
+        for (zeros, delay, left, whole) in [
+            (0, 0, 0, 0),
+            (1, 0, 0, 1),
+            (3, 2, 0, 5),
+            (7, 1, 0, 8),
+            // What cannot be stored stays where it is.
+            (7, 8, 7, 8),
+            (5, 5, 2, 8),
+        ] {
+            assert_eq!(written(zeros, delay).cancelled(), written(left, whole));
+            let environment = Environment::Rational(written(zeros, delay));
+            assert_eq!((environment.delay(), environment.is_late()), (whole, whole > 0));
+        }
+        // As many degrees as the numerator has stay, declared zeros among them.
+        let proper = rational(&[8.0, -2.0], &[1.0, 0.0, 0.0, 0.0], 1);
+        let left = Rational { delay: 2, ..rational(&[8.0, -2.0], &[1.0, 0.0, 0.0], 1) };
+        assert_eq!(proper.cancelled(), left);
+    }
+
+    /// Any degree up to eight, and any delay on top of it, in the denominator or beside it.
+    #[test]
+    fn eight_samples_of_delay_fit_on_top_of_degree_eight() {
+        let mut poles = [0.0; MAX_DEGREE + 1];
+        (poles[0], poles[MAX_DEGREE]) = (1.0, 1e-3);
+        let zeros = [0.4, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05];
+        for coupling in [44.0, 30.0, 60.0] {
+            for delay in 0..=MAX_DELAY {
+                let environment = Rational { delay, ..rational(&zeros, &poles, 0) };
+                let scene = Scene {
+                    coupling: Coupling::Spring { stiffness: coupling },
+                    ..scene(environment)
+                };
+                assert_eq!(certify(&scene).map(|_| ()), Ok(()), "{coupling}, {delay}");
+                assert!(Renderable::<f32>::law(&environment, &setting()).is_ok());
+            }
         }
     }
 

@@ -29,8 +29,6 @@ pub enum Fault {
     },
     /// The torque was not a number.
     NotANumber,
-    /// The converter wanted a code when there was none.
-    Underrun,
     /// The host has not been heard for too long.
     LinkLost {
         /// Ticks without a message that are allowed.
@@ -68,7 +66,6 @@ impl Fault {
             Self::MissedTick { .. } => "missed-tick",
             Self::EncoderJump { .. } => "encoder-jump",
             Self::NotANumber => "not-a-number",
-            Self::Underrun => "underrun",
             Self::LinkLost { .. } => "link-lost",
             Self::Watchdog => "watchdog",
             Self::Panic { .. } => "panic",
@@ -77,13 +74,13 @@ impl Fault {
         }
     }
 
-    /// The fault as a code, never zero, and its two numbers.
+    /// The fault as a code, never zero, and its two numbers. Codes stay what they are, so that a host
+    /// and a board of different ages understand each other; 4 was of a fault that no board can have.
     pub const fn encode(self) -> (u32, [u32; 2]) {
         match self {
             Self::MissedTick { missed, tolerated } => (1, [missed, tolerated]),
             Self::EncoderJump { counts, largest } => (2, [counts, largest]),
             Self::NotANumber => (3, [0; 2]),
-            Self::Underrun => (4, [0; 2]),
             Self::LinkLost { allowed } => (5, [allowed, 0]),
             Self::Watchdog => (6, [0; 2]),
             Self::Panic { line, column } => (7, [line, column]),
@@ -99,7 +96,6 @@ impl Fault {
             1 => Self::MissedTick { missed: a, tolerated: b },
             2 => Self::EncoderJump { counts: a, largest: b },
             3 => Self::NotANumber,
-            4 => Self::Underrun,
             5 => Self::LinkLost { allowed: a },
             6 => Self::Watchdog,
             7 => Self::Panic { line: a, column: b },
@@ -127,10 +123,6 @@ impl fmt::Display for Fault {
             ),
             Self::NotANumber => f.write_str(
                 "the torque was not a number: send another set of parameters, then arm again",
-            ),
-            Self::Underrun => f.write_str(
-                "the converter wanted a code before there was one: lengthen the scene's period, \
-                 then arm again",
             ),
             Self::LinkLost { allowed } => write!(
                 f,

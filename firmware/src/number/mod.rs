@@ -12,6 +12,9 @@ mod rounding;
 mod tests;
 mod truncated;
 
+/// The crate of the fixed-point formats, in the version that is meant.
+pub use fixed;
+
 pub use arithmetic::{Arithmetic, InEach};
 pub use fixed_point::Scaled;
 pub use rounding::Rounding;
@@ -19,7 +22,7 @@ pub use truncated::Truncated;
 
 use core::fmt;
 
-use crate::text::{Text, Written};
+use crate::text::Text;
 
 /// A number format of the servo: `f32`, `f64`, or a [`fixed::FixedI32`], rounded or [`Truncated`].
 pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
@@ -134,10 +137,22 @@ pub struct OutOfRange {
     pub format: Format,
 }
 
+impl OutOfRange {
+    /// Appends the error as a sentence.
+    pub(crate) const fn write<const N: usize>(&self, t: &mut Text<N>) {
+        t.push_number(self.value);
+        t.push(" does not fit ");
+        t.push(self.format.name().as_str());
+        t.push(": its magnitude may be at most ");
+        t.push_number(self.bound);
+    }
+}
+
 impl fmt::Display for OutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, bound, format) = (Written(self.value), Written(self.bound), self.format);
-        write!(f, "{value} does not fit {format}: its magnitude may be at most {bound}")
+        let mut sentence = Text::<128>::new();
+        self.write(&mut sentence);
+        f.write_str(sentence.as_str())
     }
 }
 

@@ -2,8 +2,9 @@
 
 use core::fmt;
 
+use crate::board::period;
+use crate::certificate::Sentence;
 use crate::number::{Format, Number, OutOfRange};
-use crate::text::Written;
 
 /// Why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,11 +71,16 @@ pub enum BuildError {
         /// Half the counter's range.
         half: f64,
     },
+    /// No board can pace the scene.
+    Period {
+        /// Its period in s.
+        period: f64,
+    },
 }
 
 impl BuildError {
     /// Refuses what is not positive and finite.
-    pub(crate) fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
+    pub(crate) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             Ok(())
         } else {
@@ -96,59 +102,104 @@ impl BuildError {
     }
 }
 
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl BuildError {
+    /// The error as a sentence, the same at compile time, on the host and on the board.
+    pub const fn sentence(&self) -> Sentence {
+        let mut t = Sentence::new();
         match self {
             Self::NotPositive { name, value } => {
-                let value = Written(*value);
-                write!(f, "the {name} must be positive and finite, and is {value}")
+                t.push("the ");
+                t.push(name);
+                t.push(" must be positive and finite, and is ");
+                t.push_number(*value);
             }
-            Self::TorqueLimit { limit, full_scale } => write!(
-                f,
-                "the torque limit of {limit} N m is above the converter's full scale of \
-                 {full_scale} N m: lower it to that, or scale the amplifier up",
-                limit = Written(*limit),
-                full_scale = Written(*full_scale),
-            ),
-            Self::Unrepresentable { name, reason } => write!(f, "the {name}: {reason}"),
-            Self::Uncertified { format } => write!(
-                f,
-                "the scene is certified, but not with its coefficients rounded to {format}: ask \
-                 for its certificate in that format, which says why, and leave more margin"
-            ),
-            Self::IllPosed { line, contact } => write!(
-                f,
-                "coupling and environment have no unique solution: the loop gain 1 + f / K is \
-                 {line} out of contact and {contact} in contact, and must be positive; a stiffer \
-                 coupling or a delayed environment has one",
-                line = Written(*line),
-                contact = Written(*contact),
-            ),
+            Self::TorqueLimit { limit, full_scale } => {
+                t.push("the torque limit of ");
+                t.push_number(*limit);
+                t.push(" N m is above the converter's full scale of ");
+                t.push_number(*full_scale);
+                t.push(" N m: lower it to that, or scale the amplifier up");
+            }
+            Self::Unrepresentable { name, reason } => {
+                t.push("the ");
+                t.push(name);
+                t.push(": ");
+                reason.write(&mut t);
+            }
+            Self::Uncertified { format } => {
+                t.push("the scene is certified, but not with its coefficients rounded to ");
+                t.push(format.name().as_str());
+                t.push(
+                    ": ask for its certificate in that format, which says why, and leave more \
+                     margin",
+                );
+            }
+            Self::IllPosed { line, contact } => {
+                t.push(
+                    "coupling and environment have no unique solution: the loop gain 1 + f / K is ",
+                );
+                t.push_number(*line);
+                t.push(" out of contact and ");
+                t.push_number(*contact);
+                t.push(
+                    " in contact, and must be positive; a stiffer coupling or a delayed \
+                     environment has one",
+                );
+            }
             Self::Delay { delay, largest } => {
-                write!(f, "a delay of {delay} samples is longer than the {largest} that are stored")
+                t.push("a delay of ");
+                t.push_number(*delay as f64);
+                t.push(" samples is longer than the ");
+                t.push_number(*largest as f64);
+                t.push(" that are stored");
             }
-            Self::Improper { numerator, denominator } => write!(
-                f,
-                "a numerator of degree {numerator} over a denominator of degree {denominator} \
-                 needs samples from the future"
-            ),
-            Self::Injection { damping, room } => write!(
-                f,
-                "a damping of {damping} N m s/rad that is switched on and off uses up as much of \
-                 the device's passivity, of which this scene leaves less than {room} N m s/rad: \
-                 inject less, or make the scene softer",
-                damping = Written(*damping),
-                room = Written(*room),
-            ),
-            Self::Speed { counts, half } => write!(
-                f,
-                "at the largest speed the encoder may move by {counts} counts between two \
-                 ticks, of which its counter tells only those below {half}: a shorter worst \
-                 period or a wider counter tells them all",
-                counts = Written(*counts),
-                half = Written(*half),
-            ),
+            Self::Improper { numerator, denominator } => {
+                t.push("a numerator of degree ");
+                t.push_number(*numerator as f64);
+                t.push(" over a denominator of degree ");
+                t.push_number(*denominator as f64);
+                t.push(" needs samples from the future");
+            }
+            Self::Injection { damping, room } => {
+                t.push("a damping of ");
+                t.push_number(*damping);
+                t.push(
+                    " N m s/rad that is switched on and off uses up as much of the device's \
+                     passivity, of which this scene leaves less than ",
+                );
+                t.push_number(*room);
+                t.push(" N m s/rad: inject less, or make the scene softer");
+            }
+            Self::Speed { counts, half } => {
+                t.push("at the largest speed the encoder may move by ");
+                t.push_number(*counts);
+                t.push(" counts between two ticks, of which its counter tells only those below ");
+                t.push_number(*half);
+                t.push(": a shorter worst period or a wider counter tells them all");
+            }
+            Self::Period { period } => {
+                t.push("the period of ");
+                t.push_number(*period);
+                t.push(" s is not between ");
+                t.push_number(period::SHORTEST);
+                t.push(" and ");
+                t.push_number(period::LONGEST);
+                t.push(" s, what a board can pace");
+            }
         }
+        t
+    }
+
+    /// Stops the compiler with the sentence.
+    #[track_caller]
+    pub(crate) const fn refuse(&self) -> ! {
+        panic!("{}", self.sentence().as_str())
+    }
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.sentence().as_str())
     }
 }
 

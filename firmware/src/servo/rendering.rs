@@ -16,7 +16,8 @@ use crate::tuning::Tunable;
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderingOptions {
-    /// Time in s in which the clamp opens from nothing to the torque limit, and closes.
+    /// Time in s in which the clamp opens from nothing to the torque limit, and closes; for another set
+    /// of parameters a tenth of it ([`longest_gap`](crate::cycle::longest_gap)).
     pub fade: f64,
     /// Damping in N m s/rad that is injected while more energy has gone into the hand than came
     /// out of it; `None`: the energy is only watched.
@@ -27,6 +28,25 @@ impl RenderingOptions {
     /// Fades within a tenth of a second: slow for a step to be felt, quick for whoever waits.
     /// Injects nothing.
     pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
+}
+
+impl RenderingOptions {
+    /// For constants: a compile error where the damping that is injected does not fit into the room
+    /// that a scene leaves; see [`Timed::room`].
+    ///
+    /// # Panics
+    /// If it does not; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn checked_beside(&self, room: f64) {
+        if let Some(damping) = self.injection {
+            if let Err(error) = BuildError::unless_positive("injected damping", damping) {
+                error.refuse();
+            }
+            if damping >= room {
+                BuildError::Injection { damping, room }.refuse();
+            }
+        }
+    }
 }
 
 impl Default for RenderingOptions {

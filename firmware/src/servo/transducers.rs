@@ -6,6 +6,7 @@ use super::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
 use crate::number::Number;
+use crate::scene::Timing;
 use crate::torque::{LimitReason, Limiter};
 
 /// The scales of what surrounds the servo.
@@ -27,29 +28,61 @@ impl Transducers {
     /// [`Transducers::largest_speed`] where the device is not known better.
     pub const NO_HAND_IS_FASTER: f64 = 100.0;
 
-    pub(super) fn radians_per_count(&self) -> Result<f64, BuildError> {
-        let counts = self.counts_per_turn;
-        BuildError::unless_positive("counts per turn", counts)?;
-        Ok(TAU / counts)
+    /// Whether a servo can work between them with this timing and this torque limit.
+    ///
+    /// # Errors
+    /// What is wrong, with its value and its bound.
+    pub const fn check(&self, timing: Timing, limit: Option<f64>) -> Result<(), BuildError> {
+        if let Err(error) = self.codes_per_torque() {
+            return Err(error);
+        }
+        if let Err(error) = self.bound(limit) {
+            return Err(error);
+        }
+        // The counter must not wrap unseen before missed ticks become a fault.
+        let worst = match timing.worst_period {
+            Some(worst) => worst,
+            None => timing.period,
+        };
+        match self.largest_step(worst) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(error),
+        }
     }
 
-    pub(super) fn codes_per_torque(&self) -> Result<f64, BuildError> {
+    pub(super) const fn radians_per_count(&self) -> Result<f64, BuildError> {
+        let counts = self.counts_per_turn;
+        match BuildError::unless_positive("counts per turn", counts) {
+            Ok(()) => Ok(TAU / counts),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(super) const fn codes_per_torque(&self) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
-        BuildError::unless_positive("full-scale torque", full_scale)?;
-        Ok(f64::from(DacCode::CODES_TO_FULL_SCALE) / full_scale)
+        match BuildError::unless_positive("full-scale torque", full_scale) {
+            Ok(()) => Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale),
+            Err(error) => Err(error),
+        }
     }
 
     /// The most counts that the encoder can move in `time` s, and one for its edges.
     ///
     /// # Errors
     /// Where the counter would wrap unseen in that time.
-    pub(crate) fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
+    pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
         let speed = self.largest_speed;
-        BuildError::unless_positive("largest speed", speed)?;
-        let counts = speed * time / self.radians_per_count()? + 1.0;
+        if let Err(error) = BuildError::unless_positive("largest speed", speed) {
+            return Err(error);
+        }
+        let step = match self.radians_per_count() {
+            Ok(step) => step,
+            Err(error) => return Err(error),
+        };
+        let counts = speed * time / step + 1.0;
         let half = match self.counter {
-            CounterWidth::Bits16 => f64::from(1_u32 << 15),
-            CounterWidth::Bits32 => f64::from(1_u32 << 31),
+            CounterWidth::Bits16 => (1_u32 << 15) as f64,
+            CounterWidth::Bits32 => (1_u32 << 31) as f64,
         };
         // Written so that NaN is refused.
         if counts < half { Ok(counts as u32) } else { Err(BuildError::Speed { counts, half }) }
@@ -61,18 +94,26 @@ impl Transducers {
             / f64::from(DacCode::CODES_TO_FULL_SCALE)
     }
 
-    /// The limiter of a scene's torque limit, or else of the converter's range.
-    pub(super) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
+    /// The most torque in N m that a scene with this limit gives: the limit, or else full scale.
+    const fn bound(&self, limit: Option<f64>) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
-        let (bound, reason) = match limit {
-            Some(limit) => (limit, LimitReason::Torque),
-            None => (full_scale, LimitReason::Converter),
+        let bound = match limit {
+            Some(limit) => limit,
+            None => full_scale,
         };
-        BuildError::unless_positive("torque limit", bound)?;
+        if let Err(error) = BuildError::unless_positive("torque limit", bound) {
+            return Err(error);
+        }
         if bound > full_scale {
             return Err(BuildError::TorqueLimit { limit: bound, full_scale });
         }
-        let bound = N::bound_from_f64(bound)
+        Ok(bound)
+    }
+
+    /// The limiter of a scene's torque limit, or else of the converter's range.
+    pub(super) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
+        let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::Converter };
+        let bound = N::bound_from_f64(self.bound(limit)?)
             .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;
         let name = "torque limit in the servo's number format";
         BuildError::unless_positive(name, bound.to_f64())?;

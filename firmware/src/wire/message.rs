@@ -104,6 +104,8 @@ pub struct Board {
     pub full_scale_torque: f64,
     /// One step of the energy monitor in J.
     pub energy_step: f64,
+    /// The longest time in s for which swapping a set in takes the torque away.
+    pub longest_gap: f64,
 }
 
 /// The numbers that run.

@@ -43,7 +43,7 @@ fn check(toolchain: &Toolchain, board: Board, name: &str, program: &Program) {
 /// Parts of a tick that a scene may do without: which of them are in a program.
 fn has(name: &str) -> &'static [Part] {
     match name {
-        "delayed_spring" => &[Part::Spring, Part::Delay],
+        "delayed_spring" | "supervised_spring" => &[Part::Spring, Part::Delay],
         "damper_wall" => &[Part::Spring, Part::Damper, Part::Face, Part::Delay],
         // Torques are later than positions on these boards.
         "free_mode" => &[Part::Canceller, Part::Delay],
@@ -111,7 +111,7 @@ fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
     let programs: Vec<_> = programs.iter().map(String::as_str).collect();
-    let ours = ["damper_wall", "delayed_spring", "free_mode", "identify"];
+    let ours = ["damper_wall", "delayed_spring", "free_mode", "identify", "supervised_spring"];
     assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
     for board in Board::ALL {
         let built = toolchain.build_for(board, &programs, NumberFormat::F32);

@@ -3,6 +3,8 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+
+use analysis::toolchain::{Tools, prepare, probe};
 use tempfile::TempDir;
 
 /// A copy of `foreign/NAME` away from the workspace, with the workspace's versions of everything.
@@ -17,8 +19,13 @@ fn copy(name: &str) -> TempDir {
         manifest.replace("../../../firmware", firmware.to_str().expect("a path in UTF-8"));
     std::fs::write(to.path().join("Cargo.toml"), manifest).expect("a writable folder");
     std::fs::copy(root.join("Cargo.lock"), to.path().join("Cargo.lock")).expect("the lock file");
-    std::fs::create_dir(to.path().join("src")).expect("a writable folder");
-    std::fs::copy(from.join("src/lib.rs"), to.path().join("src/lib.rs")).expect("the source");
+    let copied = |name: &str| {
+        let (from, to) = (from.join(name), to.path().join(name));
+        std::fs::create_dir_all(to.parent().expect("a folder")).expect("a writable folder");
+        std::fs::copy(from, to).is_ok()
+    };
+    let rest = ["src/lib.rs", "src/main.rs", "build.rs", ".cargo/config.toml"];
+    assert!(rest.into_iter().filter(|name| copied(name)).count() > 0, "there is no source");
     to
 }
 
@@ -70,6 +77,49 @@ fn no_executor_no_logger_and_no_hardware_come_with_it() {
             assert!(!tree.contains(unwanted), "{unwanted} in\n{tree}");
         }
     }
+}
+
+/// A program for a board, from nothing but the library and its linker map.
+#[test]
+fn a_scene_of_another_crate_runs_on_a_board() {
+    let folder = copy("on_a_board");
+    let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../memory.x");
+    std::fs::copy(map, folder.path().join("memory.x")).expect("the linker's map");
+    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+    let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
+    let built = toolchain.build_foreign(folder.path(), "knob");
+    let program = built.unwrap_or_else(|error| panic!("{error}"));
+    let memory = toolchain.memory().unwrap();
+    assert!(program.sizes.text > 0 && program.sizes.flash() <= memory.flash);
+    // The servo's interrupt is where its board fetches without a wait.
+    assert!(program.sizes.fast > 0 && program.sizes.fast <= memory.fast);
+    let elf = std::fs::read(&program.path).unwrap();
+    assert_eq!(probe::chip(&elf).unwrap(), "STM32G474RETx");
+}
+
+/// Whoever has the package has no file above it: what it takes in at compile time is its own.
+#[test]
+fn the_firmware_takes_in_no_file_of_the_workspace() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").canonicalize().unwrap();
+    let mut folders = vec![package.join("src"), package.join("tests")];
+    let mut seen = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in folder.read_dir().unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            seen += 1;
+            let source = std::fs::read_to_string(&path).unwrap_or_default();
+            for included in source.split("include_str!(\"").skip(1) {
+                let name = included.split('"').next().unwrap();
+                let file = path.parent().unwrap().join(name).canonicalize();
+                assert!(file.is_ok_and(|file| file.starts_with(&package)), "{path:?}: {name}");
+            }
+        }
+    }
+    assert!(seen > 100, "only {seen} files");
 }
 
 /// `no-panic` makes every path that unwinds call a function that does not exist.

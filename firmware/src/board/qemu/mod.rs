@@ -63,7 +63,7 @@ unsafe fn DefaultHandler(number: i16) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         /// The scene, whose torque is as late as it says.
         const TIMED: $crate::certificate::Timed<
             $crate::scene::Scene<$environment>,
@@ -93,14 +93,9 @@ macro_rules! board_program {
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::boot::Program {
-                scene: *TIMED.scene(),
-                transducers: $transducers,
-                rendering: $crate::servo::RenderingOptions::DEFAULT,
-                options: $crate::cycle::Options::DEFAULT,
-            };
+            let program = $crate::boot::Program { scene: *TIMED.scene(), ..$program };
             let compiler = $certified.assessment();
             $crate::board::qemu::run(env!("CARGO_BIN_NAME"), program, compiler, &PLACES)
         }
@@ -132,7 +127,7 @@ macro_rules! board_sweep {
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
             $crate::board::qemu::measure(&$sweep, &PLACE)
         }

@@ -27,7 +27,7 @@ pub use super::stm32f405 as wiring;
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
-    HostLink, LinkPlace, Places, ServoPlace, Task, begin, connect, period, run, width,
+    HostLink, LinkPlace, Places, ServoPlace, Task, begin, connect, fitted, period, run, width,
 };
 pub use sweep::{SweepPlace, measure};
 

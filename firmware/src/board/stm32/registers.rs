@@ -6,6 +6,7 @@ use embassy_stm32::pac::iwdg::vals::Key;
 use super::pace::{Pace, Period};
 use super::quadrature::Counter;
 use super::wiring::{AMPLIFIER, CONVERTER, ENCODER};
+use crate::board::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::board::retained;
 use crate::boot::Startup;
 use crate::cycle::Hardware;
@@ -67,15 +68,6 @@ impl Hardware for Registers {
     }
 }
 
-/// Periods without a tick after which the watchdog resets the board. Its clock is an RC oscillator:
-/// on the F405, the worst, eight periods by its nominal 32 kHz are between five and fifteen.
-const PATIENCE: f64 = 8.0;
-/// Counts of the watchdog's clock a second, behind the prescaler of 4 that it has out of reset.
-const WATCHDOG_CLOCK: f64 = 32_000.0 / 4.0;
-/// What the watchdog counts down from at most.
-const LONGEST: f64 = 4095.0;
-/// The longest period in s that the watchdog has that patience with.
-pub const LONGEST_PERIOD: f64 = (LONGEST - 1.0) / WATCHDOG_CLOCK / PATIENCE;
 /// Bit of the chips' reset causes that says that the watchdog was it; the F4's and the G4's is the
 /// same, under two names.
 const BY_WATCHDOG: u32 = 1 << 29;

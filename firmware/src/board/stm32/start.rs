@@ -70,6 +70,17 @@ where
     })
 }
 
+/// A program as this board has it, or a compile error: the counter's width is the board's, whatever the
+/// program was first written for.
+///
+/// # Panics
+/// Where the counter would wrap unseen; in a constant that is the compile error.
+#[track_caller]
+pub const fn fitted<E: Copy>(program: Program<E>) -> Program<E> {
+    let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
+    Program { transducers, ..program }.checked()
+}
+
 /// Everything from reset to the first tick; gives what the task below the servo works with.
 ///
 /// In a frame of its own, which is gone when that task judges a set: judging takes most of the
@@ -87,9 +98,6 @@ where
 {
     let port = connect().serial;
     let period = period(program.scene.timing.period);
-    // The counter's width is the board's, whatever the program was first written for.
-    let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
-    let program = Program { transducers, ..program };
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
@@ -187,7 +195,7 @@ async fn yield_now() {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         $crate::board_chip!();
 
         /// The scene, as late as the board's converter: where it is not, this does not compile.
@@ -196,35 +204,33 @@ macro_rules! board_program {
             $crate::board::stm32::Mode,
         > = $certified.timed::<$crate::board::stm32::Mode>();
 
+        /// What this board runs.
+        const FITTED: $crate::boot::Program<$environment> = $crate::board::stm32::fitted($program);
+
         static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
             $crate::board::place::Place::empty();
         static MEETING: $crate::board::seat::Meeting<
             $environment,
             $number,
             $crate::board::stm32::Mode,
-        > = static_cell::StaticCell::new();
+        > = $crate::__private::static_cell::StaticCell::new();
 
         static LINK: $crate::board::stm32::LinkPlace<$environment, $number> =
-            static_cell::StaticCell::new();
+            $crate::__private::static_cell::StaticCell::new();
 
         $crate::board_tick!();
 
         /// Below the servo: a task may not be generic, so each program has its own.
-        #[embassy_executor::task]
+        #[$crate::__private::task(embassy_executor = $crate::__private::embassy_executor)]
         async fn serve(
             link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
         ) -> ! {
             link.serve().await
         }
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::boot::Program {
-                scene: *TIMED.scene(),
-                transducers: $transducers,
-                rendering: $crate::servo::RenderingOptions::DEFAULT,
-                options: $crate::cycle::Options::DEFAULT,
-            };
+            let program = $crate::boot::Program { scene: *TIMED.scene(), ..FITTED };
             let name = env!("CARGO_BIN_NAME");
             let places =
                 $crate::board::stm32::Places { servo: &PLACE, meeting: &MEETING, link: &LINK };
@@ -252,13 +258,36 @@ macro_rules! board_chip {
 #[macro_export]
 macro_rules! board_tick {
     () => {
-        /// A tick.
-        #[unsafe(no_mangle)]
-        #[cfg_attr(feature = "fast-memory", unsafe(link_section = ".fast"))]
-        unsafe extern "C" fn TIM6_DAC() {
-            // SAFETY: this is the handler of the interrupt that is enabled once the place is
-            // filled, and no interrupt interrupts itself.
-            unsafe { PLACE.get() }.tick();
+        $crate::in_fast_memory! {
+            /// A tick.
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn TIM6_DAC() {
+                // SAFETY: this is the handler of the interrupt that is enabled once the place is
+                // filled, and no interrupt interrupts itself.
+                unsafe { PLACE.get() }.tick();
+            }
         }
+    };
+}
+
+/// A function that is fetched without a wait, where a board can. The feature is asked here, since in
+/// the macro above it would be one of the program's crate.
+#[cfg(feature = "fast-memory")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! in_fast_memory {
+    ($($function:tt)*) => {
+        #[unsafe(link_section = ".fast")]
+        $($function)*
+    };
+}
+
+/// A function that is fetched from flash.
+#[cfg(not(feature = "fast-memory"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! in_fast_memory {
+    ($($function:tt)*) => {
+        $($function)*
     };
 }

@@ -171,7 +171,7 @@ macro_rules! board_sweep {
 
         $crate::board_tick!();
 
-        #[cortex_m_rt::entry]
+        #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
             $crate::board::stm32::measure(&$sweep, &PLACE)
         }

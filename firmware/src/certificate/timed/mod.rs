@@ -170,8 +170,13 @@ impl Assessment {
     /// [`Timed::margin`] of the scene that was assessed and certified; `None` where no board renders it
     /// for its numbers.
     pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
+        self.margin_injecting(scene, 0.0)
+    }
+
+    /// [`Timed::margin_with`] of that scene.
+    pub const fn margin_injecting(&self, scene: &Scene, injected: f64) -> Option<f64> {
         match agree::<Simultaneous>(scene, self) {
-            Ok(limited) => Some(limited.margin(0.0)),
+            Ok(limited) => Some(limited.margin(injected)),
             Err(_) => None,
         }
     }

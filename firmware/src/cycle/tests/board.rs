@@ -26,7 +26,6 @@ pub struct Board {
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
-    pub underrun: bool,
     pub kept: [u32; Retained::WORDS],
     pub by_watchdog: bool,
 }
@@ -38,7 +37,6 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
-            underrun: false,
             kept: Retained::NOTHING,
             by_watchdog: false,
         }
@@ -78,9 +76,6 @@ impl Hardware for Board {
     }
     fn elapsed(&mut self) -> u32 {
         core::mem::replace(&mut self.elapsed, 300)
-    }
-    fn underrun(&mut self) -> bool {
-        core::mem::take(&mut self.underrun)
     }
     fn feed(&mut self) {
         self.events.push(Event::Feed);

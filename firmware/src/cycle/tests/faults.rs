@@ -165,23 +165,14 @@ fn a_torque_that_is_not_a_number() {
 }
 
 #[test]
-fn a_converter_that_had_no_code() {
-    let mut bench = running(&SPRING, 500);
-    bench.board.underrun = true;
-    bench.tick(500);
-    assert_stopped(&mut bench, Fault::Underrun);
-    assert_armed_again(&mut bench);
-}
-
-#[test]
 fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
     let mut board = Board::new();
     board.by_watchdog = true;
     let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
-    bench.board.underrun = true;
+    bench.board.passed = 2;
     bench.requests.arm();
     bench.tick(0);
-    assert_eq!(bench.notices(), [Notice::NotArmed(Fault::Underrun)]);
+    assert_eq!(bench.notices(), [Notice::NotArmed(Fault::MissedTick { missed: 1, tolerated: 0 })]);
     bench.stand(0, 20);
     assert_armed_again(&mut bench);
 }

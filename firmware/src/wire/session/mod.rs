@@ -241,13 +241,15 @@ where
     }
 
     fn board(&self) -> Board {
-        let transducers = &self.program.transducers;
+        let Program { transducers, rendering, .. } = &self.program;
+        let period = self.program.scene.timing.period;
         Board {
-            period: self.program.scene.timing.period,
+            period,
             timer_counts: self.facts.timer_counts,
             counts_per_turn: transducers.counts_per_turn,
             full_scale_torque: transducers.full_scale_torque,
             energy_step: transducers.energy_unit(),
+            longest_gap: cycle::longest_gap(rendering, period),
         }
     }
 

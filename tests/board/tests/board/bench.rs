@@ -7,7 +7,7 @@ use std::thread;
 
 use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
-use analysis::program::NAMES;
+use analysis::program::Program;
 use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
 use firmware::dac::DacCode;
 use firmware::wire::message::{
@@ -45,9 +45,10 @@ pub fn program(chip: &'static Chip, name: &'static str) -> &'static PathBuf {
         let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
         let build = |chip: &'static Chip| {
             let board = Board::find(chip.name).unwrap();
-            let built = toolchain.build_for(board, NAMES, NumberFormat::F32);
+            let names: Vec<_> = Program::every().map(|program| program.name).collect();
+            let built = toolchain.build_for(board, &names, NumberFormat::F32);
             let built = built.unwrap_or_else(|error| panic!("{error}"));
-            NAMES.iter().zip(built).map(move |(name, built)| ((chip.name, *name), built.path))
+            names.into_iter().zip(built).map(move |(name, built)| ((chip.name, name), built.path))
         };
         Chip::ALL.into_iter().flat_map(build).collect()
     });

@@ -91,6 +91,7 @@ where
     samples[..SAMPLES as usize].iter().map(|sample| host.tick(sample.count).0).collect()
 }
 
-fn width(chip: &Chip) -> CounterWidth {
+/// Of the counter of a chip's encoder.
+pub fn width(chip: &Chip) -> CounterWidth {
     if chip.counter == 16 { CounterWidth::Bits16 } else { CounterWidth::Bits32 }
 }

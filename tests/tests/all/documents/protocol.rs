@@ -110,9 +110,9 @@ fn parameters_have_the_names_and_units_of_the_program() {
     }
 }
 
-/// All faults with their codes.
+/// All faults with their codes, of which one is left out.
 pub fn faults() -> Vec<(u32, Fault)> {
-    (1..).map_while(|code| Some((code, Fault::decode(code, [1, 2])?))).collect()
+    (1..100).filter_map(|code| Some((code, Fault::decode(code, [1, 2])?))).collect()
 }
 
 #[test]

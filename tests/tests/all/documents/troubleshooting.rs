@@ -7,14 +7,13 @@ use super::{read, regex, sources};
 const DOCUMENT: &str = "firmware/TROUBLESHOOTING.md";
 
 /// The kinds of refusals, and where they are.
-const KINDS: [(&str, &str); 8] = [
+const KINDS: [(&str, &str); 7] = [
     ("Rejection", "firmware/src/certificate/rejection.rs"),
     ("Doubt", "firmware/src/passivity/poles.rs"),
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
     ("BuildError", "firmware/src/servo/build_error.rs"),
     ("TuningError", "firmware/src/tuning/error.rs"),
     ("Refusal", "firmware/src/wire/session/owed.rs"),
-    ("StartError", "firmware/src/board/mod.rs"),
     ("LinkError", "analysis/src/link/error.rs"),
 ];
 

@@ -1,0 +1,43 @@
+//! A spring that pushes only while its host looks on, and that takes back what its lateness gives: the
+//! options of a program, on top of a scene.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod device;
+
+pub use device::TRANSDUCERS;
+use firmware::certificate::Certified;
+use firmware::cycle::{LinkPolicy, Options};
+use firmware::environment::DelayedSpring;
+use firmware::scene::{Coupling, Scene, Timing};
+use firmware::servo::RenderingOptions;
+
+/// What the hand feels.
+pub type Environment = DelayedSpring<1>;
+
+/// The scene: half as stiff as the device allows, which leaves room for damping.
+pub const SCENE: Scene<Environment> = Scene {
+    device: device::DEVICE,
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: DelayedSpring { stiffness: 14.0 },
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+pub type Fixed = fixed::types::I8F24;
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: Fixed,
+    // Damping while the motor has put more energy into the hand than came back. More than the scene
+    // leaves room for does not compile.
+    rendering: RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT },
+    // A second without a word from the host, and the torque fades out.
+    options: Options { link: LinkPolicy::Release, ..Options::DEFAULT },
+}

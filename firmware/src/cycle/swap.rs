@@ -1,0 +1,38 @@
+//! How a set takes the place of the running one while somebody may hold the device, and for how long
+//! that takes the torque away.
+//!
+//! The clamp closes, the new set starts at rest where the device is, runs shut for a few ticks, and its
+//! clamp opens. No part of this is safe because of the time that it takes. A limit that moves, however
+//! fast, is in the certificate of either set ([`certificate::timed`](crate::certificate::Timed)): one
+//! that falls takes energy away, and one that rises puts in, once, what the environment stores at its
+//! depth. In between there is no torque, and the new set remembers nothing but a device that stood where
+//! it is, which is a motion that it could have seen.
+//!
+//! So the gap is as short as its edges may be felt. Without a wall a hand that leans on it falls on, and
+//! the deeper it is when the clamp opens, the more that puts in: long ramps are the worse ones. But a
+//! torque that comes within a tick is a blow. Hence a tenth of the time in which an armed clamp opens,
+//! which has no wall to keep up and may take its time: a swap while it opens, or that ends in being
+//! disarmed, goes at that speed.
+
+use crate::environment::MAX_DELAY;
+use crate::servo::RenderingOptions;
+
+/// Steps of the clamp a tick where it opens after arming, or closes for good.
+pub(super) const ARMING: u32 = 1;
+/// Steps of the clamp a tick for a swap.
+pub(super) const SWAPPING: u32 = 10;
+
+/// Ticks that a new set runs without torque before its clamp opens. It starts at rest where the device
+/// is, whatever it remembers for however long; after these ticks its delay, and the velocity that is
+/// delayed with it, are of how the device moves now.
+pub(super) const SETTLING: u32 = MAX_DELAY as u32 + 2;
+
+/// The longest time in s for which a swap keeps a running servo, whose `period` is in s, from giving the
+/// torque that its scene asks for.
+pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
+    let ramp = options.fade / period / f64::from(SWAPPING);
+    // A ramp ends with a part of a step, the number format's rounding adds one, and the tick in which
+    // it begins and the one in which it is seen to be shut are no part of it. The cast rounds down.
+    let ticks = 2 * (ramp as u32).saturating_add(2);
+    f64::from(ticks.saturating_add(SETTLING + 2)) * period
+}

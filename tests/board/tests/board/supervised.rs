@@ -1,0 +1,102 @@
+//! A program's options, on the board: a host that has to be heard, and damping that is injected.
+
+use analysis::program::{SUPERVISED, supervised_spring};
+use firmware::boot::Program;
+use firmware::cycle::{Options, State};
+use firmware::fault::Fault;
+use firmware::servo::{Latched, RenderingOptions, Transducers};
+use firmware::wire::message::{FaultCode, Outcome};
+use tests::replica::Replica;
+use virtual_board::board::Event;
+use virtual_board::chip::Chip;
+use virtual_board::device::Still;
+use virtual_board::peripheral::pins::Level;
+
+use crate::bench::{Bench, MID_SCALE, on_both};
+use crate::device::{InHand, Sample};
+use crate::scenes::width;
+
+/// Samples of silence after which the host counts as lost.
+const SILENCE: u64 = 1000;
+/// Samples in which the clamp opens or closes, and a few for what begins and ends there.
+const FADING: u64 = 110;
+/// Samples between two words to a board that is looked after.
+const NOW_AND_THEN: u64 = 200;
+
+#[test]
+fn a_host_that_falls_silent_lets_the_device_go() {
+    on_both(|chip| {
+        let mut bench = Bench::boot(chip, SUPERVISED.name, Still);
+        // Beside the spring's rest, so that it pushes.
+        bench.pins().turns.push_back(300);
+        for _ in 0..15 {
+            bench.run(NOW_AND_THEN);
+            assert_eq!(bench.status().state, State::Running, "{}", chip.name);
+        }
+        let heard = bench.pins().samples.len();
+        assert_ne!(bench.machine.board().torque(), Some(MID_SCALE), "{}", chip.name);
+        bench.run(SILENCE + FADING);
+        check_release(&bench, chip, heard);
+        assert_eq!(bench.machine.resets(), [], "{}", chip.name);
+        // The word by which it is asked is the one that was missing, and nothing starts by itself.
+        let status = bench.status();
+        let lost = Fault::LinkLost { allowed: SILENCE as u32 };
+        assert_eq!(status.fault.and_then(FaultCode::fault), Some(lost), "{}", chip.name);
+        assert_eq!(status.state, State::Faulted, "{}", chip.name);
+        assert_eq!(bench.arm(), Outcome::Done, "{}", chip.name);
+        bench.run(FADING);
+        assert_eq!(bench.status().state, State::Running, "{}", chip.name);
+    });
+}
+
+/// The amplifier went off after the silence and the fading, and the torque went step by step before.
+fn check_release(bench: &Bench, chip: &Chip, heard: usize) {
+    let pins = bench.pins();
+    let off = pins.samples.iter().skip(heard).position(|sample| !sample.amplifier);
+    let off = off.unwrap_or_else(|| panic!("{}: it stays on", chip.name)) as u64;
+    // The spring's torque is less than the limit, and is met on the way down.
+    assert!((SILENCE..SILENCE + FADING).contains(&(off + 5)), "{}: {off} samples", chip.name);
+    let code = |sample: &Sample| i32::from(sample.code.unwrap_or(MID_SCALE));
+    let codes: Vec<_> = pins.samples[heard..].iter().map(code).collect();
+    let largest = codes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).max();
+    assert!(largest <= Some(11), "{}: a step of {largest:?} codes", chip.name);
+    let last = bench.events().iter().rev().find(|(_, e)| matches!(e, Event::Amplifier(_)));
+    assert!(last.is_some_and(|&(_, event)| event != Event::Amplifier(Level::High)));
+}
+
+/// The same counts on the host, with and without the damping.
+#[test]
+fn damping_is_injected_where_there_is_a_deficit() {
+    on_both(|chip| {
+        let mut bench = Bench::boot(chip, SUPERVISED.name, InHand::of(&SUPERVISED));
+        let mut worst = 0;
+        for _ in 0..15 {
+            bench.run(NOW_AND_THEN);
+            worst = bench.status().worst_deficit;
+        }
+        assert!(worst > 0, "{}: no deficit", chip.name);
+        let samples = &bench.pins().samples;
+        let given: Vec<_> = samples[2..].iter().map(|sample| sample.code.unwrap()).collect();
+        let options = [supervised_spring::PROGRAM.rendering, RenderingOptions::DEFAULT];
+        let [injected, watched] = options.map(|rendering| {
+            let mut codes = on_the_host(chip, rendering, samples);
+            codes.truncate(given.len());
+            codes
+        });
+        assert!(given == injected, "{}: other codes than the host's", chip.name);
+        let differ = given.iter().zip(&watched).filter(|(given, watched)| given != watched).count();
+        assert!(differ > 50, "{}: only {differ} codes of {}", chip.name, given.len());
+    });
+}
+
+/// The codes of the same cycle on the host, which nobody has to talk to.
+fn on_the_host(chip: &Chip, rendering: RenderingOptions, samples: &[Sample]) -> Vec<u16> {
+    let program = supervised_spring::PROGRAM;
+    let mut host = Replica::<_, Latched>::boot(Program {
+        transducers: Transducers { counter: width(chip), ..program.transducers },
+        rendering,
+        options: Options::DEFAULT,
+        ..program
+    });
+    samples.iter().map(|sample| host.tick(sample.count).0).collect()
+}

@@ -1,0 +1,43 @@
+//! A knob with a detent, by somebody who has a board and the firmware's library.
+#![no_std]
+#![no_main]
+
+use firmware::certificate::Certified;
+use firmware::cycle::{LinkPolicy, Options};
+use firmware::encoder::CounterWidth;
+use firmware::environment::DamperWall;
+use firmware::number::fixed::types::I8F24;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+/// A detent, as late as the board's torque.
+pub type Detent = DamperWall<1>;
+
+/// The scene.
+pub const SCENE: Scene<Detent> = Scene {
+    device: Device { inertia: 1e-5, damping: 0.01, passivity: None },
+    timing: Timing { period: 0.0005, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: DamperWall { stiffness: 12.0, damping: 0.004 },
+    torque_limit: None,
+};
+
+/// Its certificate.
+pub const CERTIFIED: Certified<Scene<Detent>> = SCENE.certified();
+
+/// The knob's encoder and motor.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 10_000.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 0.5,
+    largest_speed: Transducers::NO_HAND_IS_FASTER,
+};
+
+firmware::scene_program! {
+    scene: SCENE: Detent,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: I8F24,
+    options: Options { link: LinkPolicy::Hold, ..Options::DEFAULT },
+}
