@@ -6,11 +6,15 @@
 //! ```
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
-//! takes one bin of each, [`fit`] draws the conclusions. [`rig`] simulates a device that is measured
-//! so, with all that spoils a measurement, and [`measurement`] has the emulated board measure it.
+//! takes one bin of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor
+//! did not give the torques. [`port`] records what a board measures; [`rig`] simulates a device that is
+//! measured so, with all that spoils a measurement, and [`measurement`] has the emulated board measure
+//! it.
 
+pub mod clipping;
 pub mod fit;
 pub mod measurement;
+pub mod port;
 pub mod record;
 pub mod response;
 pub mod rig;
@@ -36,6 +40,22 @@ pub enum IdentifyError {
         step::LEAST_PERIODS
     )]
     NoSteps,
+    /// The device felt another torque than the record says.
+    #[error(
+        "the sine of {amplitude:.3} N m at {frequency:.4} Hz moved the device by a torque with {:.1} % \
+         of harmonics that were not commanded: the amplifier clips there, at its limit of current or \
+         of voltage. Lower the amplitude of this tone and of those above it \
+         (firmware/src/bin/identify.rs), or raise the amplifier's limit, and measure again",
+        100.0 * .part
+    )]
+    Clipped {
+        /// Frequency in Hz.
+        frequency: f64,
+        /// Amplitude of the command in N m.
+        amplitude: f64,
+        /// The largest harmonic as a part of it.
+        part: f64,
+    },
     /// The fit has more unknowns than equations, or the frequencies are the same.
     #[error(
         "{usable} of {found} sines can be used; a fit of inertia, damping and skew needs at least \
@@ -59,7 +79,9 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
     }
     let responses: Vec<_> =
         steps.iter().filter_map(|step| response::single_bin(record, step, correction)).collect();
-    fit::identify(record.period, steps.len(), responses)
+    let found = fit::identify(record.period, steps.len(), responses)?;
+    clipping::check(record, &steps, correction, &found)?;
+    Ok(found)
 }
 
 #[cfg(test)]

@@ -8,3 +8,4 @@ mod transport;
 pub use address::{Address, AddressError};
 pub use connection::{Link, Message};
 pub use error::LinkError;
+pub(crate) use transport::{Transport, is_timeout, open};
