@@ -73,7 +73,8 @@ mod tests {
     use crate::encoder::CounterWidth;
 
     const TRANSDUCERS: Transducers = Transducers {
-        counts_per_turn: 1000.0 * TAU,
+        // A thousand counts in a rad, and a little more, so that no limit is a whole number of them.
+        counts_per_turn: 1000.5 * TAU,
         counter: CounterWidth::Bits16,
         full_scale_torque: 2.0,
         largest_speed: 100.0,

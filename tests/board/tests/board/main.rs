@@ -12,4 +12,5 @@ mod interrupts;
 mod scenes;
 mod start;
 mod stub;
+mod sweep;
 mod timing;

@@ -115,3 +115,22 @@ fn a_vesc_holds_its_power_on_and_its_power_stage_off() {
     bench.run(200);
     held(&bench);
 }
+
+/// The longest filter, of those in the reference manuals' table, that is a quarter of a count's time.
+#[test]
+fn the_encoders_inputs_are_filtered_as_its_edges_allow_and_pulled_where_they_bear_it() {
+    /// Timer clocks by the setting ICxF.
+    const CLOCKS: [u32; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
+    let count = std::f64::consts::TAU / 61_440.0 / 100.0;
+    on_both(|chip| {
+        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        bench.run(3);
+        let board = bench.machine.board();
+        let clock = (chip.core / board.clock.timer_divider()) as f64;
+        let fits = |&clocks: &u32| f64::from(clocks) / clock <= count / 4.0;
+        let longest = CLOCKS.iter().rposition(fits).unwrap() as u32;
+        assert_eq!(board.encoder.filters(), [longest; 2], "{}", chip.name);
+        // The F405's pins bear the 5 V of their connector only where the chip does not pull.
+        assert_eq!(board.pulls_encoder(), chip.name == "nucleo-g474re", "{}", chip.name);
+    });
+}
