@@ -22,6 +22,7 @@ pub mod step;
 
 use thiserror::Error;
 
+use crate::quantity::significant;
 use crate::table::TableError;
 
 pub use fit::{Disk, Estimate, Identification};
@@ -42,10 +43,12 @@ pub enum IdentifyError {
     NoSteps,
     /// The device felt another torque than the record says.
     #[error(
-        "the sine of {amplitude:.3} N m at {frequency:.4} Hz moved the device by a torque with {:.1} % \
+        "the sine of {} N m at {} Hz moved the device by a torque with {:.1} % \
          of harmonics that were not commanded: the amplifier clips there, at its limit of current or \
          of voltage. Lower the amplitude of this tone and of those above it \
          (firmware/src/bin/identify.rs), or raise the amplifier's limit, and measure again",
+        significant(*.amplitude, 3),
+        significant(*.frequency, 3),
         100.0 * .part
     )]
     Clipped {

@@ -152,7 +152,7 @@ fn every_end_before_the_last_is_named_and_what_there_is_is_kept() {
 #[test]
 fn a_torque_that_is_cut_off_is_refused() {
     let (sentence, record) = Board { clips_at: Some(1.4), ..Board::default() }.complaint();
-    for words in ["the sine of 1.600 N m at 64 Hz", "the amplifier clips", "Lower the amplitude"] {
+    for words in ["the sine of 1.6 N m at 64 Hz", "the amplifier clips", "Lower the amplitude"] {
         assert!(sentence.contains(words), "{sentence}");
     }
     assert!(record.is_some());

@@ -144,6 +144,11 @@ macro_rules! sweep_program {
         pub const GUARD: $crate::excitation::Guard =
             $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
 
+        // On every target, also where a simulated device needs no limits.
+        const _: () = {
+            let _ = GUARD;
+        };
+
         /// Prints the plan.
         #[cfg(not(target_os = "none"))]
         pub fn main() {
