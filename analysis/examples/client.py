@@ -227,7 +227,7 @@ class Board:
     def stream(self, ticks, every):
         """So many ticks with angle in rad and the motor's torque in N m."""
         self.write(frame(bytes([STREAM, 1]) + varint(every)))
-        scale = self.facts["full_scale_torque"] / 2047
+        scale = self.facts["full_scale_torque"] / 1791
         turn = 6.283185307179586 / self.facts["counts_per_turn"]
         while ticks > 0:
             batch = self.receive("telemetry", time.monotonic() + 3)

@@ -29,9 +29,10 @@ impl DacCode {
     pub const MID_SCALE: Self = Self(2048);
     /// The largest code.
     pub const MAX: Self = Self(4095);
-    /// Codes between mid-scale and full torque. The 2048th code below mid-scale has no counterpart
-    /// above it and is left unused, so that both directions are equally strong.
-    pub const CODES_TO_FULL_SCALE: u16 = 2047;
+    /// Codes between mid-scale and full torque, both ways: what every board's output is linear over.
+    /// One number for all of them, the emulated board and the host, so that all compute the same
+    /// codes; a board whose [`OutputRange`] has fewer does not compile.
+    pub const CODES_TO_FULL_SCALE: u16 = 1791;
 
     /// Takes a code.
     pub const fn new(code: u16) -> Result<Self, CodeOutOfRange> {
@@ -53,6 +54,37 @@ impl DacCode {
     /// Codes above mid-scale: the sign is that of the motor torque.
     pub const fn offset(self) -> i16 {
         self.0.cast_signed() - Self::MID_SCALE.0.cast_signed()
+    }
+}
+
+/// What a converter's output is good for: near its rails the output buffer saturates, where a torque
+/// would be less than its code says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputRange {
+    /// The least that the converter's supply and reference can be, in V.
+    pub supply: f64,
+    /// What the output cannot come nearer to either rail than, in V.
+    pub headroom: f64,
+}
+
+impl OutputRange {
+    /// Codes that are linear on both sides of mid-scale.
+    ///
+    /// ```
+    /// use firmware::dac::OutputRange;
+    /// assert_eq!(OutputRange { supply: 3.3, headroom: 0.2 }.codes_each_way(), 1798);
+    /// assert_eq!(OutputRange { supply: 3.3, headroom: 0.0 }.codes_each_way(), 2047);
+    /// ```
+    pub const fn codes_each_way(&self) -> u16 {
+        let lost = self.headroom / self.supply * 4096.0;
+        // Above mid-scale there is one code less than below it.
+        let above = DacCode::MAX.0 - DacCode::MID_SCALE.0;
+        // Written so that NaN leaves none.
+        if !(lost >= 0.0 && lost <= above as f64) {
+            return 0;
+        }
+        // The cast rounds down what is positive.
+        (above as f64 - lost) as u16
     }
 }
 
@@ -108,5 +140,19 @@ mod tests {
         assert_eq!(DacCode::MID_SCALE.offset(), 0);
         assert_eq!(DacCode::MAX.offset(), 2047);
         assert_eq!(DacCode(1).offset(), -2047);
+    }
+
+    #[test]
+    fn full_torque_is_within_what_a_buffered_output_gives_at_its_lowest_supply() {
+        let buffered = |supply| OutputRange { supply, headroom: 0.2 }.codes_each_way();
+        assert_eq!(buffered(3.2), DacCode::CODES_TO_FULL_SCALE);
+        // In volts, by the manuals' formula: code over 4096 (RM0440) or 4095 (RM0090) of the supply.
+        let full = f64::from(DacCode::CODES_TO_FULL_SCALE);
+        for steps in [4095.0, 4096.0] {
+            let volts = |offset: f64| 3.2 * (2048.0 + offset) / steps;
+            assert!(volts(-full) >= 0.2 && volts(full) <= 3.0, "{steps}");
+        }
+        assert_eq!(buffered(0.0), 0);
+        assert_eq!(buffered(f64::NAN), 0);
     }
 }

@@ -36,6 +36,7 @@ use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
+use crate::identify::port::PortError;
 use crate::link::{Address, LinkError};
 use crate::quantity::significant;
 use crate::recorded::RecordedError;
@@ -156,6 +157,9 @@ pub enum CommandError {
     /// A record that identifies nothing.
     #[error(transparent)]
     Identify(#[from] IdentifyError),
+    /// A board whose sweep gives no record.
+    #[error(transparent)]
+    Sweep(#[from] PortError),
     /// No program and no file of that name.
     #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
     NoScene {

@@ -186,11 +186,7 @@ fn rational(section: &mut Section<'_>) -> Read<Rational> {
 
 /// Descending coefficients without leading zeros; a denominator must have one that is not zero. And how
 /// many of the zeros at its end, up to `most`, were too many for the degree and taken off.
-fn polynomial(
-    section: &mut Section<'_>,
-    key: &Key,
-    most: usize,
-) -> Read<(Coefficients, usize)> {
+fn polynomial(section: &mut Section<'_>, key: &Key, most: usize) -> Read<(Coefficients, usize)> {
     let Some(Found { mut value, span }) = section.list(key)? else {
         return Err(section.missing(key));
     };

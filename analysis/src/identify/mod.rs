@@ -6,11 +6,15 @@
 //! ```
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
-//! takes one bin of each, [`fit`] draws the conclusions. [`rig`] simulates a device that is measured
-//! so, with all that spoils a measurement, and [`measurement`] has the emulated board measure it.
+//! takes one bin of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor
+//! did not give the torques. [`port`] records what a board measures; [`rig`] simulates a device that is
+//! measured so, with all that spoils a measurement, and [`measurement`] has the emulated board measure
+//! it.
 
+pub mod clipping;
 pub mod fit;
 pub mod measurement;
+pub mod port;
 pub mod record;
 pub mod response;
 pub mod rig;
@@ -18,6 +22,7 @@ pub mod step;
 
 use thiserror::Error;
 
+use crate::quantity::significant;
 use crate::table::TableError;
 
 pub use fit::{Disk, Estimate, Identification};
@@ -37,6 +42,24 @@ pub enum IdentifyError {
         step::LEAST_PERIODS, reasons(.0)
     )]
     NoSteps(Vec<LeftOut>),
+    /// The device felt another torque than the record says.
+    #[error(
+        "the sine of {} N m at {} Hz moved the device by a torque with {:.1} % \
+         of harmonics that were not commanded: the amplifier clips there, at its limit of current or \
+         of voltage. Lower the amplitude of this tone and of those above it \
+         (firmware/src/bin/identify.rs), or raise the amplifier's limit, and measure again",
+        significant(*.amplitude, 3),
+        significant(*.frequency, 3),
+        100.0 * .part
+    )]
+    Clipped {
+        /// Frequency in Hz.
+        frequency: f64,
+        /// Amplitude of the command in N m.
+        amplitude: f64,
+        /// The largest harmonic as a part of it.
+        part: f64,
+    },
     /// The fit has more unknowns than equations, or the frequencies are the same.
     #[error(
         "{usable} of {found} sines can be used; a fit of inertia, damping and skew needs at least \
@@ -77,7 +100,9 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
             None => left_out.push(LeftOut::new(step.omega, "it has no torque, or nothing moves")),
         }
     }
-    fit::identify(record.period, steps.len(), responses, left_out)
+    let found = fit::identify(record.period, steps.len(), responses, left_out)?;
+    clipping::check(record, &steps, correction, &found)?;
+    Ok(found)
 }
 
 #[cfg(test)]

@@ -11,3 +11,4 @@ pub use address::{Address, AddressError};
 pub(crate) use connection::REQUEST;
 pub use connection::{Link, Message};
 pub use error::LinkError;
+pub(crate) use transport::{Transport, is_timeout, open};

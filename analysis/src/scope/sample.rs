@@ -101,7 +101,7 @@ mod tests {
         period: 0.001,
         timer_counts: 8000,
         counts_per_turn: 4000.0,
-        full_scale_torque: 2.047,
+        full_scale_torque: 1.791,
         energy_step: 1e-6,
         longest_gap: 0.036,
     };

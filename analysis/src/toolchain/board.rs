@@ -9,7 +9,7 @@ pub enum Board {
     NucleoG474re,
     /// B-G431B-ESC1 and boards like it.
     BG431bEsc1,
-    /// The VESC class, with an STM32F405.
+    /// The VESC 6 MK3 or MK4, with an STM32F405.
     Stm32f405,
 }
 

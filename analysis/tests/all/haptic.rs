@@ -361,7 +361,7 @@ fn a_file_says_what_the_converter_gives() {
     assert_eq!(rows.len(), 1000);
     for row in &rows {
         let (torque, code): (f64, f64) = (row[3].parse().unwrap(), row[4].parse().unwrap());
-        assert!((2048.0 - torque * 2047.0 / 2.0 - code).abs() < 0.51, "{row:?}");
+        assert!((2048.0 - torque * 1791.0 / 2.0 - code).abs() < 0.51, "{row:?}");
     }
     assert!(rows.iter().any(|row| row[4].parse::<f64>().unwrap() < 2000.0), "it pushes");
 }
@@ -446,9 +446,9 @@ fn friction_of_the_device_ends_a_hum() {
         let rest = &format["rest"];
         let found = rest["encoder"].as_f64().unwrap();
         assert!((found / encoder - 1.0).abs() < 0.02, "{format}");
-        // A code of 2 N m in 2047.
+        // A code of 2 N m in 1791.
         let converter = rest["converter"].as_f64().unwrap();
-        assert!((converter / (1.0 / 2047.0) - 1.0).abs() < 1e-3, "{format}");
+        assert!((converter / (1.0 / 1791.0) - 1.0).abs() < 1e-3, "{format}");
     }
     // What a coarse format rounds takes more friction than there is: it hums as if there were none.
     let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();

@@ -7,6 +7,8 @@ mod closed_loop;
 mod common;
 mod device_files;
 mod haptic;
+#[cfg(unix)]
+mod identify_port;
 mod identify_target;
 mod own_scene;
 mod pictures;

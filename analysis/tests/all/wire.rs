@@ -124,7 +124,7 @@ fn code(stiffness: f64) -> f64 {
     let transducers = damper_wall::TRANSDUCERS;
     let angle = f64::from(DEPTH) * std::f64::consts::TAU / transducers.counts_per_turn;
     let torque = (angle / (1.0 / stiffness + 1.0 / 44.0)).min(1.0);
-    2048.0 - torque * 2047.0 / transducers.full_scale_torque
+    2048.0 - torque * 1791.0 / transducers.full_scale_torque
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn scope_records_rows_and_ends_quietly() {
     assert_eq!(number(last, "count"), f64::from(DEPTH));
     assert!((number(last, "code") - code(22.0)).abs() <= 1.0);
     // The coupling torque: what the motor applies is its negative.
-    let torque = (2048.0 - number(last, "code")) / 2047.0 * 2.0;
+    let torque = (2048.0 - number(last, "code")) / 1791.0 * 2.0;
     assert!((number(last, "torque") - torque).abs() < 1e-12);
     assert!((number(last, "slack") - 0.001).abs() < 1e-12);
 }

@@ -152,7 +152,7 @@ fn code(stiffness: f64) -> f64 {
     let transducers = damper_wall::TRANSDUCERS;
     let angle = f64::from(DEPTH) * std::f64::consts::TAU / transducers.counts_per_turn;
     let torque = (angle / (1.0 / stiffness + 1.0 / 44.0)).min(1.0);
-    2048.0 - torque * 2047.0 / transducers.full_scale_torque
+    2048.0 - torque * 1791.0 / transducers.full_scale_torque
 }
 
 fn with(stiffness: f64, damping: f64) -> Scene<damper_wall::Environment> {

@@ -1,16 +1,21 @@
 //! Drives a device with sines of torque, open loop, so that the host can measure its inertia, its
 //! damping and its passivity (theory, section 3.3).
 //!
-//! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian.
+//! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian, or
+//! twice that to one side.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 mod device;
 
 pub use device::TRANSDUCERS;
-use firmware::excitation::{Sweep, Tone};
+use firmware::excitation::{MotionLimits, Sweep, Tone};
 
 /// Sampling period in s: that of the scenes which the device is to be certified for.
 pub const PERIOD: f64 = 0.001;
+
+/// How far and how fast the device may move, beyond which the sweep ends and the amplifier goes off:
+/// half as far again as the tones below move the device that they are made for, and faster by a fifth.
+pub const LIMITS: MotionLimits = MotionLimits { travel: 0.7, speed: 85.0 };
 
 /// The tones, up to a quarter of the sampling rate, for a device with 2e-5 kg m^2 and 0.02 N m s/rad
 /// or so: at low frequencies as much torque as makes a fifth of a radian, at high ones as much as
@@ -37,4 +42,4 @@ pub static SWEEP: Sweep<10> = Sweep::planned(
     ],
 );
 
-firmware::sweep_program!(SWEEP);
+firmware::sweep_program!(SWEEP, TRANSDUCERS, LIMITS);

@@ -1,14 +1,13 @@
-//! B-G431B-ESC1 and boards like it: STM32G431CB at 170 MHz.
+//! B-G431B-ESC1: STM32G431CB at 170 MHz.
 //!
 //! Facts of the chip are from its datasheet (DS12589) and reference manual (RM0440), facts of the
-//! board from its user manual (UM2516) and schematic.
+//! board from its user manual (UM2516, table 4) and the schematic of MB1419.
 //!
-//! The board's own power stage stays off: its gate drivers' inputs are left in reset's state. It is
+//! The board's own power stage stays off: all six inputs of its gate drivers are driven low. It is
 //! a speed controller and has no input for an analogue current amplifier; what this firmware needs of it
 //! is reachable, but both pins of the DAC have other purposes (see [`CONVERTER`]).
 
-use embassy_stm32::dac::DacChannel;
-use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
 use embassy_stm32::rcc::PllPreDiv;
 use embassy_stm32::time::Hertz;
@@ -18,8 +17,9 @@ use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::converter::Converter;
-use super::stm32::line::{Active, Line};
+use super::stm32::line::Line;
 use super::stm32::{Connected, clock_170, quadrature, serial};
+use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
 pub const NAME: &str = "b-g431b-esc1";
@@ -29,6 +29,10 @@ pub const CHIP: &[u8; 13] = b"STM32G431CBUx";
 /// The encoder: TIM4, the timer of PB6 and PB7, which are the pads A+ and B+ of J8. It has 16 bits;
 /// the chip's only quadrature timer with 32, TIM2, has no pad with both its inputs.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM4;
+/// What TIM4 counts and samples its inputs with, in Hz.
+pub const ENCODER_CLOCK: f64 = 170e6;
+/// The pads bear 5 V where the chip does not pull (DS12589), and the board pulls them up by 10 kΩ.
+pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that tells how late the servo is: TIM2, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
 /// The converter: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
@@ -36,11 +40,15 @@ pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
 /// nothing is connected to the board's motor output 1. Channel 2's pin PA5 is in the middle of a
 /// current sense amplifier.
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// What the output buffer drives: 0.2 V from either rail (DS12589), at the lowest that the
+/// board's 3.3 V can be, three per cent below.
+pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
-/// The amplifier: PA15, which is the pad PWM of J3. The chip pulls it up in reset, where it belongs
-/// to the debug port, so low is on.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOA, pin: 15, active: Active::Low };
+/// The amplifier: PA15, which is the pad PWM of J3 and the only one that is neither the encoder's nor
+/// the serial port's. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ:
+/// the resistor to ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
+pub const AMPLIFIER: Line = Line { port: pac::GPIOA, pin: 15 };
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
@@ -56,12 +64,22 @@ pub fn connect(chip: Peripherals) -> Connected {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
-        Output::new(chip.PA15, AMPLIFIER.off(), Speed::Low),
+        Output::new(chip.PA15, Level::Low, Speed::Low),
+        // The gate drivers, high sides and low sides of the phases U, V and W (L6387, UM2516): low is
+        // off. In reset the chip leaves them to the drivers' own resistors to ground.
+        [
+            Output::new(chip.PA8, Level::Low, Speed::Low),
+            Output::new(chip.PA9, Level::Low, Speed::Low),
+            Output::new(chip.PA10, Level::Low, Speed::Low),
+            Output::new(chip.PC13, Level::Low, Speed::Low),
+            Output::new(chip.PA12, Level::Low, Speed::Low),
+            Output::new(chip.PB15, Level::Low, Speed::Low),
+        ],
         Qei::new(chip.TIM4, chip.PB6, chip.PB7, quadrature::config()),
-        DacChannel::new_blocking(chip.DAC1, chip.PA4),
         Timer::new(chip.TIM2),
         Timer::new(chip.TIM6),
     ));
+    CONVERTER.connect(chip.DAC1, chip.PA4);
     Connected {
         // The virtual serial port of the debug probe that the board comes with; without the probe,
         // the pads TX and RX of J3.

@@ -6,6 +6,7 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod input_filter;
 pub mod period;
 pub mod play;
 pub mod question;
@@ -153,10 +154,20 @@ macro_rules! or_default {
     };
 }
 
-/// Makes a program of a sweep: on a board it plays it, on the host it prints the plan.
+/// Makes a program of a sweep, of the transducers that it was planned for, and of the motion's
+/// limits: on a board it plays the sweep within them, on the host it prints the plan.
 #[macro_export]
 macro_rules! sweep_program {
-    ($sweep:ident) => {
+    ($sweep:ident, $transducers:ident, $limits:ident) => {
+        /// The limits in counts: those that stop nothing do not compile.
+        pub const GUARD: $crate::excitation::Guard =
+            $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
+
+        // On every target, also where a simulated device needs no limits.
+        const _: () = {
+            let _ = GUARD;
+        };
+
         /// Prints the plan.
         #[cfg(not(target_os = "none"))]
         pub fn main() {
@@ -164,7 +175,7 @@ macro_rules! sweep_program {
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_sweep!($sweep);
+        $crate::board_sweep!($sweep, $transducers, $limits);
     };
 }
 

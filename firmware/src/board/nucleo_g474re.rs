@@ -3,8 +3,7 @@
 //! Facts of the chip are from its datasheet (DS12288) and reference manual (RM0440), facts of the
 //! board from its user manual (UM2505).
 
-use embassy_stm32::dac::DacChannel;
-use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
 use embassy_stm32::rcc::PllPreDiv;
 use embassy_stm32::time::Hertz;
@@ -14,8 +13,9 @@ use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::converter::Converter;
-use super::stm32::line::{Active, Line};
+use super::stm32::line::Line;
 use super::stm32::{Connected, clock_170, quadrature, serial};
+use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
 pub const NAME: &str = "nucleo-g474re";
@@ -24,16 +24,24 @@ pub const CHIP: &[u8; 13] = b"STM32G474RETx";
 
 /// The encoder: TIM2, one of the chip's two timers with 32 bits and quadrature inputs.
 pub const ENCODER: pac::timer::TimGp32 = pac::TIM2;
+/// What TIM2 counts and samples its inputs with, in Hz.
+pub const ENCODER_CLOCK: f64 = 170e6;
+/// PA0 and PA1 bear no more than 3.6 V (DS12288), so that no encoder with 5 V can be there: pulled up,
+/// for open collectors, and so that one that is not plugged in counts no noise.
+pub const ENCODER_PULL: Pull = Pull::Up;
 /// The clock that tells how late the servo is: TIM5, the other one with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
 /// The converter: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
 /// drives the board's LED.
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// What the output buffer drives: 0.2 V from either rail (DS12288), at the lowest that the
+/// board's 3.3 V can be, three per cent below.
+pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the G4's DAC1 (RM0440, table of its interconnections).
 pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 10, active: Active::High };
+pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 10 };
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
@@ -49,13 +57,13 @@ pub fn connect(chip: Peripherals) -> Connected {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
-        Output::new(chip.PB10, AMPLIFIER.off(), Speed::Low),
+        Output::new(chip.PB10, Level::Low, Speed::Low),
         // A0 and A1 on the Arduino header.
         Qei::new(chip.TIM2, chip.PA0, chip.PA1, quadrature::config()),
-        DacChannel::new_blocking(chip.DAC1, chip.PA4),
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
     ));
+    CONVERTER.connect(chip.DAC1, chip.PA4);
     Connected {
         // The virtual serial port of the board's debug probe.
         serial: serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts),

@@ -1,13 +1,14 @@
-//! Boards of the VESC class, up to version 6: STM32F405RG at 168 MHz.
+//! VESC 6 MK3 and MK4: STM32F405RG at 168 MHz. No other VESC: on each of the others one of these pins
+//! is something else (`boards.md` says which).
 //!
 //! Facts of the chip are from its datasheet (DS8626) and reference manual (RM0090), facts of the
-//! boards from their published schematics.
+//! board from the header of its published firmware: `hwconf/trampa/vesc6/hw_60_core.h` of
+//! `vedderb/bldc`, with `HW60_IS_MK3` or `HW60_IS_MK4`.
 //!
-//! The board's own power stage stays off: its gate driver is never enabled. These boards are motor
-//! controllers and have no input for an analogue current amplifier; the firmware uses their pin headers.
+//! The board's own power stage stays off: its gate driver is held disabled. The board is a motor
+//! controller and has no input for an analogue current amplifier; the firmware uses its pin headers.
 
-use embassy_stm32::dac::DacChannel;
-use embassy_stm32::gpio::{Output, Speed};
+use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART3;
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
@@ -19,8 +20,9 @@ use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::converter::Converter;
-use super::stm32::line::{Active, Line};
+use super::stm32::line::Line;
 use super::stm32::{Connected, quadrature, serial};
+use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
 pub const NAME: &str = "stm32f405";
@@ -30,16 +32,23 @@ pub const CHIP: &[u8; 13] = b"STM32F405RGTx";
 /// The encoder: TIM3, the timer of PC6 and PC7, which are H1 and H2 of the hall sensors' connector.
 /// It has 16 bits; the inputs of the chip's timers with 32 are not on a connector.
 pub const ENCODER: pac::timer::TimGp16 = pac::TIM3;
+/// What TIM3 counts and samples its inputs with, in Hz.
+pub const ENCODER_CLOCK: f64 = 84e6;
+/// PC6 and PC7 bear 5 V where the chip does not pull (DS8626), and the connector supplies 5 V.
+pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that tells how late the servo is: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The converter: channel 1, whose pin PA4 is the chip select of the SPI header. Channel 2's pin PA5
-/// is the header's clock, and on some boards has a filter behind it.
+/// The converter: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
+/// Channel 2's pin PA5 is an analogue input of the communication header.
 pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+/// What the output buffer drives: 0.2 V from either rail (DS8626), at the lowest that the
+/// board's 3.3 V can be, three per cent below.
+pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 /// TIM6's update among the triggers of the F4's DAC (RM0090, DAC external triggers).
 pub const TIMER_TRIGGER: u8 = 0;
-/// The amplifier: PB6, the signal of the servo connector. It floats while the chip is in reset, so
+/// The amplifier: PB6, the signal of the servo connector (HW_ICU_PIN). It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 6, active: Active::High };
+pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 6 };
 
 bind_interrupts!(struct Interrupts {
     USART3 => BufferedInterruptHandler<USART3>;
@@ -70,12 +79,17 @@ pub fn connect(chip: Peripherals) -> Connected {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
-        Output::new(chip.PB6, AMPLIFIER.off(), Speed::Low),
+        // The board's power switch: high keeps the power on, once the button is let go
+        // (HW_SHUTDOWN_HOLD_ON). Before all else, as in the board's own firmware.
+        Output::new(chip.PC5, Level::High, Speed::Low),
+        // The gate driver's enable (ENABLE_GATE); low is off.
+        Output::new(chip.PB5, Level::Low, Speed::Low),
+        Output::new(chip.PB6, Level::Low, Speed::Low),
         Qei::new(chip.TIM3, chip.PC6, chip.PC7, quadrature::config()),
-        DacChannel::new_blocking(chip.DAC1, chip.PA4),
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
     ));
+    CONVERTER.connect(chip.DAC1, chip.PA4);
     Connected {
         // TX and RX of the communication header.
         serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),

@@ -213,7 +213,7 @@ fn let_go(injection: Option<f64>) -> (f64, EnergyMonitor) {
         let kept: f64 = latched / damping;
         angle += kept * PERIOD + (speed - kept) * (1.0 - decay) * inertia / damping;
         speed = kept + (speed - kept) * decay;
-        latched = f64::from(code.offset()) * 2.0 / 2047.0;
+        latched = f64::from(code.offset()) * 2.0 / 1791.0;
         if tick >= 2000 {
             largest = largest.max(angle.abs());
         }

@@ -32,16 +32,20 @@
 //! assert!(error.to_string().contains("an amplitude of 2.5 N m"));
 //! ```
 
+mod end;
 mod error;
 mod exciter;
+mod guard;
 pub mod sine;
 #[cfg(feature = "sines")]
 pub mod sines;
 
 use core::fmt;
 
+pub use end::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
 pub use error::SweepError;
 pub use exciter::{Excitation, Exciter};
+pub use guard::{Guard, MotionLimits};
 
 use crate::dac::DacCode;
 use crate::servo::Transducers;

@@ -25,7 +25,7 @@ fn each_tone_is_a_sine_over_whole_samples() {
     for (index, tone) in [LOW, HIGH].into_iter().enumerate() {
         let measured: Vec<_> = samples.iter().filter(|s| s.measured == Some(index)).collect();
         assert_eq!(measured.len(), [1500, 100][index]);
-        let peak = tone.amplitude / 2.0 * 2047.0;
+        let peak = tone.amplitude / 2.0 * 1791.0;
         for (sample, excitation) in measured.iter().enumerate() {
             let phase = core::f64::consts::TAU * tone.frequency * 1e-3 * sample as f64;
             let error = f64::from(excitation.code.offset()) - peak * phase.sin();

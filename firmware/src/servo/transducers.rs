@@ -16,7 +16,8 @@ pub struct Transducers {
     pub counts_per_turn: f64,
     /// Bits after which the counter wraps.
     pub counter: CounterWidth,
-    /// Torque of the motor on the device's axis in N m at the converter's largest code.
+    /// Torque of the motor on the device's axis in N m at the largest code that every board's
+    /// converter gives, [`DacCode::CODES_TO_FULL_SCALE`] from mid-scale.
     pub full_scale_torque: f64,
     /// The fastest in rad/s that the device can turn in any hand: a count that needs more speed
     /// than this is a broken encoder, and a fault.

@@ -100,7 +100,7 @@ pub struct Board {
     pub timer_counts: u32,
     /// Encoder counts a turn.
     pub counts_per_turn: f64,
-    /// Motor torque in N m at the converter's largest code.
+    /// Motor torque in N m at the codes of full scale.
     pub full_scale_torque: f64,
     /// One step of the energy monitor in J.
     pub energy_step: f64,

@@ -16,7 +16,7 @@ use firmware::encoder::RawCount;
 use firmware::scene::Scene;
 use firmware::servo::{Rendering, RenderingOptions};
 
-use super::{Environment, Failure, SCENE, TRANSDUCERS};
+use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
 
 /// The scene, as late as the board's converter.
 const TIMED: Timed<Scene<Environment>, Mode> = SCENE.certified().timed();
@@ -109,7 +109,7 @@ pub fn measure() -> Result<(), Failure> {
     const OPENING: u32 = 200;
     /// Ticks of a minute. Their sum fits 32 bits up to 70 000 cycles a tick.
     const MINUTE: u32 = 60_000;
-    let _ = connect();
+    let _ = connect(FILTER);
     // SAFETY: `connect` is through with the core's peripherals, and nobody else uses them.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();

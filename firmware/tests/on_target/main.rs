@@ -6,9 +6,10 @@
 
 mod cycles;
 
+use firmware::board::input_filter::InputFilter;
 use firmware::board::stm32::quadrature::Counter;
 use firmware::board::stm32::registers::Registers;
-use firmware::board::stm32::wiring::{CHIP, CONVERTER, ENCODER};
+use firmware::board::stm32::wiring::{CHIP, CONVERTER, ENCODER, ENCODER_CLOCK};
 use firmware::board::stm32::{begin, connect, period, width};
 use firmware::boot::Startup;
 use firmware::cycle::Hardware;
@@ -25,6 +26,9 @@ const TRANSDUCERS: Transducers = Transducers {
     full_scale_torque: 2.0,
     largest_speed: 100.0,
 };
+
+/// The filter of the encoder's inputs.
+const FILTER: InputFilter = InputFilter::of_encoder(&TRANSDUCERS, ENCODER_CLOCK);
 
 /// What the servo of these tests renders: the wall of the program `damper_wall`.
 type Environment = OneSided<DamperWall<1>>;
@@ -48,7 +52,7 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 
 /// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
-    let _ = connect();
+    let _ = connect(FILTER);
     let mut hardware = Registers::new(period(SCENE.timing.period));
     hardware.zero();
     begin(&mut hardware);
@@ -103,10 +107,13 @@ fn turn() -> Result<(), Failure> {
     }
 }
 
+/// Codes from mid-scale to full torque.
+const MOST: u16 = DacCode::CODES_TO_FULL_SCALE;
+
 /// A code appears at the update after the one that it was written behind, and not before.
 fn latch() -> Result<(), Failure> {
     let mut hardware = paced();
-    for code in [1, 1024, 2047, 2048, 3072, 4095, 2048] {
+    for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {
         next(&mut hardware);
         let before = CONVERTER.output();
         hardware.write(DacCode::new(code).map_err(|_| "no code")?);
@@ -126,7 +133,8 @@ fn latch() -> Result<(), Failure> {
 /// Levels to be measured at the torque pin.
 fn levels() -> Result<(), Failure> {
     let mut hardware = paced();
-    for (code, millivolts) in [(2048, 1650), (1, 1), (1024, 825), (3072, 2475), (4095, 3299)] {
+    for code in [2048, 2048 - MOST, 1024, 3072, 2048 + MOST] {
+        let millivolts = u32::from(code) * 3300 / 4096;
         defmt::info!("for 4 s: code {}, about {} mV with a supply of 3.3 V", code, millivolts);
         hardware.write(DacCode::new(code).map_err(|_| "no code")?);
         wait(&mut hardware, 4000);
@@ -138,7 +146,7 @@ fn levels() -> Result<(), Failure> {
 /// then the other. A spring can only push back where that holds.
 fn polarity() -> Result<(), Failure> {
     /// A fiftieth of full scale.
-    const LITTLE: u16 = DacCode::CODES_TO_FULL_SCALE / 50;
+    const LITTLE: u16 = MOST / 50;
     let (mut hardware, mut encoder) = (paced(), Follower::new());
     let enough = TRANSDUCERS.counts_per_turn as i64 / 500;
     for (sign, code) in [(1, 2048 + LITTLE), (-1, 2048 - LITTLE)] {

@@ -124,6 +124,17 @@ impl Board {
         self.ports[port].level(pin)
     }
 
+    /// Level that the program gives a pin.
+    pub fn level(&self, port: usize, pin: u32) -> Level {
+        self.ports[port].level(pin)
+    }
+
+    /// Whether the program has the chip pull an encoder's pin up or down.
+    pub fn pulls_encoder(&self) -> bool {
+        let (pins, _) = self.chip.encoder;
+        pins.iter().any(|&(port, pin)| self.ports[port].is_pulled(pin))
+    }
+
     /// What the torque's pin is driven with.
     pub fn torque(&self) -> Option<u16> {
         let (port, pin) = TORQUE;

@@ -79,7 +79,7 @@ pub struct Chip {
     pub map: &'static [Place],
     /// Bits of the encoder's counter.
     pub counter: u32,
-    /// The pin that switches the amplifier on, as port and number; high is on, on both boards.
+    /// The pin that switches the amplifier on, as port and number; high is on, on every board.
     pub amplifier: (usize, u32),
     /// The encoder's two pins and the alternate function that is its timer.
     pub encoder: ([(usize, u32); 2], u32),
@@ -181,7 +181,43 @@ pub static NUCLEO_G474RE: Chip = Chip {
     },
 };
 
-/// STM32F405RG on a board of the VESC class.
+/// STM32G431CB on a B-G431B-ESC1.
+pub static B_G431B_ESC1: Chip = Chip {
+    name: "b-g431b-esc1",
+    flash: 128 << 10,
+    ram: 22 << 10,
+    coupled: (10 << 10, true),
+    crystal: 8_000_000,
+    map: &[
+        place(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
+        place(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
+        place(0x4000_1000, "TIM6", Unit::Pacer, 0x58, 0x38, 4),
+        always(0x4000_3000, "IWDG", Unit::Watchdog),
+        place(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
+        place(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
+        place(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+        always(0x4002_1000, "RCC", Unit::Clock),
+        place(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
+        place(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
+        place(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
+        place(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
+        place(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
+        place(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
+        place(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
+        place(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
+        place(0x5000_0800, "DAC1", Unit::Converter, 0x4C, 0x2C, 16),
+        always(0xE004_2000, "DBGMCU", Unit::Debug),
+    ],
+    counter: 16,
+    amplifier: (0, 15),
+    // TIM4_CH1 and TIM4_CH2.
+    encoder: ([(1, 6), (1, 7)], 2),
+    // USART2_TX and USART2_RX.
+    serial: ([(1, 3), (1, 4)], 7),
+    ..NUCLEO_G474RE
+};
+
+/// STM32F405RG on a VESC 6 MK3 or MK4.
 pub static STM32F405: Chip = Chip {
     name: "stm32f405",
     flash: 1 << 20,
@@ -241,12 +277,12 @@ pub static NETDUINO_PLUS_2: Chip = Chip {
 };
 
 impl Chip {
-    /// All of them.
+    /// Those that every test runs on: one of each family.
     pub const ALL: [&'static Self; 2] = [&NUCLEO_G474RE, &STM32F405];
 
     /// The chip of the board of this name, where there is a virtual one.
     pub fn find(name: &str) -> Option<&'static Self> {
-        Self::ALL.into_iter().find(|chip| chip.name == name)
+        Self::ALL.into_iter().chain([&B_G431B_ESC1]).find(|chip| chip.name == name)
     }
 
     /// The unit at an address.

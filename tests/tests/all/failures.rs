@@ -228,7 +228,7 @@ fn walls_rest_below_the_limit_and_not_above_it() {
         }
         // What is to rest has the friction of section 8, and a converter's half step.
         let friction = 0.5 * 0.99 * report.limit * TAU / PADDLES.counts_per_turn
-            + 0.5 * PADDLES.full_scale_torque / 2047.0;
+            + 0.5 * PADDLES.full_scale_torque / 1791.0;
         for below in &wall.below {
             near(below.experiment.friction, friction, 1e-9);
         }

@@ -32,7 +32,7 @@ static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
 
 const MID_SCALE: u16 = 2048;
 /// Codes of the torque limit, 1 N m of 2 N m at full scale.
-const LIMIT: f64 = 1023.5;
+const LIMIT: f64 = 895.5;
 /// Ticks in which the clamp opens.
 const FADING: f64 = 100.0;
 /// The most counts that the program's device moves in a tick: 100 rad/s, and an edge.

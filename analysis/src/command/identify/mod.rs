@@ -1,5 +1,6 @@
 //! `haptic identify`: a device's inertia, damping and passivity from a measurement.
 
+mod port;
 pub mod target;
 
 use std::io;
@@ -11,6 +12,7 @@ use serde::Serialize;
 use super::common::ForWhom;
 use super::{Answer, CommandError};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
+use crate::link::Address;
 use crate::quantity::significant;
 use target::Origin;
 
@@ -20,12 +22,19 @@ pub struct Arguments {
     /// Record of stepped sines: CSV with the columns `time` in s, `torque` in N m, `counts`, and
     /// perhaps `frequency` in Hz; `-` is standard input.
     /// With --target a file with a device table, which may be a scene
-    #[arg(value_name = "FILE", required_unless_present = "target")]
+    #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
-    /// Counts of the encoder in one turn; 61440 with --target
-    #[arg(long, value_name = "N", value_parser = positive, required_unless_present = "target",
-          allow_negative_numbers = true)]
+    /// Counts of the encoder in one turn; 61440 with --target, the board's with --port
+    #[arg(long, value_name = "N", value_parser = positive,
+          required_unless_present_any = ["target", "port"], allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
+    /// Have the board there measure its device with the program `identify`: /dev/ttyACM0 (@BAUD),
+    /// tcp://HOST:PORT, unix:PATH. It moves the device; nobody may hold it
+    #[arg(long, value_name = "PORT", group = "measured", conflicts_with = "file")]
+    pub port: Option<Address>,
+    /// Write the record there, with --port or --target
+    #[arg(long, value_name = "FILE.csv", requires = "measured")]
+    pub record: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
@@ -110,8 +119,7 @@ struct Report<'a> {
 /// Answers with the device; no if it has no passivity that could be certified with, or if a code of
 /// the emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let counts_per_turn = arguments.counts_per_rev.unwrap_or(target::COUNTS_PER_TURN);
-    let (record, origin) = record(arguments, counts_per_turn)?;
+    let (record, origin, counts_per_turn) = record(arguments)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let correction = arguments.reading.correction(counts_per_turn, settle);
     let found = identify::identify(&record, &correction)?;
@@ -129,20 +137,21 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     Ok(if found.passivity().is_some() && differs.is_none() { Answer::Yes } else { Answer::No })
 }
 
-/// The record of a file, or one that is made.
-fn record(
-    arguments: &Arguments,
-    counts_per_turn: f64,
-) -> Result<(Record, Option<Origin>), CommandError> {
-    let file = arguments.file.as_deref();
-    match (arguments.target.target, file) {
-        (Some(target), file) => {
-            let (measured, origin) =
-                target::measure(&arguments.target, target, file, counts_per_turn)?;
-            Ok((measured.record, Some(origin)))
-        }
-        (None, file) => Ok((load(file.unwrap_or(Path::new("-")))?, None)),
+/// The record of a file, or one that is made, and the counts in a turn.
+fn record(arguments: &Arguments) -> Result<(Record, Option<Origin>, f64), CommandError> {
+    let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
+    let counts_per_turn = stated.unwrap_or(target::COUNTS_PER_TURN);
+    let keep = arguments.record.as_deref();
+    if let Some(address) = &arguments.port {
+        let (record, counts) = port::measure(address, keep)?;
+        return Ok((record, None, stated.unwrap_or(counts)));
     }
+    if let Some(target) = arguments.target.target {
+        let simulated = &arguments.target;
+        let (measured, origin) = target::measure(simulated, target, file, keep, counts_per_turn)?;
+        return Ok((measured.record, Some(origin), counts_per_turn));
+    }
+    Ok((load(file.unwrap_or(Path::new("-")))?, None, counts_per_turn))
 }
 
 /// Identifies the device of a recorded file.

@@ -36,7 +36,7 @@ pub enum Target {
 pub struct Simulated {
     /// Measure a simulated device with the program `identify`, on this machine or the emulated
     /// board
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, group = "measured")]
     pub target: Option<Target>,
     /// Standard deviation of the torque that is there and not recorded, new in every tick, in N m
     #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative, allow_negative_numbers = true,
@@ -49,9 +49,6 @@ pub struct Simulated {
     /// The noise's seed
     #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]
     pub seed: u64,
-    /// Write the record there
-    #[arg(long, value_name = "FILE.csv", requires = "target")]
-    pub record: Option<PathBuf>,
 }
 
 /// How a record was made, as programs read it.
@@ -85,6 +82,7 @@ pub fn measure(
     arguments: &Simulated,
     target: Target,
     file: Option<&Path>,
+    keep: Option<&Path>,
     counts_per_turn: f64,
 ) -> Result<(Measurement, Origin), CommandError> {
     let plant = match file {
@@ -102,8 +100,8 @@ pub fn measure(
     let stepper = progress::stepper(&bar);
     let measured = measurement::measure(&SWEEP, &mut device, elf.as_deref(), stepper)?;
     bar.finish_and_clear();
-    if let Some(path) = &arguments.record {
-        let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
+    if let Some(path) = keep {
+        let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
         let out = File::create(path).map_err(unwritable)?;
         measurement::write(&measured.record, BufWriter::new(out)).map_err(unwritable)?;
     }

@@ -106,7 +106,8 @@ macro_rules! board_program {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {
-    ($sweep:ident) => {
+    // A simulated device keeps within all limits.
+    ($sweep:ident, $transducers:ident, $limits:ident) => {
         static PLACE: $crate::board::qemu::SweepPlace = $crate::board::place::Place::empty();
 
         /// What other boards have as their timer's interrupt.

@@ -29,7 +29,7 @@ use defmt_rtt as _;
 pub use start::{
     HostLink, LinkPlace, Places, ServoPlace, Task, begin, connect, fitted, period, run, width,
 };
-pub use sweep::{SweepPlace, measure};
+pub use sweep::{Setup, SweepPlace, measure};
 
 /// When a torque reaches the motor.
 pub type Mode = crate::servo::Latched;

@@ -1,17 +1,17 @@
 //! The encoder on a timer in quadrature mode: the hardware counts, at any speed, and a tick reads.
 
-use embassy_stm32::gpio::Pull;
 use embassy_stm32::pac::timer::vals::FilterValue;
 use embassy_stm32::pac::timer::{TimGp16, TimGp32};
 use embassy_stm32::timer::qei::{Config, QeiMode};
 
+use super::wiring::ENCODER_PULL;
+use crate::board::input_filter::InputFilter;
 use crate::encoder::{CounterWidth, RawCount};
 
-/// All four edges of the two channels count. The pull-ups serve encoders with open collectors and
-/// keep the lines of one that is not plugged in from counting noise.
+/// All four edges of the two channels count.
 pub fn config() -> Config {
     let mut config = Config::default();
-    (config.ch1_pull, config.ch2_pull) = (Pull::Up, Pull::Up);
+    (config.ch1_pull, config.ch2_pull) = (ENCODER_PULL, ENCODER_PULL);
     config.mode = QeiMode::Mode3;
     config
 }
@@ -25,15 +25,11 @@ pub trait Counter: Copy {
     fn count(self) -> RawCount;
 
     /// Finishes what the driver began: the full range, and a filter against short spikes.
-    fn complete(self);
+    fn complete(self, filter: InputFilter);
 
     /// Makes the present position zero.
     fn zero(self);
 }
-
-/// Eight equal samples in a row at the timer's clock, 47 ns at 170 MHz: spikes from a motor's
-/// commutation are shorter, and edges of a million counts a second twenty times longer.
-const FILTER: FilterValue = FilterValue::FCK_INT_N8;
 
 impl Counter for TimGp32 {
     const WIDTH: CounterWidth = CounterWidth::Bits32;
@@ -43,11 +39,11 @@ impl Counter for TimGp32 {
         RawCount::from(self.cnt().read())
     }
 
-    fn complete(self) {
+    fn complete(self, filter: InputFilter) {
         self.arr().write_value(u32::MAX);
         self.ccmr_input(0).modify(|w| {
-            w.set_icf(0, FILTER);
-            w.set_icf(1, FILTER);
+            w.set_icf(0, FilterValue::from_bits(filter.bits()));
+            w.set_icf(1, FilterValue::from_bits(filter.bits()));
         });
     }
 
@@ -64,10 +60,10 @@ impl Counter for TimGp16 {
         RawCount::from(self.cnt().read().cnt())
     }
 
-    fn complete(self) {
+    fn complete(self, filter: InputFilter) {
         self.ccmr_input(0).modify(|w| {
-            w.set_icf(0, FILTER);
-            w.set_icf(1, FILTER);
+            w.set_icf(0, FilterValue::from_bits(filter.bits()));
+            w.set_icf(1, FilterValue::from_bits(filter.bits()));
         });
     }
 

@@ -15,6 +15,7 @@ use super::serial::Serial;
 use super::stop::stop;
 use super::wiring::{self, CONVERTER, ENCODER};
 use super::{Connected, Mode};
+use crate::board::input_filter::InputFilter;
 use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
@@ -48,6 +49,8 @@ pub struct Places<E: Renderable<N> + 'static, N: Number> {
     pub meeting: &'static Meeting<E, N, Mode>,
     /// That task's end of the host's link.
     pub link: &'static LinkPlace<E, N>,
+    /// The filter of the encoder's inputs.
+    pub filter: InputFilter,
 }
 
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
@@ -96,7 +99,7 @@ where
     E: Tunable<N> + Renders<Mode>,
     N: Number,
 {
-    let port = connect().serial;
+    let port = connect(places.filter).serial;
     let period = period(program.scene.timing.period);
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
@@ -151,7 +154,7 @@ fn greet(name: &str, left: Option<Retained>) {
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
-pub fn connect() -> Connected {
+pub fn connect(filter: InputFilter) -> Connected {
     let chip = embassy_stm32::init(wiring::clocks());
     #[cfg(feature = "fast-memory")]
     super::fast::load();
@@ -160,7 +163,7 @@ pub fn connect() -> Connected {
     interrupt::TIM6_DAC.set_priority(Priority::P0);
     let connected = wiring::connect(chip);
     CONVERTER.stop();
-    ENCODER.complete();
+    ENCODER.complete(filter);
     connected
 }
 
@@ -198,6 +201,8 @@ macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         $crate::board_chip!();
 
+        $crate::board_filter!($transducers);
+
         /// The scene, as late as the board's converter: where it is not, this does not compile.
         const TIMED: $crate::certificate::Timed<
             $crate::scene::Scene<$environment>,
@@ -232,8 +237,12 @@ macro_rules! board_program {
         fn main() -> ! {
             let program = $crate::boot::Program { scene: *TIMED.scene(), ..FITTED };
             let name = env!("CARGO_BIN_NAME");
-            let places =
-                $crate::board::stm32::Places { servo: &PLACE, meeting: &MEETING, link: &LINK };
+            let places = $crate::board::stm32::Places {
+                servo: &PLACE,
+                meeting: &MEETING,
+                link: &LINK,
+                filter: FILTER,
+            };
             $crate::board::stm32::run(name, program, places, serve)
         }
     };
@@ -250,6 +259,20 @@ macro_rules! board_chip {
         #[unsafe(link_section = ".probe-rs.chip")]
         static PROBE_RS_CHIP: [u8; $crate::board::stm32::wiring::CHIP.len()] =
             *$crate::board::stm32::wiring::CHIP;
+    };
+}
+
+/// The filter of the encoder's inputs, by the fastest edges of a program's encoder.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_filter {
+    ($transducers:ident) => {
+        /// Where the encoder's edges can come too fast for this board, this does not compile.
+        const FILTER: $crate::board::input_filter::InputFilter =
+            $crate::board::input_filter::InputFilter::of_encoder(
+                &$transducers,
+                $crate::board::stm32::wiring::ENCODER_CLOCK,
+            );
     };
 }
 

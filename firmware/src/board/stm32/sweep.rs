@@ -1,11 +1,11 @@
-//! Plays a sweep on a real device and tells the host what came of it, as the lines of a record that
-//! `haptic identify` reads.
+//! Plays a sweep on a real device and tells the host what came of it, as the lines of a record.
 //!
-//! The motor is driven open loop, so nothing is certified and nothing runs by itself: the letter
-//! `g` on the serial port begins, and any other byte ends it.
+//! The motor is driven open loop, so nothing is certified and nothing runs by itself: the host begins
+//! with a byte, goes on saying that it listens, and ends it with another ([`byte`]). The sweep also
+//! ends where the device moves farther or faster than it may.
 
 use core::fmt::Write;
-use core::sync::atomic::{AtomicBool, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
@@ -16,26 +16,48 @@ use super::registers::Registers;
 use super::serial::Serial;
 use super::start::{begin, connect, period, width};
 use super::wiring::ENCODER;
+use crate::board::input_filter::InputFilter;
 use crate::board::link::Port;
 use crate::board::place::Place;
 use crate::boot::Startup;
 use crate::cycle::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::dac::DacCode;
 use crate::encoder::Position;
-use crate::excitation::{Exciter, Sweep};
+use crate::excitation::{
+    Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd, byte,
+};
+use crate::servo::Transducers;
 use crate::text::Written;
 use crate::torque::LimitReason;
 
 /// Where the sweep's interrupt finds what it works with.
 pub type SweepPlace = Place<Player>;
 
+/// What a sweep's device is measured with, and kept within.
+pub struct Setup {
+    /// What the sweep was planned for.
+    pub transducers: Transducers,
+    /// How far and how fast the device may move.
+    pub limits: MotionLimits,
+    /// The same in counts.
+    pub guard: Guard,
+    /// The filter of the encoder's inputs.
+    pub filter: InputFilter,
+}
+
 /// Rows that may wait to be sent: 64 ms at 1 kHz.
 const ROWS: usize = 64;
-/// The byte that begins the sweep.
-const BEGIN: u8 = b'g';
+/// Bytes of the longest line: the heading together with the first row has 60.
+const LINE: usize = 80;
 
-/// Whether the host wants the sweep to be played.
-static WANTED: AtomicBool = AtomicBool::new(false);
+/// Whether the host wants a sweep to begin.
+static BEGIN: AtomicBool = AtomicBool::new(false);
+/// Whether it wanted the one that is played to end.
+static STOP: AtomicBool = AtomicBool::new(false);
+/// Ticks for which the host will still be believed to listen.
+static LISTENING: AtomicU32 = AtomicU32::new(0);
+/// How the last sweep ended, as one more than its number; 0 once the host was told.
+static ENDED: AtomicU32 = AtomicU32::new(0);
 
 /// What the sweep's interrupt works with.
 pub struct Player {
@@ -44,12 +66,18 @@ pub struct Player {
     /// Samples of the sweep, and those that are still to come.
     samples: u64,
     left: u64,
+    guard: Guard,
     tick: u32,
     position: Position,
+    /// The position at the sweep's beginning, and in the last tick.
+    start: i32,
+    last: i32,
     /// What the converter has held since this tick's update.
     held: DacCode,
     hardware: Registers,
     rows: Frames<'static, ROWS>,
+    /// Rows that found no room, by the sweep's beginning.
+    dropped: u32,
 }
 
 impl Player {
@@ -58,9 +86,12 @@ impl Player {
     pub fn tick(&mut self) {
         let passed = self.hardware.passed();
         let count = self.position.update(self.hardware.count()).count;
-        // A missed tick has held a torque for too long: what follows would not be the sweep.
-        if self.left > 0 && (passed != 1 || !WANTED.load(Ordering::Relaxed)) {
+        let step = count.wrapping_sub(core::mem::replace(&mut self.last, count));
+        if self.left > 0
+            && let Some(end) = self.end(passed, count, step)
+        {
             self.left = 0;
+            tell_end(end);
         }
         let playing = self.left > 0;
         let code = if playing { self.exciter.next().code } else { DacCode::MID_SCALE };
@@ -69,12 +100,34 @@ impl Player {
         if playing {
             self.tell(count);
             self.left -= 1;
-            WANTED.store(self.left > 0, Ordering::Relaxed);
-        } else if WANTED.load(Ordering::Relaxed) {
+            if self.left == 0 {
+                tell_end(SweepEnd::Done);
+            }
+        } else if BEGIN.swap(false, Ordering::Relaxed) {
             (self.exciter, self.left, self.tick) = (self.beginning.clone(), self.samples, 0);
+            (self.start, self.dropped) = (count, self.rows.dropped());
         }
         self.held = code;
         self.hardware.feed();
+    }
+
+    /// Why the sweep ends in this tick, if it does.
+    fn end(&self, passed: u32, count: i32, step: i32) -> Option<SweepEnd> {
+        let listening = LISTENING.load(Ordering::Relaxed);
+        // The task below cannot write between the two.
+        LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
+        if STOP.load(Ordering::Relaxed) {
+            Some(SweepEnd::Stopped)
+        } else if listening == 0 {
+            Some(SweepEnd::Silent)
+        } else if passed != 1 {
+            // A torque was held for too long: what follows would not be the sweep.
+            Some(SweepEnd::MissedTick)
+        } else if self.rows.dropped() != self.dropped {
+            Some(SweepEnd::LostRow)
+        } else {
+            self.guard.check(count.wrapping_sub(self.start), step)
+        }
     }
 
     fn tell(&mut self, count: i32) {
@@ -84,9 +137,18 @@ impl Player {
     }
 }
 
+/// Tells the task below how the sweep ended, behind its last row.
+fn tell_end(end: SweepEnd) {
+    ENDED.store(end as u32 + 1, Ordering::Release);
+}
+
 /// Waits for the host, and plays the sweep whenever it asks.
-pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPlace) -> ! {
-    let mut serial = connect().serial;
+pub fn measure<const N: usize>(
+    sweep: &'static Sweep<N>,
+    setup: &Setup,
+    place: &'static SweepPlace,
+) -> ! {
+    let mut serial = connect(setup.filter).serial;
     let mut hardware = Registers::new(period(sweep.period()));
     hardware.zero();
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
@@ -99,64 +161,113 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPl
         exciter,
         samples: sweep.ticks(),
         left: 0,
+        guard: setup.guard,
         tick: 0,
         position: Position::new(width(ENCODER)),
+        start: 0,
+        last: 0,
         held: DacCode::MID_SCALE,
         hardware,
         rows,
+        dropped: 0,
     };
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { place.fill(player) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
-    let mut writer = Writer { period: sweep.period(), step, row: String::new() };
+    let mut writer = Writer { period: sweep.period(), step, line: String::new(), count: 0 };
     loop {
-        listen(&mut serial);
+        if listen(&mut serial, (SILENCE / sweep.period()) as u32) {
+            writer.describe(setup, sweep.ticks());
+        }
         writer.send(&mut serial, &mut told);
         cortex_m::asm::wfi();
     }
 }
 
-/// What the host wants now.
-fn listen(serial: &mut Serial) {
+/// What the host wants now; whether that is the description.
+fn listen(serial: &mut Serial, patience: u32) -> bool {
     let mut bytes = [0; 8];
     let count = serial.read(&mut bytes);
-    if let Some(&last) = bytes.get(..count).and_then(<[u8]>::last) {
-        WANTED.store(last == BEGIN, Ordering::Relaxed);
+    let mut describe = false;
+    for &received in bytes.get(..count).unwrap_or_default() {
+        let (begin, stop) = match received {
+            byte::DESCRIBE => {
+                describe = true;
+                continue;
+            }
+            byte::LISTENING => (false, false),
+            byte::BEGIN => (true, false),
+            _ => (false, true),
+        };
+        LISTENING.store(patience, Ordering::Relaxed);
+        if stop || begin {
+            STOP.store(stop, Ordering::Relaxed);
+            BEGIN.store(begin, Ordering::Relaxed);
+        }
     }
+    describe
 }
 
-/// Writes rows of the record.
+/// Writes the lines of the record.
 struct Writer {
     period: f64,
     /// Torque of one code in N m.
     step: f64,
-    /// What was not sent yet. The longest row, the heading with the first tick, has 60 bytes.
-    row: String<64>,
+    /// What was not sent yet.
+    line: String<LINE>,
+    /// The position of the last row.
+    count: i32,
 }
 
+// What is written to a line fits; what did not would be cut off.
 impl Writer {
-    /// Sends rows as long as there are any and the port takes them.
+    /// Sends lines as long as there are any and the port takes them.
     fn send(&mut self, serial: &mut Serial, told: &mut FrameReader<'_, ROWS>) {
         loop {
-            if self.row.is_empty() {
-                let Some(frame) = told.take() else { return };
-                self.write(&frame);
+            if self.line.is_empty() {
+                // The end before the rows: all of those are there once it is.
+                let ended = ENDED.load(Ordering::Acquire);
+                if let Some(frame) = told.take() {
+                    self.row(&frame);
+                } else if ended != 0 {
+                    ENDED.store(0, Ordering::Relaxed);
+                    self.end(ended);
+                } else {
+                    return;
+                }
             }
-            if serial.write(self.row.as_bytes()) == 0 {
+            let sent = serial.write(self.line.as_bytes());
+            let rest = self.line.as_str().get(sent..).unwrap_or_default();
+            self.line = String::try_from(rest).unwrap_or_default();
+            if !self.line.is_empty() {
                 return;
             }
-            self.row.clear();
         }
     }
 
-    fn write(&mut self, frame: &Frame) {
+    fn row(&mut self, frame: &Frame) {
         let heading = if frame.tick == 0 { "time,torque,counts\n" } else { "" };
         let time = Written(f64::from(frame.tick) * self.period);
         let torque = Written(f64::from(frame.code.offset()) * self.step);
-        // It fits; what did not would be cut off.
-        let _ = writeln!(self.row, "{heading}{time},{torque},{}", frame.count);
+        self.count = frame.count;
+        let _ = writeln!(self.line, "{heading}{time},{torque},{}", frame.count);
+    }
+
+    fn end(&mut self, ended: u32) {
+        let end = SweepEnd::ALL.get(ended as usize - 1).map_or("", |end| end.as_str());
+        let _ = writeln!(self.line, "end,{end},{}", self.count);
+    }
+
+    fn describe(&mut self, setup: &Setup, ticks: u64) {
+        let (period, counts) = (Written(self.period), Written(setup.transducers.counts_per_turn));
+        let (travel, speed) = (Written(setup.limits.travel), Written(setup.limits.speed));
+        self.line.clear();
+        let _ = writeln!(
+            self.line,
+            "identify,{SWEEP_PROTOCOL},{period},{counts},{ticks},{travel},{speed}"
+        );
     }
 }
 
@@ -164,8 +275,16 @@ impl Writer {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {
-    ($sweep:ident) => {
+    ($sweep:ident, $transducers:ident, $limits:ident) => {
         $crate::board_chip!();
+        $crate::board_filter!($transducers);
+
+        static SETUP: $crate::board::stm32::Setup = $crate::board::stm32::Setup {
+            transducers: $transducers,
+            limits: $limits,
+            guard: GUARD,
+            filter: FILTER,
+        };
 
         static PLACE: $crate::board::stm32::SweepPlace = $crate::board::place::Place::empty();
 
@@ -173,7 +292,7 @@ macro_rules! board_sweep {
 
         #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            $crate::board::stm32::measure(&$sweep, &PLACE)
+            $crate::board::stm32::measure(&$sweep, &SETUP, &PLACE)
         }
     };
 }

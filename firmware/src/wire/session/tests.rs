@@ -157,7 +157,7 @@ fn done(id: Id) -> Said {
 /// Torque in codes of a wall of that stiffness behind the coupling, at rest at [`Still`]'s count.
 fn codes(stiffness: f64) -> f64 {
     let angle = 100.0 * core::f64::consts::TAU / 61_440.0;
-    -angle * stiffness / (1.0 + stiffness / 44.0) * 2047.0 / 2.0
+    -angle * stiffness / (1.0 + stiffness / 44.0) * 1791.0 / 2.0
 }
 
 #[test]
@@ -430,7 +430,7 @@ proptest! {
             let depth = 100.0 * core::f64::consts::TAU / 61_440.0 - face;
             let torque = (wall.stiffness * depth / (1.0 + wall.stiffness / 44.0)).clamp(0.0, 1.0);
             let offset = f64::from(bench.hardware.code.offset());
-            prop_assert!((offset + torque * 2047.0 / 2.0).abs() <= 1.0, "{offset}, {torque}");
+            prop_assert!((offset + torque * 1791.0 / 2.0).abs() <= 1.0, "{offset}, {torque}");
         }
     }
 }

@@ -7,7 +7,7 @@ use super::{Access, Unmodelled, only};
 const ENABLE: u32 = 1;
 /// SMCR: all four edges of two channels count.
 const BOTH_CHANNELS: u32 = 0b011;
-/// CCMR1: each channel captures from its own input, and a filter of eight equal samples.
+/// CCMR1: each channel captures from its own input, and filters it.
 const OWN_INPUTS: u32 = 0x0101;
 const FILTERS: u32 = 0xF0F0;
 /// CCER: both channels enabled, neither inverted.
@@ -52,6 +52,11 @@ impl Counter {
             && self.slave == BOTH_CHANNELS
             && self.inputs & OWN_INPUTS == OWN_INPUTS
             && self.channels == CHANNELS
+    }
+
+    /// The filters of both inputs, ICxF of CCMR1.
+    pub fn filters(&self) -> [u32; 2] {
+        [self.inputs >> 4 & 0xF, self.inputs >> 12 & 0xF]
     }
 
     /// Edges from an encoder: so many counts up.

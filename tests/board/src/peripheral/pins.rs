@@ -5,6 +5,7 @@ use super::{Access, Unmodelled};
 
 /// Registers that say what pins are for: MODER, OTYPER, OSPEEDR, PUPDR, AFRL, AFRH.
 const MODE: usize = 0;
+const PULLS: usize = 3;
 
 /// A port.
 #[derive(Clone, Debug)]
@@ -45,6 +46,11 @@ impl Pins {
         const ALTERNATE: u32 = 0b10;
         let chosen = self.config[4 + pin as usize / 8] >> (4 * (pin % 8)) & 0xF;
         (self.config[MODE] >> (2 * pin) & 0b11 == ALTERNATE).then_some(chosen)
+    }
+
+    /// Whether the chip pulls a pin up or down.
+    pub fn is_pulled(&self, pin: u32) -> bool {
+        self.config[PULLS] >> (2 * pin) & 0b11 != 0
     }
 
     /// Whether a pin is analog.

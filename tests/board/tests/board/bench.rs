@@ -1,7 +1,7 @@
 //! A virtual board with everything around it that a test looks at.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::thread;
 
@@ -41,18 +41,23 @@ pub fn on_both<T: Send>(test: impl Fn(&'static Chip) -> T + Sync) -> [T; 2] {
 pub fn program(chip: &'static Chip, name: &'static str) -> &'static PathBuf {
     static FILES: OnceLock<HashMap<(&str, &str), PathBuf>> = OnceLock::new();
     let files = FILES.get_or_init(|| {
-        let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
-        let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
         let build = |chip: &'static Chip| {
-            let board = Board::find(chip.name).unwrap();
             let names: Vec<_> = Program::every().map(|program| program.name).collect();
-            let built = toolchain.build_for(board, &names, NumberFormat::F32);
-            let built = built.unwrap_or_else(|error| panic!("{error}"));
-            names.into_iter().zip(built).map(move |(name, built)| ((chip.name, name), built.path))
+            let built = build(chip, &names);
+            names.into_iter().zip(built).map(move |(name, path)| ((chip.name, name), path))
         };
         Chip::ALL.into_iter().flat_map(build).collect()
     });
     &files[&(chip.name, name)]
+}
+
+/// The files of some programs for any chip.
+pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
+    let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
+    let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
+    let board = Board::find(chip.name).unwrap();
+    let built = toolchain.build_for(board, names, NumberFormat::F32);
+    built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }
 
 /// A board with its power on, what is at its pins, and a host at its serial port.
@@ -70,8 +75,17 @@ impl Bench {
         name: &'static str,
         device: impl Device + Send + 'static,
     ) -> Self {
+        Self::boot_file(chip, program(chip, name), device)
+    }
+
+    /// The same with a program's file.
+    pub fn boot_file(
+        chip: &'static Chip,
+        file: &Path,
+        device: impl Device + Send + 'static,
+    ) -> Self {
         let pins = Arc::new(Mutex::new(Pins::of(device)));
-        let mut machine = Machine::boot(program(chip, name), chip, Box::new(pins.clone())).unwrap();
+        let mut machine = Machine::boot(file, chip, Box::new(pins.clone())).unwrap();
         machine.board_mut().events = Some(Vec::new());
         Self { machine, pins, decoder: Decoder::new() }
     }

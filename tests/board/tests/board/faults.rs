@@ -271,8 +271,7 @@ fn check_torque(bench: &Bench, off: u64, what: &str) {
     let later = |&&(at, _): &&(u64, Event)| at > off + bench.period();
     for (at, event) in bench.events().iter().filter(later) {
         let harmless = match event {
-            // As the driver switches it on, with the amplifier off.
-            Event::Torque(code) => matches!(code, None | Some(MID_SCALE | 0)),
+            Event::Torque(code) => matches!(code, None | Some(MID_SCALE)),
             Event::Amplifier(level) => *level != Level::High,
         };
         assert!(harmless, "{what}: {event:?} at {at}");

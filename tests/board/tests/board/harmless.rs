@@ -17,7 +17,7 @@ use crate::stub::{Masks, hold_up};
 
 /// Counts into the damper wall, and the codes of its torque limit of 1 N m.
 const INTO: i32 = 300;
-const LIMIT: u16 = 1024;
+const LIMIT: u16 = 896;
 
 /// A servo that pushes, and goes on to do so.
 fn pushing(chip: &'static Chip) -> Bench {

@@ -13,4 +13,5 @@ mod scenes;
 mod start;
 mod stub;
 mod supervised;
+mod sweep;
 mod timing;

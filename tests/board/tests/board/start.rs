@@ -1,16 +1,17 @@
 //! From power-on to the first torque.
 
 use virtual_board::board::Event;
+use virtual_board::chip::{B_G431B_ESC1, STM32F405};
 use virtual_board::device::Still;
 use virtual_board::peripheral::pins::Level;
 
-use crate::bench::{Bench, MID_SCALE, on_both};
+use crate::bench::{Bench, MID_SCALE, build, on_both};
 
 /// Counts from the face into the damper wall at which it pushes harder than its torque limit of
 /// 1 N m: two springs in a row, of 44 and 22 N m/rad, and 61,440 counts a turn.
 const DEEP: i32 = 900;
-/// Codes of that limit, with 2047 codes for 2 N m; the clamp opens to it in a hundred ticks.
-const LIMIT: f64 = 1023.5;
+/// Codes of that limit, with 1791 codes for 2 N m; the clamp opens to it in a hundred ticks.
+const LIMIT: f64 = 895.5;
 const OPENING: f64 = LIMIT / 100.0;
 
 #[test]
@@ -19,17 +20,15 @@ fn nothing_is_driven_before_the_amplifier_is_off_and_no_torque_before_it_is_on()
         let mut bench = Bench::boot(chip, "damper_wall", Still);
         bench.run(3);
         let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
-        // The driver switches the converter on before anybody has written to it: at the lowest code,
-        // which the amplifier, off, does not pass on.
+        // The converter is at mid-scale from the first moment on in which it drives its pin.
         let order = [
             Event::Amplifier(Level::Low),
-            Event::Torque(Some(0)),
             Event::Torque(Some(MID_SCALE)),
             Event::Amplifier(Level::High),
         ];
         assert_eq!(events, order, "{}", chip.name);
         // In the first tick: not before the timer paces, and with the watchdog on.
-        let (on, first) = (bench.events()[3].0, bench.machine.board().meter.interrupt().most);
+        let (on, first) = (bench.events()[2].0, bench.machine.board().meter.interrupt().most);
         let begun = bench.machine.board().pacer.due().unwrap() - 3 * bench.period();
         assert!(on > begun && on <= begun + first, "{}: {on}, {begun}, {first}", chip.name);
         assert!(bench.machine.board().watchdog.due().is_some(), "{}", chip.name);
@@ -72,5 +71,66 @@ fn the_clamp_opens_step_by_step() {
             );
         }
         assert_eq!(torque(125), LIMIT.round(), "{}", chip.name);
+    });
+}
+
+/// Ports as the virtual boards number them.
+const A: usize = 0;
+const B: usize = 1;
+const C: usize = 2;
+
+#[test]
+fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
+    let file = build(&B_G431B_ESC1, &["damper_wall"]).remove(0);
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, &file, Still);
+    while bench.machine.board().torque().is_none() {
+        bench.run_for(10);
+    }
+    let board = bench.machine.board();
+    // High sides and low sides of U, V and W (UM2516, table 4).
+    for (port, pin) in [(A, 8), (A, 9), (A, 10), (C, 13), (A, 12), (B, 15)] {
+        assert_eq!(board.level(port, pin), Level::Low, "port {port}, pin {pin}");
+    }
+    assert_eq!((board.torque(), board.amplifier()), (Some(MID_SCALE), Level::Low));
+    bench.run(3);
+    let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
+    let [low, high] = [Level::Low, Level::High].map(Event::Amplifier);
+    assert_eq!(events, [low, Event::Torque(Some(MID_SCALE)), high]);
+}
+
+#[test]
+fn a_vesc_holds_its_power_on_and_its_power_stage_off() {
+    let mut bench = Bench::boot(&STM32F405, "damper_wall", Still);
+    while bench.machine.board().amplifier() == Level::Floating {
+        // Nothing is driven before the power is held.
+        let (hold, gates) = (bench.machine.board().level(C, 5), bench.machine.board().level(B, 5));
+        assert!(hold == Level::High || gates == Level::Floating);
+        bench.run_for(1);
+    }
+    let held = |bench: &Bench| {
+        let board = bench.machine.board();
+        assert_eq!((board.level(C, 5), board.level(B, 5)), (Level::High, Level::Low));
+    };
+    held(&bench);
+    bench.run(200);
+    held(&bench);
+}
+
+/// The longest filter, of those in the reference manuals' table, that is a quarter of a count's time.
+#[test]
+fn the_encoders_inputs_are_filtered_as_its_edges_allow_and_pulled_where_they_bear_it() {
+    /// Timer clocks by the setting ICxF.
+    const CLOCKS: [u32; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
+    let count = std::f64::consts::TAU / 61_440.0 / 100.0;
+    on_both(|chip| {
+        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        bench.run(3);
+        let board = bench.machine.board();
+        let clock = (chip.core / board.clock.timer_divider()) as f64;
+        let fits = |&clocks: &u32| f64::from(clocks) / clock <= count / 4.0;
+        let longest = CLOCKS.iter().rposition(fits).unwrap() as u32;
+        assert_eq!(board.encoder.filters(), [longest; 2], "{}", chip.name);
+        // The F405's pins bear the 5 V of their connector only where the chip does not pull.
+        assert_eq!(board.pulls_encoder(), chip.name == "nucleo-g474re", "{}", chip.name);
     });
 }

@@ -1,0 +1,116 @@
+//! Whether the motor gave the torques that were asked for: an amplifier that clips makes harmonics
+//! that the command does not have.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::record::Record;
+use super::response::Correction;
+use super::step::Step;
+use super::{Identification, IdentifyError};
+
+/// Largest part of a sine's torque that may be in its second or third harmonic. A sine that is cut
+/// off at nine tenths of its peak has 3 % in its third; whole codes have less than 1 %.
+const LARGEST: f64 = 0.025;
+/// How much more it has to be than in sines of less than half of the largest torque: friction has
+/// harmonics too, of the same size in all sines.
+const ABOVE_FRICTION: f64 = 2.0;
+/// Fewest standard deviations that it stands out of the noise by.
+const OUT_OF_NOISE: f64 = 4.0;
+
+/// A sine's torque beside its harmonics, in N m.
+#[derive(Clone, Copy, Debug)]
+struct Distortion {
+    frequency: f64,
+    amplitude: f64,
+    /// The larger of the second and the third harmonic that the device felt and was not commanded.
+    harmonic: f64,
+}
+
+/// Refuses a record in which the torque that moved the device was cut off.
+pub fn check(
+    record: &Record,
+    steps: &[Step],
+    correction: &Correction,
+    found: &Identification,
+) -> Result<(), IdentifyError> {
+    let all: Vec<Distortion> =
+        steps.iter().filter_map(|step| distortion(record, step, correction, found)).collect();
+    let most = all.iter().map(|sine| sine.amplitude).fold(0.0, f64::max);
+    let is_loud = |sine: &&Distortion| sine.amplitude >= 0.5 * most;
+    let friction =
+        all.iter().filter(|sine| !is_loud(sine)).map(|sine| sine.harmonic).fold(0.0, f64::max);
+    let is_clipped = |sine: &&Distortion| {
+        sine.harmonic > LARGEST * sine.amplitude && sine.harmonic > ABOVE_FRICTION * friction
+    };
+    match all.iter().filter(is_loud).find(is_clipped) {
+        None => Ok(()),
+        Some(sine) => Err(IdentifyError::Clipped {
+            frequency: sine.frequency,
+            amplitude: sine.amplitude,
+            part: sine.harmonic / sine.amplitude,
+        }),
+    }
+}
+
+fn distortion(
+    record: &Record,
+    step: &Step,
+    correction: &Correction,
+    found: &Identification,
+) -> Option<Distortion> {
+    let skipped = (correction.settle * step.rows.len() as f64) as usize;
+    let rows = step.rows.start + skipped..step.rows.end;
+    let angle = step.omega * record.period;
+    let (torque, _) = harmonics(&record.torque[rows.clone()], angle)?;
+    let (counts, deviation) = harmonics(&record.counts[rows], angle)?;
+    let amplitude = torque[0].norm();
+    // Torque that moves the device by so many counts at a multiple of the frequency.
+    let felt = |order: usize, counts: f64| {
+        let omega = order as f64 * step.omega;
+        let (b, m) = (found.damping.value, found.inertia.value);
+        counts * correction.count_angle * omega * b.hypot(omega * m)
+    };
+    let harmonic = (2..=ORDERS)
+        .filter(|order| *order as f64 * angle < 0.95 * std::f64::consts::PI)
+        .filter(|order| counts[order - 1].norm() > OUT_OF_NOISE * deviation)
+        .map(|order| felt(order, counts[order - 1].norm()) - torque[order - 1].norm())
+        .fold(0.0, f64::max);
+    let frequency = step.omega / std::f64::consts::TAU;
+    Some(Distortion { frequency, amplitude, harmonic })
+}
+
+/// Harmonics that are looked at, the fundamental included.
+const ORDERS: usize = 3;
+
+/// The phasors of a sine and its harmonics, fitted together with a parabola, and the standard
+/// deviation of one of them.
+fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64)> {
+    const DRIFT: usize = 3;
+    // One that is above half the sampling rate would be one of the others, or none.
+    let orders = (1..=ORDERS).filter(|order| *order as f64 * angle < std::f64::consts::PI).count();
+    let (n, unknowns) = (samples.len(), DRIFT + 2 * orders);
+    if n <= unknowns {
+        return None;
+    }
+    let regressors = DMatrix::from_fn(n, unknowns, |row, column| {
+        let time = 2.0 * row as f64 / (n - 1) as f64 - 1.0;
+        if column < DRIFT {
+            return time.powi(column as i32);
+        }
+        let order = (column - DRIFT) / 2 + 1;
+        let phase = order as f64 * angle * row as f64;
+        if (column - DRIFT) % 2 == 0 { phase.cos() } else { -phase.sin() }
+    });
+    let values = DVector::from_column_slice(samples);
+    let normal = (regressors.transpose() * &regressors).cholesky()?;
+    let solution = normal.solve(&(regressors.transpose() * &values));
+    let residual = values - regressors * &solution;
+    let mut phasors = [Complex::default(); ORDERS];
+    for (order, phasor) in phasors.iter_mut().take(orders).enumerate() {
+        *phasor = Complex::new(solution[DRIFT + 2 * order], solution[DRIFT + 2 * order + 1]);
+    }
+    // Whole counts, at the least, whose error is repeated from period to period.
+    let distinct = (n as f64).min(std::f64::consts::TAU / angle);
+    let noise = (2.0 * residual.norm_squared() / (n * n) as f64).sqrt();
+    Some((phasors, noise.max((1.0 / (6.0 * distinct)).sqrt())))
+}

@@ -1,0 +1,327 @@
+//! A sweep that a board plays to a real device, recorded over the board's serial port.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use firmware::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
+use thiserror::Error;
+
+use crate::link::{Address, LinkError, Transport, is_timeout, open};
+
+/// How long a board has to say what it is, and how long no row may come.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Time between two bytes that say that somebody listens; the board waits five times as long.
+const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
+/// Time in which a board that was still at it falls silent.
+const SETTLE: Duration = Duration::from_millis(200);
+/// The record's first line.
+const HEADING: &str = "time,torque,counts";
+
+/// What a board says of its sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// Sampling period in s.
+    pub period: f64,
+    /// Encoder counts in one turn.
+    pub counts_per_turn: f64,
+    /// Rows of the whole record.
+    pub ticks: u64,
+    /// The limit of travel in rad.
+    pub travel: f64,
+    /// The limit of speed in rad/s.
+    pub speed: f64,
+}
+
+/// What a board has sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// What it said of the sweep.
+    pub description: Description,
+    /// The record as CSV.
+    pub text: String,
+    /// Its rows.
+    pub rows: u64,
+    /// How the sweep ended.
+    pub end: SweepEnd,
+}
+
+/// Why there is no record.
+#[derive(Debug, Error)]
+pub enum PortError {
+    /// The port cannot be opened, or is gone.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Nobody who plays a sweep is there.
+    #[error(
+        "no board that plays a sweep answers on {address} within {} s: flash `identify` \
+         (cargo haptic flash --board BOARD identify), and check the port and its speed",
+        PATIENCE.as_secs()
+    )]
+    Silent {
+        /// The address.
+        address: Address,
+    },
+    /// A description of another version, or none.
+    #[error(
+        "the board on {address} describes its sweep as `{line}`, which is not version \
+         {SWEEP_PROTOCOL}: flash `identify` anew"
+    )]
+    Protocol {
+        /// The address.
+        address: Address,
+        /// What it said.
+        line: String,
+    },
+    /// The record stopped coming.
+    #[error(
+        "the board on {address} has sent nothing for {} s after {rows} of {ticks} rows: check its \
+         cable and its power; its watchdog or its own limit of {SILENCE} s has stopped the motor",
+        PATIENCE.as_secs()
+    )]
+    Lost {
+        /// The address.
+        address: Address,
+        /// Rows so far.
+        rows: u64,
+        /// Rows of the whole record.
+        ticks: u64,
+    },
+    /// The sweep ended before its last sample.
+    #[error("the sweep ended with `{}` after {rows} of {ticks} rows: {}", .end.as_str(), remedy(*.end, .travel, .speed))]
+    Ended {
+        /// How.
+        end: SweepEnd,
+        /// Rows until then.
+        rows: u64,
+        /// Rows of the whole record.
+        ticks: u64,
+        /// The limit of travel in rad.
+        travel: f64,
+        /// The limit of speed in rad/s.
+        speed: f64,
+    },
+    /// A word that no version of this program knows.
+    #[error(
+        "the board ended the sweep with `{word}`, which means nothing here: flash `identify` anew"
+    )]
+    Word {
+        /// The word.
+        word: String,
+    },
+}
+
+/// What ended a sweep, and what to do about it.
+fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
+    match end {
+        SweepEnd::Done => "nothing is wrong".to_owned(),
+        SweepEnd::Stopped => "something else that has the port open stopped it".to_owned(),
+        SweepEnd::Silent => format!(
+            "the board has not heard from this computer for {SILENCE} s: check the cable, and close \
+             whatever else has the port open"
+        ),
+        SweepEnd::MissedTick => {
+            "a tick of the board came late or not at all, so that a torque was \
+             held for too long: run it without a debugger, and report it if it comes again"
+                .to_owned()
+        }
+        SweepEnd::LostRow => {
+            "the line to this computer was too slow for the rows: connect the board \
+             without a hub, and close what else keeps this computer busy"
+                .to_owned()
+        }
+        SweepEnd::Travel => format!(
+            "the device moved by more than {travel} rad from where it began. If it drifts one way, \
+             trim the amplifier's offset; if it swings too far, lower the amplitudes of the lowest \
+             tones, or raise LIMITS.travel (firmware/src/bin/identify.rs) where there is room"
+        ),
+        SweepEnd::Speed => format!(
+            "the device was faster than {speed} rad/s: lower the amplitudes, or raise LIMITS.speed \
+             (firmware/src/bin/identify.rs) where it may be"
+        ),
+        SweepEnd::Jump => "the encoder moved as no device can: check its cable, its supply and \
+             counts_per_turn"
+            .to_owned(),
+    }
+}
+
+impl Recording {
+    /// The record, if it is whole.
+    ///
+    /// # Errors
+    /// With what ended the sweep before its end.
+    pub fn whole(&self) -> Result<(), PortError> {
+        let Description { ticks, travel, speed, .. } = self.description;
+        let (end, rows) = (self.end, self.rows);
+        match end {
+            SweepEnd::Done if rows == ticks => Ok(()),
+            SweepEnd::Done => {
+                Err(PortError::Ended { end: SweepEnd::LostRow, rows, ticks, travel, speed })
+            }
+            _ => Err(PortError::Ended { end, rows, ticks, travel, speed }),
+        }
+    }
+}
+
+/// A board whose sweep has not begun.
+pub struct Player {
+    address: Address,
+    transport: Box<dyn Transport>,
+    /// Bytes that are no whole line yet.
+    rest: Vec<u8>,
+    /// When the board was last told that somebody listens.
+    told: Instant,
+    description: Description,
+}
+
+impl Player {
+    /// Connects, ends what the board may still be playing, and asks what it would play.
+    ///
+    /// # Errors
+    /// Where the port cannot be opened, or no board that plays a sweep is there.
+    pub fn open(address: &Address) -> Result<Self, PortError> {
+        let transport =
+            open(address).map_err(|source| LinkError::Open { address: address.clone(), source })?;
+        let description =
+            Description { period: 0.0, counts_per_turn: 0.0, ticks: 0, travel: 0.0, speed: 0.0 };
+        let (address, rest) = (address.clone(), Vec::new());
+        let mut player = Self { address, transport, rest, told: Instant::now(), description };
+        player.say(byte::STOP)?;
+        let settled = Instant::now() + SETTLE;
+        while player.line(settled)?.is_some() {}
+        player.rest.clear();
+        player.ask()?;
+        Ok(player)
+    }
+
+    /// What the board would play.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn ask(&mut self) -> Result<(), PortError> {
+        let end = Instant::now() + PATIENCE;
+        while Instant::now() < end {
+            self.say(byte::DESCRIBE)?;
+            let again = Instant::now() + PATIENCE / 8;
+            while let Some(line) = self.line(again)? {
+                if let Some(fields) = line.strip_prefix("identify,") {
+                    self.description = describe(fields).ok_or_else(|| PortError::Protocol {
+                        address: self.address.clone(),
+                        line: line.clone(),
+                    })?;
+                    return Ok(());
+                }
+            }
+        }
+        Err(PortError::Silent { address: self.address.clone() })
+    }
+
+    /// Begins the sweep and takes its record. `progress` is told of each row.
+    ///
+    /// The board ends the sweep by itself once this process is gone.
+    ///
+    /// # Errors
+    /// Where the link is lost, or the board ends with an unknown word.
+    pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
+        self.say(byte::BEGIN)?;
+        let (mut text, mut rows) = (String::new(), 0);
+        let ticks = self.description.ticks;
+        loop {
+            let Some(line) = self.line(Instant::now() + PATIENCE)? else {
+                return Err(PortError::Lost { address: self.address, rows, ticks });
+            };
+            if let Some(fields) = line.strip_prefix("end,") {
+                let word = fields.split(',').next().unwrap_or_default();
+                let end = SweepEnd::find(word)
+                    .ok_or_else(|| PortError::Word { word: word.to_owned() })?;
+                return Ok(Recording { description: self.description, text, rows, end });
+            }
+            // What comes before the heading is of before the beginning.
+            if line == HEADING {
+                (text, rows) = (String::new(), 0);
+            } else if text.is_empty() {
+                continue;
+            } else {
+                rows += 1;
+                progress();
+            }
+            text.push_str(&line);
+            text.push('\n');
+        }
+    }
+
+    fn say(&mut self, byte: u8) -> Result<(), PortError> {
+        self.told = Instant::now();
+        let sent = self.transport.write_all(&[byte]).and_then(|()| self.transport.flush());
+        sent.map_err(|source| self.lost(source))
+    }
+
+    /// The next line, if there is one before the time is up.
+    fn line(&mut self, until: Instant) -> Result<Option<String>, PortError> {
+        loop {
+            if let Some(end) = self.rest.iter().position(|&byte| byte == b'\n') {
+                let line: Vec<u8> = self.rest.drain(..=end).collect();
+                return Ok(Some(String::from_utf8_lossy(&line).trim_end().to_owned()));
+            }
+            if self.told.elapsed() >= LISTENING {
+                self.say(byte::LISTENING)?;
+            }
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(None);
+            }
+            // No operating system waits for no time at all.
+            let wait = left.clamp(Duration::from_millis(1), LISTENING);
+            let mut bytes = [0; 4096];
+            let read =
+                self.transport.wait_at_most(wait).and_then(|()| self.transport.read(&mut bytes));
+            match read {
+                Ok(0) => return Err(self.lost(io::ErrorKind::UnexpectedEof.into())),
+                Ok(count) => self.rest.extend_from_slice(&bytes[..count]),
+                Err(error) if is_timeout(&error) => {}
+                Err(error) => return Err(self.lost(error)),
+            }
+        }
+    }
+
+    fn lost(&self, source: io::Error) -> PortError {
+        LinkError::Lost { address: self.address.clone(), source }.into()
+    }
+}
+
+/// `PROTOCOL,period,counts per turn,ticks,travel,speed`
+fn describe(fields: &str) -> Option<Description> {
+    let fields: Vec<&str> = fields.split(',').collect();
+    let [protocol, period, counts, ticks, travel, speed] = fields.as_slice() else { return None };
+    let positive =
+        |text: &str| text.parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite());
+    (protocol.parse() == Ok(SWEEP_PROTOCOL)).then_some(())?;
+    Some(Description {
+        period: positive(period)?,
+        counts_per_turn: positive(counts)?,
+        ticks: ticks.parse().ok()?,
+        travel: positive(travel)?,
+        speed: positive(speed)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_end_says_what_to_do() {
+        let sentences = SweepEnd::ALL.map(|end| remedy(end, &0.7, &85.0));
+        assert!(sentences.iter().all(|sentence| sentence.len() > 15));
+        assert!(sentences[SweepEnd::Travel as usize].contains("0.7 rad"));
+        assert!(sentences[SweepEnd::Speed as usize].contains("85 rad/s"));
+    }
+
+    #[test]
+    fn a_description_of_another_version_or_shape_is_none() {
+        assert!(describe("1,0.001,61440,52500,0.7,85").is_some());
+        for wrong in ["2,0.001,61440,52500,0.7,85", "1,0.001,61440", "1,0,61440,52500,0.7,85", ""] {
+            assert_eq!(describe(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The filter of an encoder's inputs: as much of it as the encoder's fastest edges allow.
+
+use core::f64::consts::TAU;
+
+use crate::servo::Transducers;
+use crate::text::Text;
+
+/// A filter of an STM32 timer's input: a level counts once so many samples in a row have it, which
+/// takes out what is shorter.
+///
+/// ```
+/// use firmware::board::input_filter::InputFilter;
+/// use firmware::encoder::CounterWidth;
+/// use firmware::servo::Transducers;
+///
+/// const ENCODER: Transducers = Transducers {
+///     counts_per_turn: 61_440.0,
+///     counter: CounterWidth::Bits16,
+///     full_scale_torque: 2.0,
+///     largest_speed: 100.0,
+/// };
+/// // A million counts a second: what is shorter than 0.19 us is a spike.
+/// const FILTER: InputFilter = InputFilter::of_encoder(&ENCODER, 170e6);
+/// assert_eq!((FILTER.bits(), FILTER.clocks()), (7, 32));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputFilter(u8);
+
+/// Timer clocks that a level has to last, by the setting ICxF (RM0440, 31.5.8; RM0090, 18.4.7), with
+/// the timer's clock as it is for sampling.
+const CLOCKS: [u16; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
+
+/// The part of a count's time that a filter may take: edges of good encoders are up to half a count
+/// from where they should be, and of what is then left of a count a filter takes half.
+const PART: f64 = 0.25;
+
+impl InputFilter {
+    /// The longest filter that passes every edge of an encoder, in a timer whose clock is in Hz.
+    ///
+    /// # Errors
+    /// Where edges can come too fast for the shortest.
+    pub const fn new(transducers: &Transducers, clock: f64) -> Result<Self, TooFast> {
+        let rate = transducers.counts_per_turn / TAU * transducers.largest_speed;
+        let most = PART * clock / rate;
+        let mut bits = CLOCKS.len() - 1;
+        while bits > 0 {
+            // Written so that NaN fits nowhere.
+            if CLOCKS[bits] as f64 <= most {
+                return Ok(Self(bits as u8));
+            }
+            bits -= 1;
+        }
+        Err(TooFast { rate, largest: PART * clock / CLOCKS[1] as f64 })
+    }
+
+    /// The same for a constant: an encoder that is too fast stops the compiler, with a sentence.
+    #[track_caller]
+    pub const fn of_encoder(transducers: &Transducers, clock: f64) -> Self {
+        match Self::new(transducers, clock) {
+            Ok(filter) => filter,
+            Err(error) => panic!("{}", error.sentence().as_str()),
+        }
+    }
+
+    /// The setting ICxF.
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// Timer clocks that a level has to last.
+    pub const fn clocks(self) -> u16 {
+        CLOCKS[self.0 as usize]
+    }
+}
+
+/// An encoder whose edges no filter passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TooFast {
+    /// Counts a second at the largest speed.
+    pub rate: f64,
+    /// The most that the shortest filter passes.
+    pub largest: f64,
+}
+
+impl TooFast {
+    /// The error as a sentence.
+    pub const fn sentence(&self) -> Text<200> {
+        let mut t = Text::new();
+        t.push("counts_per_turn and largest_speed allow ");
+        t.push_number(self.rate);
+        t.push(" counts a second; the shortest filter of this board's encoder inputs passes ");
+        t.push_number(self.largest);
+        t.push(": state the speed that the device can reach, or use fewer counts");
+        t
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::encoder::CounterWidth;
+
+    fn encoder(counts_per_turn: f64, largest_speed: f64) -> Transducers {
+        let (counter, full_scale_torque) = (CounterWidth::Bits32, 1.0);
+        Transducers { counts_per_turn, counter, full_scale_torque, largest_speed }
+    }
+
+    #[test]
+    fn is_the_longest_that_leaves_three_quarters_of_the_shortest_count() {
+        for clock in [84e6, 170e6] {
+            for rate in [1e3, 5e4, 2e5, 9.8e5, 2e6, 1e7] {
+                let filter = InputFilter::new(&encoder(TAU * 10.0, rate / 10.0), clock).unwrap();
+                let taken = |clocks: u16| f64::from(clocks) / clock * rate;
+                assert!(taken(filter.clocks()) <= PART + 1e-12, "{clock}, {rate}: {filter:?}");
+                let longer = CLOCKS.get(usize::from(filter.bits()) + 1);
+                assert!(longer.is_none_or(|&longer| taken(longer) > PART), "{clock}, {rate}");
+            }
+        }
+        assert!(CLOCKS.is_sorted());
+    }
+
+    #[test]
+    fn an_encoder_that_is_too_fast_is_refused_with_its_numbers() {
+        let error = InputFilter::new(&encoder(4e5, 200.0), 84e6).unwrap_err();
+        assert_eq!(error.largest, 10.5e6);
+        assert!(
+            error.sentence().as_str().starts_with(
+                "counts_per_turn and largest_speed allow 12732395.45 counts a second; the shortest \
+             filter of this board's encoder inputs passes 10500000"
+            ),
+            "{}",
+            error.sentence().as_str()
+        );
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(InputFilter::new(&encoder(4e5, wrong), 84e6).is_err());
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! How a sweep ended: the last word of the record on the wire.
+
+/// Version of what a board that plays a sweep says and hears.
+pub const SWEEP_PROTOCOL: u32 = 1;
+
+/// Bytes that the host sends.
+pub mod byte {
+    /// Asks for the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`.
+    pub const DESCRIBE: u8 = b'?';
+    /// Begins the sweep. The record follows, and behind it `end,WORD,count`.
+    pub const BEGIN: u8 = b'g';
+    /// Says that the host still listens; any other byte but these three ends the sweep.
+    pub const LISTENING: u8 = b'k';
+    /// A byte that ends it.
+    pub const STOP: u8 = b'x';
+}
+
+/// Time in s without a byte from the host after which a sweep ends: nobody would see it go wrong.
+pub const SILENCE: f64 = 0.5;
+
+/// How a sweep ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SweepEnd {
+    /// To its last sample.
+    Done,
+    /// The host wanted it to.
+    Stopped,
+    /// The host was not heard any more.
+    Silent,
+    /// A tick came late or not at all, so that a torque was held for too long.
+    MissedTick,
+    /// A row found no room on the line to the host.
+    LostRow,
+    /// The device left the limits of its travel.
+    Travel,
+    /// The device was faster than its limit.
+    Speed,
+    /// The encoder moved as no device can.
+    Jump,
+}
+
+impl SweepEnd {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Done,
+        Self::Stopped,
+        Self::Silent,
+        Self::MissedTick,
+        Self::LostRow,
+        Self::Travel,
+        Self::Speed,
+        Self::Jump,
+    ];
+
+    /// The word on the wire.
+    ///
+    /// ```
+    /// use firmware::excitation::SweepEnd;
+    /// for end in SweepEnd::ALL {
+    ///     assert_eq!(SweepEnd::find(end.as_str()), Some(end));
+    /// }
+    /// ```
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::Silent => "silent",
+            Self::MissedTick => "missed-tick",
+            Self::LostRow => "lost-row",
+            Self::Travel => "travel",
+            Self::Speed => "speed",
+            Self::Jump => "jump",
+        }
+    }
+
+    /// The end of this word.
+    pub fn find(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|end| end.as_str() == word)
+    }
+}
