@@ -36,6 +36,7 @@ const STATUS: Status = Status {
     thinned: 6,
     discarded: Discarded { broken: 1, too_long: 2, checksum: 3, unknown: 2 },
     stack_left: None,
+    reset: ResetCause::PowerOn,
 };
 
 fn frame(tick: u32, count: i32, limit: LimitReason) -> Frame {

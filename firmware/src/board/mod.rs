@@ -93,6 +93,10 @@ impl core::fmt::Display for StartError {
 /// transducers, and the type to compute in: `float` by default, `fixed` with the feature
 /// `fixed-point`; and, if it is known, the dry `friction` of the device in N m, by which the
 /// certificate says whether it comes to rest. On a board the program runs the servo; on the host it prints the certificate.
+///
+/// A servo stays off until the host arms it, after every reset. With `armed_at_power_on: "reason"` it
+/// also arms itself when the supply is switched on, and after no other reset; without words in the
+/// reason, which the board logs, the program does not compile.
 #[macro_export]
 macro_rules! scene_program {
     (
@@ -101,7 +105,8 @@ macro_rules! scene_program {
         transducers: $transducers:ident,
         float: $float:ty,
         fixed: $fixed:ty
-        $(, friction: $friction:expr)? $(,)?
+        $(, friction: $friction:expr)?
+        $(, armed_at_power_on: $reason:literal)? $(,)?
     ) => {
         /// The certificate of the coefficients that the program multiplies by: where rounding
         /// them to its number format took it away, this does not compile.
@@ -110,6 +115,10 @@ macro_rules! scene_program {
         > = $certified.certified_in(
             <$crate::chosen_number!($float, $fixed) as $crate::number::Number>::FORMAT,
         );
+
+        /// What the program does beside its scene.
+        pub const OPTIONS: $crate::cycle::Options =
+            $crate::cycle::Options::DEFAULT$(.armed_at_power_on($reason))?;
 
         // On the host both formats are judged, whichever a board will be built for.
         #[cfg(not(target_os = "none"))]
@@ -127,10 +136,13 @@ macro_rules! scene_program {
             $(friction = Some($friction);)?
             let steps = $crate::certificate::Steps::of(&$transducers, friction);
             print!("{}", $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps));
+            if let $crate::cycle::Arming::AtPowerOn(reason) = OPTIONS.arming {
+                println!("armed at power-on: {}", reason.as_str());
+            }
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_program!($scene: $environment, CERTIFIED_AS_IT_RUNS, $transducers, $crate::chosen_number!($float, $fixed));
+        $crate::board_program!($scene: $environment, CERTIFIED_AS_IT_RUNS, $transducers, OPTIONS, $crate::chosen_number!($float, $fixed));
     };
 }
 

@@ -16,7 +16,7 @@ pub use session::{Facts, Session};
 
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
 /// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
-pub const PROTOCOL: u16 = 1;
+pub const PROTOCOL: u16 = 2;
 
 #[cfg(test)]
 mod tests;

@@ -63,7 +63,7 @@ unsafe fn DefaultHandler(number: i16) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $number:ty) => {
+    ($scene:ident: $environment:ty, $certified:ident, $transducers:ident, $options:ident, $number:ty) => {
         /// The scene, whose torque is as late as it says.
         const TIMED: $crate::certificate::Timed<
             $crate::scene::Scene<$environment>,
@@ -99,7 +99,7 @@ macro_rules! board_program {
                 scene: *TIMED.scene(),
                 transducers: $transducers,
                 rendering: $crate::servo::RenderingOptions::DEFAULT,
-                options: $crate::cycle::Options::DEFAULT,
+                options: $options,
             };
             let compiler = $certified.assessment();
             $crate::board::qemu::run(env!("CARGO_BIN_NAME"), program, compiler, &PLACES)

@@ -4,6 +4,7 @@ use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 use crate::servo::{RenderError, Renders};
 use crate::tuning::Tunable;
 
@@ -28,7 +29,7 @@ pub struct Board {
     pub elapsed: u32,
     pub underrun: bool,
     pub kept: [u32; Retained::WORDS],
-    pub by_watchdog: bool,
+    pub reset: ResetCause,
 }
 
 impl Board {
@@ -40,7 +41,7 @@ impl Board {
             elapsed: 300,
             underrun: false,
             kept: Retained::NOTHING,
-            by_watchdog: false,
+            reset: ResetCause::PowerOn,
         }
     }
 
@@ -101,8 +102,8 @@ impl Startup for Board {
     fn kept(&mut self) -> [u32; Retained::WORDS] {
         self.kept
     }
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        self.by_watchdog
+    fn reset_cause(&mut self) -> ResetCause {
+        self.reset
     }
     fn period(&self) -> u32 {
         PERIOD
@@ -117,7 +118,9 @@ pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
     pub requests: Requests<'static, Rendering<E, N, M>>,
     pub frames: Frames<'static, 8>,
     pub seen: FrameReader<'static, 8>,
+    pub reset: ResetCause,
     pub left: Option<Retained>,
+    pub arms_because: Option<Reason>,
 }
 
 impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
@@ -125,8 +128,15 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
-        let Booted { cycle, left, .. } = boot(program, &mut board, &requests)?;
-        Ok(Self { board, cycle, inbox, requests, frames, seen, left })
+        let Booted { cycle, reset, left, arms_because, .. } = boot(program, &mut board, &requests)?;
+        Ok(Self { board, cycle, inbox, requests, frames, seen, reset, left, arms_because })
+    }
+
+    /// Boots the board and asks for it to be armed.
+    pub fn armed(program: &Program<E>, board: Board) -> Result<Self, RenderError> {
+        let bench = Self::boot(program, board)?;
+        bench.requests.arm();
+        Ok(bench)
     }
 
     /// One tick with the device at this count; gives its frame.
