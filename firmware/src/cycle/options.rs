@@ -31,6 +31,7 @@ impl Reason {
     ///
     /// # Panics
     /// Where it has no words; in a constant that is an error of the compiler.
+    #[track_caller]
     pub const fn new(words: &'static str) -> Self {
         assert!(
             !words.trim_ascii().is_empty(),
@@ -74,6 +75,7 @@ impl Options {
     /// # Panics
     /// As [`Reason::new`].
     #[must_use]
+    #[track_caller]
     pub const fn armed_at_power_on(self, reason: &'static str) -> Self {
         Self { arming: Arming::AtPowerOn(Reason::new(reason)), ..self }
     }
