@@ -17,9 +17,11 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 1
+PROTOCOL = 2
 BAUD = 460800
 
+RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
+          "window-watchdog", "low-power", "option-bytes"]
 STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 4: "underrun", 5: "link-lost",
@@ -56,6 +58,7 @@ FIELDS = {
         ("thinned", "u"),
         ("discarded", DISCARDED),
         ("stack_left", ("option", "u")),
+        ("reset", "u"),
     ],
     "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],
     "telemetry": [("ticks", ("list", [("later", "u"), ("moved", "i"), ("code", "u"),
@@ -211,6 +214,7 @@ class Board:
     def status(self):
         status = self.ask([STATUS], "status")
         status["state"] = STATES[status["state"]]
+        status["reset"] = RESETS[status["reset"]]
         return status | {"fault": named(status["fault"])}
 
     def running(self):
