@@ -25,7 +25,8 @@ RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-wa
 STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 4: "underrun", 5: "link-lost",
-          6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick"}
+          6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick", 10: "clock-lost",
+          11: "flash-ecc", 12: "ram-parity", 13: "non-maskable"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit"}
