@@ -20,10 +20,13 @@ import zlib
 PROTOCOL = 2
 BAUD = 460800
 
+RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
+          "window-watchdog", "low-power", "option-bytes"]
 STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost",
-          6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick"}
+          6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick", 10: "clock-lost",
+          11: "flash-ecc", 12: "ram-parity", 13: "non-maskable"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit"}
@@ -57,6 +60,7 @@ FIELDS = {
         ("thinned", "u"),
         ("discarded", DISCARDED),
         ("stack_left", ("option", "u")),
+        ("reset", "u"),
     ],
     "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],
     "telemetry": [("ticks", ("list", [("later", "u"), ("moved", "i"), ("code", "u"),
@@ -212,6 +216,7 @@ class Board:
     def status(self):
         status = self.ask([STATUS], "status")
         status["state"] = STATES[status["state"]]
+        status["reset"] = RESETS[status["reset"]]
         return status | {"fault": named(status["fault"])}
 
     def running(self):

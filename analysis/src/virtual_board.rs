@@ -10,6 +10,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use firmware::dac::DacCode;
 use firmware::servo::RenderingOptions;
+use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use firmware::wire::{encode, largest_frame};
 
 use crate::emulator::Stats;
 use crate::emulator::log::LogDecoder;
@@ -21,8 +23,10 @@ const SAMPLE: u8 = 1;
 const END: u8 = 0;
 /// A code that is none.
 const NO_CODE: u16 = u16::MAX;
-/// Samples within which a servo must have opened its clamp: more than any scene's fading takes.
-const LONGEST_FADING: usize = 100_000;
+/// Samples within which a servo that was asked to arm must have done so: many times what a frame and
+/// what the board may be at take.
+const LONGEST_ARMING: usize = 10_000;
+
 /// Why a virtual board does not do what it should.
 #[derive(Debug, thiserror::Error)]
 pub enum VirtualBoardError {
@@ -35,9 +39,9 @@ pub enum VirtualBoardError {
         /// What it said.
         said: String,
     },
-    /// Its servo did not switch the amplifier on.
+    /// Its servo was asked to arm, and did not switch the amplifier on.
     #[error(
-        "the virtual board's amplifier has stayed off for {LONGEST_FADING} samples; its log: {log}"
+        "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; its log: {log}"
     )]
     NotArmed {
         /// What it logged.
@@ -130,15 +134,18 @@ impl VirtualBoard {
         self.write_answer(turned, bytes).map_err(|error| self.stopped(&error))
     }
 
-    /// Runs until the amplifier is on and the clamp of a servo with this period in s has opened. The
+    /// Has the servo armed over the serial port, and runs until the clamp of a servo with this period in s has opened. The
     /// device stands still meanwhile.
     ///
     /// # Errors
-    /// Where the board stops, or its servo does not arm itself.
+    /// Where the board stops, or its servo is not armed.
     pub fn engage(&mut self, period: f64) -> Result<(), VirtualBoardError> {
-        for _ in 0..LONGEST_FADING {
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        // A request is a few bytes; the buffer has room for the longest.
+        let arm = encode(&ToBoard::Arm { id: 0 }, &mut buffer).unwrap_or_default();
+        for sample in 0..LONGEST_ARMING {
             let on = self.sample()?.amplifier;
-            self.answer(self.count, &[])?;
+            self.answer(self.count, if sample == 0 { arm } else { &[] })?;
             if on {
                 // Rounded up, and two for the ticks in which it begins and ends.
                 let fading = (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2;

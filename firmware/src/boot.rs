@@ -1,15 +1,16 @@
 //! From reset to a servo that may run, in an order in which nothing can move by surprise:
-//! amplifier off, converter at mid-scale, self-check, encoder zeroed, watchdog; and then, in the
-//! servo's first tick, amplifier on, and from there on the clamp opens step by step.
+//! amplifier off, converter at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays off
+//! until the servo is armed, which is the host's to ask for: see [`Arming`](crate::cycle::Arming).
 
 use core::hint::black_box;
 
 use crate::board::period;
-use crate::cycle::{Cycle, Hardware, Options, Requests};
+use crate::cycle::{Arming, Cycle, Hardware, Options, Reason, Requests};
 use crate::dac::DacCode;
 use crate::environment::Renderable;
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
+use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{
     BuildError, OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers,
@@ -24,8 +25,8 @@ pub trait Startup: Hardware {
     fn guard(&mut self);
     /// The words that outlived the reset; see [`Retained`].
     fn kept(&mut self) -> [u32; Retained::WORDS];
-    /// Whether the watchdog was the reset's cause.
-    fn was_reset_by_watchdog(&mut self) -> bool;
+    /// Why the board was last reset. To be asked once: the chip forgets it then.
+    fn reset_cause(&mut self) -> ResetCause;
     /// Timer counts in the servo's period.
     fn period(&self) -> u32;
 }
@@ -83,12 +84,16 @@ pub struct Booted<E: Renderable<N>, N: Number, M> {
     pub cycle: Cycle<E, N, M>,
     /// Damping in N m s/rad that the device may lose with this scene running.
     pub margin: Option<f64>,
+    /// Why the board was reset.
+    pub reset: ResetCause,
     /// What was left from before the reset.
     pub left: Option<Retained>,
+    /// Why the servo arms itself in its first tick, if it does.
+    pub arms_because: Option<Reason>,
 }
 
-/// Everything up to the first tick. Arms the servo, unless something was left from before the
-/// reset: then it stays off until somebody arms it.
+/// Everything up to the first tick. The servo stays off until the host arms it, unless its program
+/// says that it is armed at power-on, and this is one.
 ///
 /// # Errors
 /// Where the self-check fails. The amplifier is off and the converter at mid-scale then.
@@ -109,19 +114,30 @@ where
     let Prepared { rendering, margin, .. } =
         tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
     hardware.zero();
-    let left = left(hardware);
+    let reset = hardware.reset_cause();
+    let left = left(hardware, reset);
     let fault = left.map(|left| left.fault);
     let cycle = Cycle::new(rendering, &program.options, hardware.period(), fault);
     hardware.guard();
-    if left.is_none() {
+    let arms_because = reason_to_arm(&program.options, reset, left);
+    if arms_because.is_some() {
         requests.arm();
     }
-    Ok(Booted { cycle, margin, left })
+    Ok(Booted { cycle, margin, reset, left, arms_because })
+}
+
+/// Why a servo may arm itself: only where its program says so, and only where the supply was switched
+/// on. Any other reset may come while a hand is on the device.
+fn reason_to_arm(options: &Options, reset: ResetCause, left: Option<Retained>) -> Option<Reason> {
+    match options.arming {
+        Arming::AtPowerOn(reason) if reset == ResetCause::PowerOn && left.is_none() => Some(reason),
+        Arming::AtPowerOn(_) | Arming::WhenAsked => None,
+    }
 }
 
 /// What was left from before the reset.
-fn left(hardware: &mut impl Startup) -> Option<Retained> {
-    let by_watchdog = hardware.was_reset_by_watchdog();
+fn left(hardware: &mut impl Startup, reset: ResetCause) -> Option<Retained> {
+    let by_watchdog = reset == ResetCause::IndependentWatchdog;
     // A panic or a hard fault lets the watchdog reset the board: what it wrote says more.
     Retained::decode(&hardware.kept()).or(by_watchdog.then_some(Retained {
         fault: Fault::Watchdog,

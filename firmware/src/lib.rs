@@ -27,6 +27,7 @@ pub mod excitation;
 pub mod boot;
 pub mod cycle;
 pub mod fault;
+pub mod reset;
 pub mod tuning;
 
 pub mod certificate;

@@ -42,7 +42,7 @@ pub struct Replica<E: Tunable<f32>, M: 'static> {
 }
 
 impl<E: Tunable<f32> + Renders<M>, M: OutputMode> Replica<E, M> {
-    /// Boots a program, whose scene is certified.
+    /// Boots a program, whose scene is certified; it is off until it is armed.
     pub fn boot(program: Program<E>) -> Self {
         let lines = Board { count: 0, code: DacCode::MID_SCALE };
         let mut board = InTime::new(lines, PERIOD);
@@ -51,6 +51,11 @@ impl<E: Tunable<f32> + Renders<M>, M: OutputMode> Replica<E, M> {
         let (frames, _) = Box::leak(Box::new(FrameQueue::new())).split();
         let Booted { cycle, .. } = boot(&program, &mut board, &requests).expect("it is certified");
         Self { board, cycle, requests, inbox, frames, program }
+    }
+
+    /// Asks for it to be armed in the next tick.
+    pub fn arm(&self) {
+        self.requests.arm();
     }
 
     /// Hands a set over, to be swapped in from the next tick on.

@@ -52,6 +52,8 @@ struct Report<'a> {
     state: &'static str,
     fault: Option<String>,
     remembered: Option<String>,
+    /// Why the board was last reset, in one word.
+    reset: &'static str,
     missed: u32,
     worst_slack: Option<f64>,
     energy: f64,
@@ -120,6 +122,7 @@ fn print(
     if let Some(remembered) = link.remembered() {
         writeln!(out, "{}", words::remembered(&remembered))?;
     }
+    writeln!(out, "{}", words::reset(status))?;
     writeln!(out, "{}", words::numbers(running))?;
     writeln!(out, "{}", words::reserves(running, status, board, None))?;
     writeln!(out, "{}", words::energy(status, board))?;
@@ -147,6 +150,7 @@ fn report<'a>(
         state: status.state.as_str(),
         fault: status.fault.map(|fault| fault.to_string()),
         remembered: link.remembered().as_ref().map(words::remembered),
+        reset: status.reset.as_str(),
         missed: status.missed,
         worst_slack: words::worst_slack(status, board),
         energy: status.energy as f64 * board.energy_step,

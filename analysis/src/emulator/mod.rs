@@ -14,13 +14,16 @@ mod trials;
 pub mod world;
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
+use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use firmware::board::shown::{Moved, Shown};
 use firmware::cycle::State;
+use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
+use firmware::wire::{encode, largest_frame};
 use tempfile::TempDir;
 
 pub use judge::Judge;
@@ -104,8 +107,13 @@ pub enum EmulatorError {
         log: String,
     },
     /// The servo did not begin to run.
-    #[error("the emulated board's servo has not armed itself within {LONGEST_FADING} ticks")]
+    #[error(
+        "the emulated board's servo was asked to arm, and does not run after {LONGEST_FADING} ticks"
+    )]
     NotArmed,
+    /// Its serial port could not be reached.
+    #[error("the emulated board's serial port: {0}")]
+    Serial(#[source] io::Error),
     /// The board gave an answer that is none.
     #[error("the emulated board's reply is not understood: its program is of another version")]
     NoReply,
@@ -183,18 +191,40 @@ impl Emulator {
         self.guest.folder.path().join("serial")
     }
 
-    /// Holds the device still at zero until the servo has armed itself and its clamp is open.
+    /// Has the servo armed and holds the device still at zero until its clamp is open.
     ///
     /// # Errors
-    /// Where the board has ended or does not answer, or does not arm itself.
+    /// Where the board has ended or does not answer, or is not armed.
     pub fn engage(&mut self) -> Result<(), EmulatorError> {
+        self.engage_seen(|_| ())
+    }
+
+    /// The same; `see` is told what the board shows in each tick.
+    ///
+    /// # Errors
+    /// As of [`engage`](Self::engage).
+    pub fn engage_seen(&mut self, mut see: impl FnMut(Shown)) -> Result<(), EmulatorError> {
+        const AT_REST: Moved = Moved { count: 0, missed: 0 };
+        // With the first tick the port is open.
+        see(self.tick(AT_REST)?);
+        // Kept until the board has answered, so that nothing of the answer waits for the next client.
+        let _port = self.arm().map_err(EmulatorError::Serial)?;
         for _ in 0..LONGEST_FADING {
-            let shown = self.tick(Moved { count: 0, missed: 0 })?;
+            let shown = self.tick(AT_REST)?;
+            see(shown);
             if shown.state == State::Running {
                 return Ok(());
             }
         }
         Err(EmulatorError::NotArmed)
+    }
+
+    /// Asks the board to arm its servo, over its serial port as any host does.
+    fn arm(&self) -> io::Result<UnixStream> {
+        let mut port = UnixStream::connect(self.port())?;
+        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+        port.write_all(encode(&ToBoard::Arm { id: 0 }, &mut buffer).map_err(io::Error::other)?)?;
+        Ok(port)
     }
 
     /// Ends the run and gives what the board measured and logged.

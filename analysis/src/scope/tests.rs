@@ -2,6 +2,7 @@ use firmware::certificate::Parameter;
 use firmware::cycle::{Frame, State};
 use firmware::dac::DacCode;
 use firmware::fault::Fault;
+use firmware::reset::ResetCause;
 use firmware::torque::LimitReason;
 use firmware::wire::Discarded;
 use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
@@ -37,6 +38,7 @@ const STATUS: Status = Status {
     thinned: 6,
     discarded: Discarded { broken: 1, too_long: 2, checksum: 3, unknown: 2 },
     stack_left: None,
+    reset: ResetCause::PowerOn,
 };
 
 fn frame(tick: u32, count: i32, limit: LimitReason) -> Frame {

@@ -29,6 +29,11 @@ pub fn remembered(remembered: &Remembered) -> String {
     format!("before the last reset, in tick {}: {}", remembered.tick, remembered.fault)
 }
 
+/// Why the board was last reset.
+pub fn reset(status: &Status) -> String {
+    format!("last reset: {}", status.reset)
+}
+
 /// What the servo has to spare, of its certificate and of its time; `slack` in s is that of the
 /// last tick.
 pub fn reserves(running: &Running, status: &Status, board: &Board, slack: Option<f64>) -> String {

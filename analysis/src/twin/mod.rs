@@ -162,7 +162,8 @@ where
     let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
         .map_err(|error| TwinError::Render(Box::new(error)))?;
     let (mut cycle, margin) = (booted.cycle, booted.margin);
-    let facts = Facts { name, timer_counts: TIMER_COUNTS, left: None, stack_left: || None };
+    let (reset, left) = (booted.reset, booted.left);
+    let facts = Facts { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };
     let mut session = Session::new(program, margin, facts, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();

@@ -70,6 +70,7 @@ fn status() -> Status {
         thinned: 6,
         discarded: Discarded { broken: 7, too_long: 8, checksum: 9, unknown: 10 },
         stack_left: Some(2048),
+        reset: firmware::reset::ResetCause::Pin,
     }
 }
 
@@ -115,7 +116,7 @@ fn reads_every_message_to_the_host() {
                     "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,
                     "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
-                    "stack_left": 2048}],
+                    "stack_left": 2048, "reset": 3}],
         ["answer", {"id": 65_535, "refused": "no \u{3b1}"}],
         ["answer", {"id": 0, "refused": null}],
         ["remembered", {"fault": code, "tick": 300, "count": -1}],

@@ -92,6 +92,10 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
         let (status, running) = twin.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 22.0);
+        let (state, reset) = (&running["state"], &running["reset"]);
+        assert_eq!((state, reset), (&"disarmed".into(), &"power-on".into()), "{running}");
+        let (status, running) = twin.tune(&["--arm"]);
+        assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         let (status, running) = twin.tune(&["stiffness=20"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 20.0);

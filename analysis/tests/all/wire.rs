@@ -73,7 +73,7 @@ impl Held {
     }
 }
 
-/// A board with the damper wall, and where it listens.
+/// A board with the damper wall that was armed, and where it listens.
 struct Rig {
     held: Held,
     twin: Twin,
@@ -82,6 +82,13 @@ struct Rig {
 
 impl Rig {
     fn new(clock: Clock) -> Self {
+        let rig = Self::off(clock);
+        assert_eq!(rig.link().arm().unwrap(), Outcome::Done);
+        rig
+    }
+
+    /// The same as it is when it is switched on.
+    fn off(clock: Clock) -> Self {
         let folder = TempDir::new().unwrap();
         let address = Address::Unix(folder.path().join("board"));
         let held = Held::default();
@@ -225,6 +232,20 @@ fn somebody_who_is_no_board_is_told_from_one() {
     let error = Link::open(&port.parse().unwrap()).err().unwrap().to_string();
     assert!(error.contains("no board answers on tcp://127.0.0.1"), "{error}");
     assert!(mute.join().unwrap().len() > 20, "it was asked more than once");
+}
+
+#[test]
+fn a_board_is_off_until_it_is_armed_and_says_why_it_was_reset() {
+    let rig = Rig::off(Clock::Free);
+    assert_eq!(rig.held.after(500), 2048);
+    let output = rig.haptic(&["tune"]);
+    let said = text(&output.stdout);
+    assert!(said.contains(": disarmed\n") && said.contains("\nlast reset: power on\n"), "{said}");
+    let said = answer(&rig.haptic(&["tune", "--json"]));
+    assert_eq!((&said["state"], &said["reset"]), (&"disarmed".into(), &"power-on".into()));
+    let said = answer(&rig.haptic(&["tune", "--json", "--arm"]));
+    assert_eq!(said["refused"], Value::Null);
+    assert!((f64::from(rig.held.after(500)) - code(22.0)).abs() <= 1.0);
 }
 
 #[test]

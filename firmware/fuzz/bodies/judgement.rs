@@ -8,6 +8,7 @@ use firmware::cycle::{Cycle, FrameQueue, Frames, InTime, Inbox, Lines, Mailbox, 
 use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
+use firmware::reset::ResetCause;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::{Latched, Rendering, RenderingOptions, Renders, Transducers};
 use firmware::tuning::{self, Tunable};
@@ -169,7 +170,8 @@ where
     let device = InTime::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
     let cycle = Cycle::new(first, options, PERIOD, None);
     let mut servo = Running { cycle, device, inbox, frames };
-    let facts = Facts { name: "any", timer_counts: 1000, left: None, stack_left: || None };
+    let (reset, stack_left) = (ResetCause::PowerOn, || None);
+    let facts = Facts { name: "any", timer_counts: 1000, reset, left: None, stack_left };
     let mut session = Session::new(program, None, facts, requests, reader);
     let mut limit = scene.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
     let (mut bytes, mut count) = (Reader(data), 0_i16);

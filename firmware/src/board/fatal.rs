@@ -8,7 +8,7 @@ use core::panic::PanicInfo;
 use super::qemu::stop::end;
 use super::stack;
 #[cfg(feature = "stm32")]
-use super::stm32::stop::end;
+use super::stm32::stop::{end, end_non_maskable};
 use crate::fault::Fault;
 
 /// None is reachable by input; this is for mistakes.
@@ -16,6 +16,13 @@ use crate::fault::Fault;
 fn panic(info: &PanicInfo<'_>) -> ! {
     let (line, column) = info.location().map_or((0, 0), |at| (at.line(), at.column()));
     end(Fault::Panic { line, column })
+}
+
+/// The processor's handler of what cannot be masked, which is a fault of the chip.
+#[cfg(feature = "stm32")]
+#[unsafe(export_name = "NonMaskableInt")]
+unsafe extern "C" fn non_maskable() -> ! {
+    end_non_maskable()
 }
 
 /// The processor's handler of faults, first part: a stack that has run over cannot serve the second

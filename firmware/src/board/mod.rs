@@ -68,7 +68,10 @@ pub const BAUD: u32 = 460_800;
 /// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
 ///   injected: `RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT }`;
 /// - `options`: [`Options`](crate::cycle::Options), such as what to do when the host falls silent:
-///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`.
+///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`. A servo stays off until the host arms
+///   it, after every reset; with `Options::DEFAULT.armed_at_power_on("reason")` it also arms itself when
+///   the supply is switched on, and after no other reset. Without words in the reason, which the board
+///   logs, the program does not compile.
 ///
 /// All of it together is the program's constant `PROGRAM`. Numbers that no board could run with do not
 /// compile either.
@@ -130,6 +133,9 @@ macro_rules! scene_program {
                 "{}",
                 $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps, injection)
             );
+            if let $crate::cycle::Arming::AtPowerOn(reason) = PROGRAM.options.arming {
+                println!("armed at power-on: {}", reason.as_str());
+            }
         }
 
         #[cfg(target_os = "none")]

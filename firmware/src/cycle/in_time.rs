@@ -5,6 +5,7 @@ use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 
 /// What a simulated board's program sees of its device.
 pub trait Lines {
@@ -65,8 +66,8 @@ impl<L: Lines> Startup for InTime<L> {
         Retained::NOTHING
     }
 
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        false
+    fn reset_cause(&mut self) -> ResetCause {
+        ResetCause::PowerOn
     }
 
     fn period(&self) -> u32 {

@@ -25,7 +25,7 @@ pub use frame_queue::{FrameQueue, FrameReader, Frames};
 pub use hardware::{BEGAN_LATE, Hardware, READ_WITHIN};
 pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
-pub use options::{LinkPolicy, Options};
+pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use state::{Notice, State, Status};
 pub use swap::longest_gap;
 

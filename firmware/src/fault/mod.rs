@@ -57,6 +57,19 @@ pub enum Fault {
         /// The most that is allowed.
         allowed: u32,
     },
+    /// The crystal that the core's clock comes from has stopped.
+    ClockLost,
+    /// A word of the flash memory has more wrong bits than its error correction can restore.
+    FlashEcc {
+        /// The word's place in its bank of the flash memory, in bytes.
+        address: u32,
+        /// The memory's whole register of errors.
+        status: u32,
+    },
+    /// A word of RAM has a wrong parity.
+    RamParity,
+    /// A non-maskable interrupt of which the chip does not say the cause.
+    NonMaskable,
 }
 
 impl Fault {
@@ -71,6 +84,10 @@ impl Fault {
             Self::Panic { .. } => "panic",
             Self::HardFault { .. } => "hard-fault",
             Self::LateTick { .. } => "late-tick",
+            Self::ClockLost => "clock-lost",
+            Self::FlashEcc { .. } => "flash-ecc",
+            Self::RamParity => "ram-parity",
+            Self::NonMaskable => "non-maskable",
         }
     }
 
@@ -86,6 +103,10 @@ impl Fault {
             Self::Panic { line, column } => (7, [line, column]),
             Self::HardFault { address, status } => (8, [address, status]),
             Self::LateTick { late, allowed } => (9, [late, allowed]),
+            Self::ClockLost => (10, [0; 2]),
+            Self::FlashEcc { address, status } => (11, [address, status]),
+            Self::RamParity => (12, [0; 2]),
+            Self::NonMaskable => (13, [0; 2]),
         }
     }
 
@@ -101,6 +122,10 @@ impl Fault {
             7 => Self::Panic { line: a, column: b },
             8 => Self::HardFault { address: a, status: b },
             9 => Self::LateTick { late: a, allowed: b },
+            10 => Self::ClockLost,
+            11 => Self::FlashEcc { address: a, status: b },
+            12 => Self::RamParity,
+            13 => Self::NonMaskable,
             _ => return None,
         })
     }
@@ -146,6 +171,20 @@ impl fmt::Display for Fault {
                 f,
                 "a tick began {late} timer counts after its period, and {allowed} are allowed: \
                  shorten what keeps interrupts off, or lengthen the scene's period, then arm again"
+            ),
+            Self::ClockLost => {
+                f.write_str("the crystal stopped: check it and its supply, then arm again")
+            }
+            Self::FlashEcc { address, status } => write!(
+                f,
+                "the flash memory cannot be read at {address:#010x} of its bank (its register of \
+                 errors: {status:#010x}): flash the program anew, then arm again"
+            ),
+            Self::RamParity => {
+                f.write_str("RAM was not as it was written: check the supply, then arm again")
+            }
+            Self::NonMaskable => f.write_str(
+                "a non-maskable interrupt came whose cause the chip does not say: arm again",
             ),
         }
     }

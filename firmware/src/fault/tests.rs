@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const ALL: [Fault; 8] = [
+const ALL: [Fault; 12] = [
     Fault::MissedTick { missed: 3, tolerated: 1 },
     Fault::EncoderJump { counts: 5000, largest: 979 },
     Fault::NotANumber,
@@ -11,6 +11,10 @@ const ALL: [Fault; 8] = [
     Fault::Panic { line: 7, column: 13 },
     Fault::HardFault { address: 0x0800_1234, status: 0x0001_0000 },
     Fault::LateTick { late: 40, allowed: 31 },
+    Fault::ClockLost,
+    Fault::FlashEcc { address: 0x1238, status: 0x8000_1238 },
+    Fault::RamParity,
+    Fault::NonMaskable,
 ];
 
 #[test]
@@ -25,7 +29,7 @@ fn every_fault_has_a_code_and_a_word_of_its_own() {
         }
     }
     assert_eq!(Fault::decode(0, [0; 2]), None);
-    assert_eq!(Fault::decode(10, [0; 2]), None);
+    assert_eq!(Fault::decode(14, [0; 2]), None);
 }
 
 #[test]
@@ -37,6 +41,8 @@ fn sentences_have_the_value_the_bound_and_the_way_out() {
         (ALL[5], ["line 7", "column 13", "arm again"]),
         (ALL[6], ["0x08001234", "0x00010000", "arm again"]),
         (ALL[7], ["40 timer counts", "31 are allowed", "arm again"]),
+        (ALL[8], ["crystal", "supply", "arm again"]),
+        (ALL[9], ["0x00001238", "0x80001238", "flash the program anew"]),
     ] {
         let sentence = fault.to_string();
         for part in parts {

@@ -15,6 +15,7 @@ use super::telemetry::Batch;
 use crate::certificate::{Parameter, Sentence};
 use crate::cycle::State;
 use crate::fault::{Fault, Retained};
+use crate::reset::ResetCause;
 
 /// Numbers that one set may change: more than any scene has.
 pub const MAX_CHANGES: usize = 8;
@@ -159,6 +160,8 @@ pub struct Status {
     pub discarded: Discarded,
     /// Bytes of the stack that were never used, where the board can tell.
     pub stack_left: Option<u32>,
+    /// Why the board was last reset.
+    pub reset: ResetCause,
 }
 
 /// A [`Fault`] on the wire: a code and two numbers, so that a host that does not know the fault can

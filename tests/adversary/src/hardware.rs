@@ -5,6 +5,7 @@ use firmware::cycle::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::fault::Retained;
+use firmware::reset::ResetCause;
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;
@@ -25,7 +26,7 @@ pub struct Board {
     pub offset: i16,
     /// Whether the amplifier is on.
     pub amplifier: bool,
-    /// Whether the last reset was the watchdog's, so that the servo is not armed by booting.
+    /// Whether the last reset was the watchdog's.
     pub by_watchdog: bool,
     counts_per_radian: f64,
     /// Angle in rad at which the encoder's counter is zero.
@@ -91,8 +92,8 @@ impl Startup for Board {
         Retained::NOTHING
     }
 
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        self.by_watchdog
+    fn reset_cause(&mut self) -> ResetCause {
+        if self.by_watchdog { ResetCause::IndependentWatchdog } else { ResetCause::PowerOn }
     }
 
     fn period(&self) -> u32 {

@@ -110,7 +110,8 @@ pub struct Plan {
     pub zero: f64,
     /// Where device and hand start.
     pub start: State,
-    /// Whether booting arms the servo; otherwise a request does, some ticks later.
+    /// Whether the servo is armed from its first tick, as one may be at power-on; otherwise a request
+    /// does it, some ticks later.
     pub armed_by_boot: bool,
     /// What happens to the ticks.
     pub pattern: Pattern,

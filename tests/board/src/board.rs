@@ -2,7 +2,7 @@
 
 mod bus;
 
-use crate::chip::{Chip, DEBUG, PACER_INTERRUPT, TORQUE};
+use crate::chip::{Chip, PACER_INTERRUPT, TORQUE};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::device::{Device, Still};
@@ -58,9 +58,12 @@ pub struct Board {
     /// The watchdog.
     pub watchdog: Watchdog,
     power: Plain,
-    flash: Plain,
-    configuration: Plain,
-    debug: Plain,
+    /// The flash memory's interface.
+    pub flash: Plain,
+    /// System configuration.
+    pub configuration: Plain,
+    /// The unit for debugging.
+    pub debug: Plain,
     ports: Vec<Pins>,
     pub(crate) bus_error: Option<u32>,
     seen: (Option<u16>, Level),
@@ -89,7 +92,7 @@ impl Board {
             power: (chip.power)(),
             flash: (chip.flash_interface)(),
             configuration: (chip.configuration)(),
-            debug: Plain::new(DEBUG),
+            debug: (chip.debug)(),
             ports: (0..9).map(chip.ports).collect(),
             bus_error: None,
             seen: (None, Level::Floating),
@@ -101,10 +104,13 @@ impl Board {
         self.chip
     }
 
-    /// Every unit as out of reset; memory, time and the world stay.
+    /// Every unit as out of reset; memory, time and the world stay, and with them the option bytes and
+    /// what a debugger has set.
     pub fn reset(&mut self, cause: Cause) {
         let device = std::mem::replace(&mut self.device, Box::new(Still));
-        let fresh = Self::new(self.chip, device);
+        let mut fresh = Self::new(self.chip, device);
+        fresh.flash = self.flash_after_reset();
+        fresh.debug = self.debug.clone();
         *self = Self {
             now: self.now,
             meter: self.meter,
@@ -116,6 +122,13 @@ impl Board {
             ..fresh
         };
         self.look();
+    }
+
+    /// The flash memory's interface out of reset, with the option bytes as they are.
+    fn flash_after_reset(&self) -> Plain {
+        let mut flash = (self.chip.flash_interface)();
+        flash.set(self.chip.options, self.flash.get(self.chip.options));
+        flash
     }
 
     /// Level of the amplifier's line.

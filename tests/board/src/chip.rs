@@ -18,7 +18,7 @@ pub enum Unit {
     Flash,
     /// System configuration.
     Configuration,
-    /// What keeps clocks running for a debugger.
+    /// What is there for debuggers.
     Debug,
     /// A port of pins: 0 is A.
     Pins(usize),
@@ -97,8 +97,12 @@ pub struct Chip {
     pub power: fn() -> Plain,
     /// Its flash interface.
     pub flash_interface: fn() -> Plain,
+    /// The place of the option bytes in it.
+    pub options: u32,
     /// Its system configuration.
     pub configuration: fn() -> Plain,
+    /// Its unit for debugging.
+    pub debug: fn() -> Plain,
     /// Names of its units' registers, by the place behind the unit's first.
     pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports out of reset.
@@ -125,8 +129,17 @@ const fn always(base: u32, name: &'static str, unit: Unit) -> Place {
     Place { base, name, unit, clocked: None }
 }
 
-/// Keeps clocks running for a debugger: what is written has no effect here.
-pub const DEBUG: &[(u32, u32, u32)] = &[(0x04, 0, 0b111)];
+/// What a debugger may have stopped while it halts the core: bits of [`FREEZE`]. Nothing here is
+/// halted, so that what is written has no effect.
+pub const WATCHDOG_FREEZES: u32 = 1 << 12;
+/// Place of that register in the unit for debugging.
+pub const FREEZE: u32 = 0x08;
+
+/// The unit for debugging: which chip it is, and what is clocked while the core sleeps.
+static DEBUG_G4: &[(u32, u32, u32)] =
+    &[(0x00, 0x2001_6469, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
+static DEBUG_F405: &[(u32, u32, u32)] =
+    &[(0x00, 0x1007_6413, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
 
 static G4: &Layout = &clock_g4::LAYOUT;
 static F4: &Layout = &clock_f4::LAYOUT;
@@ -172,7 +185,10 @@ pub static NUCLEO_G474RE: Chip = Chip {
     names: names::g4,
     power: power::g4,
     flash_interface: flash::g4,
-    configuration: || Plain::new(&[]),
+    options: 0x20,
+    // CFGR2, with the flag of a wrong parity.
+    configuration: || Plain::new(&[(0x1C, 0, 0)]),
+    debug: || Plain::new(DEBUG_G4),
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
         0 => Pins::new(0xABFF_FFFF, 0x0C00_0000, 0x6400_0000),
@@ -260,7 +276,9 @@ pub static STM32F405: Chip = Chip {
     names: names::f405,
     power: power::f405,
     flash_interface: flash::f405,
+    options: 0x14,
     configuration: || Plain::new(&[]),
+    debug: || Plain::new(DEBUG_F405),
     ports: |port| match port {
         0 => Pins::new(0xA800_0000, 0x0C00_0000, 0x6400_0000),
         1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),

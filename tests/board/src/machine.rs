@@ -8,7 +8,7 @@ use unicorn_engine::RegisterARM;
 
 use crate::board::Board;
 use crate::chip::Chip;
-use crate::core::exceptions::Number;
+use crate::core::exceptions::{NON_MASKABLE, Number};
 use crate::core::system::FaultStatus;
 use crate::device::Device;
 use crate::frame::THUMB;
@@ -165,7 +165,11 @@ impl Machine {
 
     /// From one event to the next, at most up to a time.
     fn step(&mut self, end: u64) -> Result<(), Trouble> {
-        if self.core.board().clock.has_stopped() {
+        let board = self.core.board_mut();
+        if board.clock.notice_failure() {
+            board.system.exceptions.pend(NON_MASKABLE);
+        }
+        if board.clock.has_stopped() {
             return self.stand_still();
         }
         self.catch_up()?;
@@ -250,11 +254,19 @@ impl Machine {
         (self.waiting, self.locked_up) = (false, false);
     }
 
-    fn reset(&mut self, cause: Cause) {
+    /// Resets the board, for whatever cause; its memory stays.
+    pub fn reset(&mut self, cause: Cause) {
         self.drain_log();
         self.resets.push((self.board().now, cause));
         self.core.board_mut().reset(cause);
         self.start();
+    }
+
+    /// Switches the power off, for long enough for RAM to forget, and on again.
+    pub fn power_cycle(&mut self) {
+        self.drain_log();
+        self.core.forget();
+        self.reset(Cause::Power);
     }
 
     /// Takes down what the program has logged since the last time.

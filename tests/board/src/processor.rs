@@ -75,10 +75,16 @@ impl Processor {
         }
         hooks::wire(&mut engine);
         let mut core = Self { engine, ram_is_data: true };
-        for (base, size) in [(RAM, chip.ram), (COUPLED, chip.coupled.0)] {
-            core.fill_with_noise(base, size);
-        }
+        core.forget();
         core
+    }
+
+    /// Leaves noise in RAM, as it is when power comes on.
+    pub fn forget(&mut self) {
+        let chip = self.board().chip();
+        for (base, size) in [(RAM, chip.ram), (COUPLED, chip.coupled.0)] {
+            self.fill_with_noise(base, size);
+        }
     }
 
     /// The board.
@@ -185,7 +191,6 @@ impl Processor {
         self.engine.mem_write(address.into(), bytes).is_ok()
     }
 
-    /// RAM as it is when power comes on.
     fn fill_with_noise(&mut self, base: u32, size: u32) {
         let mut state = 0x9E37_79B9_u32 ^ base;
         let noise = (0..size).map(|_| {

@@ -16,6 +16,7 @@ use firmware::boot::Program;
 use firmware::certificate::Parameter;
 use firmware::cycle::{Options, State};
 use firmware::fault::Fault;
+use firmware::reset::ResetCause;
 use firmware::servo::{RenderingOptions, Simultaneous};
 use firmware::wire::message::Outcome;
 use rand::{Rng, SeedableRng};
@@ -121,11 +122,17 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
         options: Options::DEFAULT,
     };
     let mut replica = Replica::<_, Simultaneous>::boot(program);
-    let before = std::iter::from_fn(|| Some(emulator.tick(Moved { count: 0, missed: 0 }).unwrap()));
-    for shown in before.take_while(|shown| shown.state != State::Running) {
+    let mut is_on = false;
+    let mut engaged = Vec::new();
+    emulator.engage_seen(|shown| engaged.push(shown)).unwrap();
+    for shown in engaged {
+        // In the tick in which the board has taken the request.
+        if shown.amplifier && !is_on {
+            replica.arm();
+        }
+        is_on = shown.amplifier;
         assert_eq!(replica.tick(0), (shown.code, shown.state));
     }
-    assert_eq!(replica.tick(0), (MID_SCALE, State::Running));
 
     let hand = Hand { moves: true, ..Hand::default() };
     let world = World::start(emulator, hand.clone());
@@ -163,27 +170,34 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
     assert!(taken.is_empty(), "{} sets never ran", taken.len());
 }
 
-/// From the first tick on the clamp opens step by step, whatever the wall asks for.
+/// Whatever moves, there is no torque before somebody arms the board; from then on the clamp opens step
+/// by step, whatever the wall asks for.
 #[test]
 fn the_board_boots_in_an_order_in_which_nothing_can_move() {
-    let mut board = Emulator::boot(&PROGRAM).unwrap();
-    let first = board.tick(Moved { count: 5000, missed: 0 }).unwrap();
-    let armed = Shown { code: MID_SCALE, amplifier: true, state: State::FadingIn };
-    assert_eq!(first, armed, "where the device is, is its zero");
-    for tick in 1.. {
-        // Into the wall, faster than the clamp opens.
-        let count = 5000 + (20 * tick).min(600);
-        let shown = board.tick(Moved { count, missed: 0 }).unwrap();
-        let torque = f64::from(MID_SCALE) - f64::from(shown.code);
-        let level = LIMIT / FADING * f64::from(tick);
-        assert!((-0.01..=level + 0.51).contains(&torque), "tick {tick}: {torque} of {level}");
-        if shown.state == State::Running {
-            assert!(torque > 200.0 && f64::from(tick) >= FADING - 1.0, "tick {tick}: {torque}");
-            break;
-        }
-        assert_eq!((shown.amplifier, shown.state), (true, State::FadingIn));
+    let hand = Hand { count: Arc::new(Mutex::new(5000)), ..Hand::default() };
+    let world = World::start(Emulator::boot(&PROGRAM).unwrap(), hand.clone());
+    let off = Shown { code: MID_SCALE, amplifier: false, state: State::Disarmed };
+    hand.wait("it has booted", |shown| *shown == off);
+    // Where the device was is its zero: into the wall by as much as it goes in a tick, and again.
+    for count in [5500, 6000] {
+        let ticks = hand.provoke(Moved { count, missed: 0 });
+        assert!(ticks.iter().all(|(_, shown)| *shown == off), "{ticks:?}");
     }
-    board.finish().unwrap();
+    let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
+    assert_eq!(link.status().unwrap().reset, ResetCause::PowerOn);
+    assert_eq!(link.arm().unwrap(), Outcome::Done);
+    hand.wait("it runs", |shown| shown.state == State::Running);
+    let ticks = hand.ticks.lock().unwrap().clone();
+    let armed = ticks.iter().skip_while(|(_, shown)| *shown == off).map(|(_, shown)| shown);
+    for (tick, shown) in armed.enumerate().take_while(|(_, shown)| shown.state != State::Running) {
+        let torque = f64::from(MID_SCALE) - f64::from(shown.code);
+        let level = LIMIT / FADING * tick as f64;
+        assert!((-0.01..=level + 0.51).contains(&torque), "tick {tick}: {torque} of {level}");
+        assert_eq!((shown.amplifier, shown.state), (true, State::FadingIn));
+        assert!((tick as f64) < FADING + 1.0, "tick {tick}");
+    }
+    assert!(hand.last().unwrap().code < MID_SCALE - 200, "{:?}", hand.last());
+    world.end().unwrap().end().unwrap();
 }
 
 /// A fault takes the torque away in its own tick, stays until the servo is armed again, and says
@@ -244,6 +258,7 @@ fn a_fault_of_the_processor_is_remembered_through_the_reset() {
     );
     let status = link.status().unwrap();
     assert_eq!(status.fault.and_then(|fault| fault.fault()), remembered);
+    assert_eq!(status.reset, ResetCause::Software);
     let after = hand.ticks.lock().unwrap()[before..].to_vec();
     let stopped = after.iter().skip_while(|(_, shown)| shown.amplifier);
     assert!(stopped.clone().all(|(_, shown)| !shown.amplifier && shown.code == MID_SCALE));

@@ -12,8 +12,6 @@ use crate::servo::BuildError;
 
 /// SysTick's clock in Hz: the emulated F405 runs at its full speed from the start.
 const CORE_CLOCK: f64 = 168e6;
-/// SysTick counts down from at most this: it has 24 bits.
-const LONGEST_RELOAD: u32 = 0xFF_FFFF;
 
 /// TIM2's registers, from the F405's memory map: control register 1, counter (of 32 bits), and
 /// reload.

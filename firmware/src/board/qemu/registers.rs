@@ -8,6 +8,7 @@ use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 
 /// What belongs to the servo's interrupt.
 pub struct Registers {
@@ -79,8 +80,9 @@ impl Startup for Registers {
         retained::kept()
     }
 
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        false
+    /// Nothing but its own program resets the emulated board.
+    fn reset_cause(&mut self) -> ResetCause {
+        if retained::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
     }
 
     fn period(&self) -> u32 {

@@ -104,8 +104,10 @@ where
 {
     let mut hardware = Registers::new(period);
     let Ends { requests, inbox, frames, told } = ends(&places.meeting);
-    let Booted { cycle, margin, left } =
+    let Booted { cycle, margin, reset, left, .. } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
+    #[cfg(feature = "log")]
+    defmt::info!("reset={=str}", reset.as_str());
     #[cfg(feature = "log")]
     if let Some(left) = left {
         defmt::warn!("left={=str} {}", left.fault.as_str(), defmt::Display2Format(&left.fault));
@@ -114,7 +116,7 @@ where
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { places.seat.fill(Seat { cycle, hardware, inbox, frames }) };
     let timer_counts = period.clock_counts();
-    let facts = Facts { name, timer_counts, left, stack_left: || Some(stack::left()) };
+    let facts = Facts { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
     places.link.init_with(|| Link {
         port: serial::open(),
         session: Session::new(program, margin, facts, requests, told),

@@ -6,16 +6,26 @@
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 pub mod clock_170;
 pub mod converter;
+#[cfg(feature = "stm32f405")]
+mod f4;
 #[cfg(feature = "fast-memory")]
 mod fast;
+#[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
+mod g4;
 pub mod line;
 pub mod pace;
 pub mod quadrature;
 pub mod registers;
+mod reset;
 pub mod serial;
 mod start;
 pub(super) mod stop;
 mod sweep;
+
+#[cfg(feature = "stm32f405")]
+use f4 as family;
+#[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
+use g4 as family;
 
 #[cfg(feature = "b-g431b-esc1")]
 pub use super::b_g431b_esc1 as wiring;

@@ -6,6 +6,7 @@ use embassy_stm32::pac::iwdg::vals::Key;
 use super::pace::{Pace, Period};
 use super::quadrature::Counter;
 use super::wiring::{AMPLIFIER, CONVERTER, ENCODER};
+use super::{family, reset};
 use crate::board::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::board::retained;
 use crate::boot::Startup;
@@ -13,6 +14,7 @@ use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 
 /// The registers that belong to the servo's interrupt.
 pub struct Registers {
@@ -68,16 +70,15 @@ impl Hardware for Registers {
     }
 }
 
-/// Bit of the chips' reset causes that says that the watchdog was it; the F4's and the G4's is the
-/// same, under two names.
-const BY_WATCHDOG: u32 = 1 << 29;
-
 impl Startup for Registers {
     fn zero(&mut self) {
         ENCODER.zero();
     }
 
     fn guard(&mut self) {
+        // While the core is halted the converter holds its last code: what takes that away shall not
+        // be halted with it.
+        family::keep_watchdog_running();
         // A count more makes up for what the cast rounds down.
         let counts = PATIENCE * self.period.seconds() * WATCHDOG_CLOCK + 1.0;
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
@@ -89,11 +90,8 @@ impl Startup for Registers {
         retained::kept()
     }
 
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        let by_watchdog = pac::RCC.csr().read().0 & BY_WATCHDOG != 0;
-        // Told once: the next reset may have another cause.
-        pac::RCC.csr().modify(|w| w.set_rmvf(true));
-        by_watchdog
+    fn reset_cause(&mut self) -> ResetCause {
+        reset::cause()
     }
 
     fn period(&self) -> u32 {

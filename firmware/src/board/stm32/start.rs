@@ -6,6 +6,7 @@ use core::task::Poll;
 use embassy_executor::{Executor, SpawnError, SpawnToken};
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::pac;
 use static_cell::StaticCell;
 
 use super::pace::Period;
@@ -14,16 +15,18 @@ use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
 use super::wiring::{self, CONVERTER, ENCODER};
-use super::{Connected, Mode};
+use super::{Connected, Mode, family};
 use crate::board::input_filter::InputFilter;
 use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
+use crate::cycle::Reason;
 use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
+use crate::reset::ResetCause;
 use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
@@ -104,15 +107,16 @@ where
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
-    let Booted { cycle, margin, left } =
+    let Booted { cycle, margin, reset, left, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
-    greet(name, left);
-    let facts = Facts { name, timer_counts, left, stack_left: || Some(stack::left()) };
+    greet(name);
+    log_reset(reset, left, arms_because);
+    let facts = Facts { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
     let session = Session::new(program, margin, facts, requests, told);
     places.link.init(Link { port, session })
 }
@@ -144,18 +148,30 @@ pub fn begin(hardware: &mut Registers) {
 }
 
 /// The first words to a debug probe.
-fn greet(name: &str, left: Option<Retained>) {
+fn greet(name: &str) {
     let (free, size) = (stack::left(), stack::size());
     defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
+    family::check_brown_out();
+}
+
+/// Why the board was reset, and what comes of it.
+fn log_reset(reset: ResetCause, left: Option<Retained>, arms_because: Option<Reason>) {
+    defmt::info!("last reset: {=str}", reset.as_str());
     if let Some(Retained { fault, tick, .. }) = left {
         let sentence = defmt::Display2Format(&fault);
         defmt::warn!("not armed, because of what was left in tick {}: {}", tick, sentence);
+    }
+    if let Some(reason) = arms_because {
+        defmt::warn!("armed at power-on: {=str}", reason.as_str());
     }
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
 pub fn connect(filter: InputFilter) -> Connected {
     let chip = embassy_stm32::init(wiring::clocks());
+    family::cache();
+    // From here on a crystal that stops is a fault, and not a core that stands still.
+    pac::RCC.cr().modify(|w| w.set_csson(true));
     #[cfg(feature = "fast-memory")]
     super::fast::load();
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
@@ -201,7 +217,7 @@ macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         $crate::board_chip!();
 
-        $crate::board_filter!($transducers);
+        $crate::board_filter!($program.transducers);
 
         /// The scene, as late as the board's converter: where it is not, this does not compile.
         const TIMED: $crate::certificate::Timed<
@@ -266,7 +282,7 @@ macro_rules! board_chip {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_filter {
-    ($transducers:ident) => {
+    ($transducers:expr) => {
         /// Where the encoder's edges can come too fast for this board, this does not compile.
         const FILTER: $crate::board::input_filter::InputFilter =
             $crate::board::input_filter::InputFilter::of_encoder(

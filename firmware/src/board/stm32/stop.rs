@@ -1,6 +1,7 @@
 //! What a fault leaves behind: no torque, amplifier off, a record for the next boot, and a wait for
 //! the watchdog, which resets the board.
 
+use super::family;
 use super::wiring::{AMPLIFIER, CONVERTER};
 use crate::board::retained;
 use crate::fault::Fault;
@@ -9,6 +10,14 @@ use crate::fault::Fault;
 pub fn stop() {
     AMPLIFIER.set(false);
     CONVERTER.stop();
+}
+
+/// Ends the program because of a non-maskable interrupt: an error of the flash memory, of RAM, or of the
+/// crystal, without which the core runs on by its internal oscillator.
+pub fn end_non_maskable() -> ! {
+    // What the chip says of it may take an access that fails, too.
+    AMPLIFIER.set(false);
+    end(family::non_maskable())
 }
 
 /// Ends the program because of a fault. The servo's interrupt comes no more, so the watchdog resets

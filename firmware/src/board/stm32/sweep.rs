@@ -151,6 +151,7 @@ pub fn measure<const N: usize>(
     let mut serial = connect(setup.filter).serial;
     let mut hardware = Registers::new(period(sweep.period()));
     hardware.zero();
+    defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);

@@ -4,6 +4,7 @@ use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 use crate::servo::{RenderError, Renders};
 use crate::tuning::Tunable;
 
@@ -27,7 +28,7 @@ pub struct Board {
     pub passed: u32,
     pub elapsed: u32,
     pub kept: [u32; Retained::WORDS],
-    pub by_watchdog: bool,
+    pub reset: ResetCause,
 }
 
 impl Board {
@@ -38,7 +39,7 @@ impl Board {
             passed: 1,
             elapsed: 300,
             kept: Retained::NOTHING,
-            by_watchdog: false,
+            reset: ResetCause::PowerOn,
         }
     }
 
@@ -96,8 +97,8 @@ impl Startup for Board {
     fn kept(&mut self) -> [u32; Retained::WORDS] {
         self.kept
     }
-    fn was_reset_by_watchdog(&mut self) -> bool {
-        self.by_watchdog
+    fn reset_cause(&mut self) -> ResetCause {
+        self.reset
     }
     fn period(&self) -> u32 {
         PERIOD
@@ -112,7 +113,9 @@ pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
     pub requests: Requests<'static, Rendering<E, N, M>>,
     pub frames: Frames<'static, 8>,
     pub seen: FrameReader<'static, 8>,
+    pub reset: ResetCause,
     pub left: Option<Retained>,
+    pub arms_because: Option<Reason>,
 }
 
 impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
@@ -120,8 +123,15 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
-        let Booted { cycle, left, .. } = boot(program, &mut board, &requests)?;
-        Ok(Self { board, cycle, inbox, requests, frames, seen, left })
+        let Booted { cycle, reset, left, arms_because, .. } = boot(program, &mut board, &requests)?;
+        Ok(Self { board, cycle, inbox, requests, frames, seen, reset, left, arms_because })
+    }
+
+    /// Boots the board and asks for it to be armed.
+    pub fn armed(program: &Program<E>, board: Board) -> Result<Self, RenderError> {
+        let bench = Self::boot(program, board)?;
+        bench.requests.arm();
+        Ok(bench)
     }
 
     /// One tick with the device at this count; gives its frame.

@@ -1,6 +1,7 @@
 //! What stops the servo, one test each; and that arming again is refused while the cause is there.
 
 use super::*;
+use crate::reset::ResetCause;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
 fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
@@ -167,7 +168,7 @@ fn a_torque_that_is_not_a_number() {
 #[test]
 fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
     let mut board = Board::new();
-    board.by_watchdog = true;
+    board.reset = ResetCause::IndependentWatchdog;
     let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
     bench.board.passed = 2;
     bench.requests.arm();
@@ -181,12 +182,13 @@ fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
 fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
     let panicked = Retained { fault: Fault::Panic { line: 12, column: 5 }, tick: 77, count: -3 };
     let watchdog = Retained { fault: Fault::Watchdog, tick: 0, count: 0 };
-    for (kept, by_watchdog, left) in [
-        (panicked.encode(), true, panicked),
-        (panicked.encode(), false, panicked),
-        (Retained::NOTHING, true, watchdog),
+    let by_watchdog = ResetCause::IndependentWatchdog;
+    for (kept, reset, left) in [
+        (panicked.encode(), by_watchdog, panicked),
+        (panicked.encode(), ResetCause::Software, panicked),
+        (Retained::NOTHING, by_watchdog, watchdog),
     ] {
-        let board = Board { kept, by_watchdog, ..Board::new() };
+        let board = Board { kept, reset, ..Board::new() };
         let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
         assert_eq!(bench.left, Some(left));
         bench.stand(300, 200);
@@ -199,7 +201,7 @@ fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
 }
 
 fn with_link(link: LinkPolicy) -> Program<Spring> {
-    Program { options: Options { link, link_timeout: 0.2 }, ..SPRING }
+    Program { options: Options { link, link_timeout: 0.2, ..Options::DEFAULT }, ..SPRING }
 }
 
 #[test]

@@ -13,6 +13,7 @@ use crate::boot::Program;
 use crate::encoder::CounterWidth;
 use crate::environment::DelayedSpring;
 use crate::fault::Retained;
+use crate::reset::ResetCause;
 use crate::scene::{Coupling, Device, Scene, Timing};
 use crate::servo::{Latched, RenderError, RenderingOptions, Transducers};
 
@@ -42,8 +43,9 @@ const fn program<E: Copy>(environment: E) -> Program<E> {
 
 const SPRING: Program<Spring> = program(DelayedSpring { stiffness: 11.0 });
 
+/// A bench that was asked to be armed.
 fn bench(program: &Program<Spring>) -> Bench<Spring, f32, Latched> {
-    Bench::boot(program, Board::new()).unwrap()
+    Bench::armed(program, Board::new()).unwrap()
 }
 
 /// A bench whose servo runs, with the device at this count.
@@ -86,4 +88,49 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     let error = result.map(|_| ()).unwrap_err();
     assert!(matches!(error, RenderError::Rejected(_)));
     assert_eq!(board.events, [Event::Amplifier(false), Event::Write(2048)]);
+}
+
+/// After whatever reset, nothing moves before somebody asks for it.
+#[test]
+fn no_reset_arms_a_servo_that_nobody_has_asked_to_arm() {
+    for reset in ResetCause::ALL {
+        let board = Board { reset, ..Board::new() };
+        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
+        bench.stand(900, 300);
+        assert_eq!(bench.cycle.state(), State::Disarmed, "{reset:?}");
+        assert!(!bench.board.is_on(), "{reset:?}");
+        assert!(bench.board.codes().iter().all(|code| *code == 2048), "{reset:?}");
+        assert_eq!((bench.notices(), bench.reset), (vec![], reset));
+        bench.requests.arm();
+        bench.tick(900);
+        assert!(bench.board.is_on(), "{reset:?}");
+    }
+}
+
+#[test]
+fn a_program_that_says_so_is_armed_at_power_on_and_after_no_other_reset() {
+    const OPTIONS: Options = Options::DEFAULT.armed_at_power_on("nobody can reach it");
+    let program = Program { options: OPTIONS, ..SPRING };
+    for reset in ResetCause::ALL {
+        let board = Board { reset, ..Board::new() };
+        let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&program, board).unwrap();
+        let arms = reset == ResetCause::PowerOn;
+        let because = arms.then_some(Reason::new("nobody can reach it"));
+        assert_eq!(bench.arms_because, because, "{reset:?}");
+        bench.stand(0, 300);
+        assert_eq!(bench.board.is_on(), arms, "{reset:?}");
+    }
+}
+
+/// RAM may keep a record through a supply that was off for a moment.
+#[test]
+fn a_fault_that_was_kept_is_armed_at_no_power_on() {
+    let kept = Retained { fault: Fault::ClockLost, tick: 0, count: 0 }.encode();
+    let options = Options::DEFAULT.armed_at_power_on("nobody can reach it");
+    let program = Program { options, ..SPRING };
+    let board = Board { kept, ..Board::new() };
+    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&program, board).unwrap();
+    bench.stand(0, 300);
+    assert!(!bench.board.is_on());
+    assert_eq!(bench.status().fault, Some(Fault::ClockLost));
 }

@@ -16,7 +16,7 @@ fn codes<N: Number, M: OutputMode>() -> Vec<i32>
 where
     Spring: Tunable<N> + Renders<M>,
 {
-    let mut bench: Bench<Spring, N, M> = Bench::boot(&SPRING, Board::new()).unwrap();
+    let mut bench: Bench<Spring, N, M> = Bench::armed(&SPRING, Board::new()).unwrap();
     hand().for_each(|count| {
         bench.tick(count);
     });

@@ -32,7 +32,7 @@ where
     E: Tunable<f32> + Renders<Latched>,
 {
     let program = program(environment);
-    let mut bench: Bench<E, f32, Latched> = Bench::boot(&program, Board::new()).unwrap();
+    let mut bench: Bench<E, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();
     let mut applied = 0;
     for (k, count) in hand().take(20_000).enumerate() {
         if k % 397 == 0 {
@@ -104,7 +104,7 @@ fn a_set_is_the_one_that_was_built_and_runs_as_one_that_always_ran() {
 #[test]
 fn a_new_set_starts_at_rest_where_the_device_is() {
     let program = program(FilteredWall::<1> { stiffness: 2.0, damping: 0.015, filter: 0.98 });
-    let mut bench: Bench<_, f32, Latched> = Bench::boot(&program, Board::new()).unwrap();
+    let mut bench: Bench<_, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();
     let swing = |bench: &mut Bench<_, f32, Latched>| {
         let codes = bench.board.codes().len();
         bench.stand(900, 400);

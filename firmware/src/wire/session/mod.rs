@@ -28,6 +28,7 @@ use crate::cycle::{self, FrameReader, Notice, Requests};
 use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
+use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, Rendering, Renders};
 use crate::tuning::{self, Tunable};
@@ -39,7 +40,9 @@ pub struct Facts {
     pub name: &'static str,
     /// Timer counts in the servo's period.
     pub timer_counts: u32,
-    /// What stopped it before it was last reset.
+    /// Why it was last reset.
+    pub reset: ResetCause,
+    /// What stopped it before that.
     pub left: Option<Retained>,
     /// Bytes of the stack that were never used; gives `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
@@ -276,6 +279,7 @@ where
             thinned: self.stream.thinned(),
             discarded: self.decoder.discarded(),
             stack_left: (self.facts.stack_left)(),
+            reset: self.facts.reset,
         }
     }
 }

@@ -89,7 +89,9 @@ impl Bench {
         let prepared =
             tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
         let cycle = Cycle::new(prepared.rendering, options, 1000, None);
-        let facts = Facts { name: "wall", timer_counts: 1000, left, stack_left: || Some(77) };
+        let reset = ResetCause::Pin;
+        let facts =
+            Facts { name: "wall", timer_counts: 1000, reset, left, stack_left: || Some(77) };
         requests.arm();
         let session = Session::new(program, prepared.margin, facts, requests, queue);
         let hardware = Still { code: DacCode::MID_SCALE };

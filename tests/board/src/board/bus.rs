@@ -1,7 +1,7 @@
 //! The board's bus: what a program reads and writes there, or why there is no answer.
 
 use super::Board;
-use crate::chip::{DEBUG, Place, Unit};
+use crate::chip::{Place, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, WATCH};
@@ -9,7 +9,6 @@ use crate::peripheral::Access;
 use crate::peripheral::converter::Converter;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::pacer::Pacer;
-use crate::peripheral::plain::Plain;
 use crate::peripheral::serial::Serial;
 use crate::trouble::{NotModelled, Why};
 
@@ -195,9 +194,9 @@ impl Board {
         match unit {
             Unit::Clock | Unit::Watchdog => {}
             Unit::Power => self.power = (self.chip.power)(),
-            Unit::Flash => self.flash = (self.chip.flash_interface)(),
+            Unit::Flash => self.flash = self.flash_after_reset(),
             Unit::Configuration => self.configuration = (self.chip.configuration)(),
-            Unit::Debug => self.debug = Plain::new(DEBUG),
+            Unit::Debug => self.debug = (self.chip.debug)(),
             Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
             Unit::Pacer => self.pacer = Pacer::new(),
             Unit::FreeClock => self.free_clock = Counter::new(32),

@@ -3,6 +3,8 @@
 /// Number of an exception: the core's own below 16, interrupts from there on.
 pub type Number = u16;
 
+/// What nothing holds off: a failure of the chip.
+pub const NON_MASKABLE: Number = 2;
 /// What the core takes when nothing else may take a fault.
 pub const HARD_FAULT: Number = 3;
 /// The service call.

@@ -15,6 +15,12 @@ pub struct Layout {
     pub causes: u32,
     /// Its bit that forgets them.
     pub forget: u32,
+    /// What the causes of resets are called there.
+    pub flags: fn(Cause) -> u32,
+    /// The register and its bit that say that the crystal has failed.
+    pub failed: (u32, u32),
+    /// CFGR: the choice of the internal oscillator, which takes over then.
+    pub internal: u32,
     /// Switches of clock sources: register, the switch's bit, and the bit that says it is ready.
     pub switches: &'static [(u32, u32, u32)],
     /// CFGR: where it has the slow peripheral bus's divider.
@@ -31,17 +37,50 @@ pub const LOOP: (u32, u32, u32) = (0x00, 1 << 24, 1 << 25);
 /// CSR: the causes of resets.
 const CAUSES: u32 = 0xFE00_0000;
 
-/// The causes of a reset that can happen here.
+/// CR: the clock security system, which watches the crystal.
+pub const SECURITY: u32 = 1 << 19;
+
+/// The causes of a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
 pub enum Cause {
     /// Power was switched on.
-    Power = 1 << 27,
+    Power,
+    /// The supply was too low.
+    BrownOut,
+    /// Somebody pulled the pin down.
+    Pin,
     /// The program asked for it.
-    Software = 1 << 28,
+    Software,
     /// The independent watchdog.
-    Watchdog = 1 << 29,
+    Watchdog,
+    /// The window watchdog.
+    WindowWatchdog,
+    /// A low-power mode that is forbidden.
+    LowPower,
+    /// The option bytes were loaded.
+    OptionBytes,
 }
+
+impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Power,
+        Self::BrownOut,
+        Self::Pin,
+        Self::Software,
+        Self::Watchdog,
+        Self::WindowWatchdog,
+        Self::LowPower,
+        Self::OptionBytes,
+    ];
+}
+
+/// CSR: flags of the causes that both families have, at the same places. Every reset pulls the pin.
+pub const PIN: u32 = 1 << 26;
+pub(super) const SOFTWARE: u32 = PIN | 1 << 28;
+pub(super) const WATCHDOG: u32 = PIN | 1 << 29;
+pub(super) const WINDOW_WATCHDOG: u32 = PIN | 1 << 30;
+pub(super) const LOW_POWER: u32 = PIN | 1 << 31;
 
 /// The unit.
 #[derive(Clone, Debug)]
@@ -58,16 +97,19 @@ impl Clock {
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
         let registers = Plain::new(layout.registers);
         let mut clock = Self { layout, registers, crystal, crystal_runs: true };
-        clock.remember(cause as u32);
+        clock.remember((layout.flags)(cause));
         clock
     }
 
-    /// The same unit behind a reset: the causes of earlier ones stay until they are forgotten.
+    /// The same unit behind a reset: the causes of earlier ones stay until they are forgotten, or the
+    /// power was off.
     #[must_use]
     pub fn after_reset(&self, cause: Cause) -> Self {
         let mut clock =
             Self { crystal_runs: self.crystal_runs, ..Self::new(self.layout, self.crystal, cause) };
-        clock.remember(self.causes());
+        if cause != Cause::Power {
+            clock.remember(self.causes());
+        }
         clock
     }
 
@@ -77,8 +119,25 @@ impl Clock {
         self.registers.set(register, self.get(register) | causes);
     }
 
+    /// Has the internal oscillator take over where the crystal has stopped and is watched; whether that
+    /// has just been so (RM0440, 7.2.10; RM0090, 7.2.7).
+    pub fn notice_failure(&mut self) -> bool {
+        let (crystal, looped) = (CRYSTAL.1, LOOP.1);
+        let switches = self.get(0x00);
+        if self.crystal_runs || switches & SECURITY == 0 || switches & crystal == 0 {
+            return false;
+        }
+        // With the crystal goes the loop that it drives.
+        self.registers.set(0x00, switches & !crystal & !looped);
+        let choice = self.layout.choice;
+        self.registers.set(choice, self.get(choice) & !0b11 | self.layout.internal);
+        let (register, flag) = self.layout.failed;
+        self.registers.set(register, self.get(register) | flag);
+        true
+    }
+
     /// The causes of resets that have not been forgotten.
-    fn causes(&self) -> u32 {
+    pub fn causes(&self) -> u32 {
         self.get(self.layout.causes) & CAUSES
     }
 

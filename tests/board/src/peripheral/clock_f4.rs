@@ -1,16 +1,18 @@
 //! The F405's reset and clock control (RM0090, 7.3).
 
-use super::clock::{CRYSTAL, LOOP, Layout};
+use super::clock::{self, CRYSTAL, Cause, LOOP, Layout, SECURITY};
 
 /// Its registers.
 pub const LAYOUT: Layout = Layout {
     registers: &[
-        // CR: both oscillators and the loop.
-        (0x00, 0x0000_0083, 1 | (1 << 16) | (1 << 18) | (1 << 24)),
+        // CR: both oscillators, the loop, and what watches the crystal.
+        (0x00, 0x0000_0083, 1 | (1 << 16) | (1 << 18) | SECURITY | (1 << 24)),
         // PLLCFGR.
         (0x04, 0x2400_3010, 0xFFFF_FFFF),
         // CFGR: the system's clock and the buses' dividers.
         (0x08, 0, 0x0000_FCF3),
+        // CIR: no interrupt is enabled.
+        (0x0C, 0, 0),
         // The resets: AHB1, APB1, APB2.
         (0x10, 0, u32::MAX),
         (0x20, 0, u32::MAX),
@@ -31,11 +33,29 @@ pub const LAYOUT: Layout = Layout {
     choice: 0x08,
     causes: 0x74,
     forget: 1 << 24,
+    flags,
+    failed: (0x0C, 1 << 7),
+    internal: 0,
     // With the internal oscillators: of 16 MHz, and the slow one.
     switches: &[CRYSTAL, LOOP, (0x00, 1, 1 << 1), (0x74, 1, 1 << 1)],
     slow_bus: 10,
     system,
 };
+
+/// Which flags a cause sets: power-on is a brown-out, too.
+fn flags(cause: Cause) -> u32 {
+    const BROWN_OUT: u32 = clock::PIN | 1 << 25;
+    match cause {
+        Cause::Power => BROWN_OUT | 1 << 27,
+        Cause::BrownOut => BROWN_OUT,
+        // Loaded by any reset, and by no reset of their own.
+        Cause::Pin | Cause::OptionBytes => clock::PIN,
+        Cause::Software => clock::SOFTWARE,
+        Cause::Watchdog => clock::WATCHDOG,
+        Cause::WindowWatchdog => clock::WINDOW_WATCHDOG,
+        Cause::LowPower => clock::LOW_POWER,
+    }
+}
 
 fn system(register: &dyn Fn(u32) -> u32, crystal: u64) -> Option<u64> {
     const INTERNAL: u64 = 16_000_000;

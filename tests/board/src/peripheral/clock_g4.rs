@@ -1,16 +1,18 @@
 //! The G4's reset and clock control (RM0440, 7.4).
 
-use super::clock::{CRYSTAL, LOOP, Layout};
+use super::clock::{self, CRYSTAL, Cause, LOOP, Layout, SECURITY};
 
 /// Its registers.
 pub const LAYOUT: Layout = Layout {
     registers: &[
-        // CR: both oscillators and the loop.
-        (0x00, 0x0000_0500, (1 << 8) | (1 << 16) | (1 << 18) | (1 << 24)),
+        // CR: both oscillators, the loop, and what watches the crystal.
+        (0x00, 0x0000_0500, (1 << 8) | (1 << 16) | (1 << 18) | SECURITY | (1 << 24)),
         // CFGR: the system's clock and the buses' dividers.
         (0x08, 0x0000_0005, 0x0000_3FF3),
         // PLLCFGR.
         (0x0C, 0x0000_1000, 0xFFFF_FFFF),
+        // CIFR: no interrupt is enabled.
+        (0x1C, 0, 0),
         // The resets: AHB1, AHB2, APB1, APB2.
         (0x28, 0, u32::MAX),
         (0x2C, 0, u32::MAX),
@@ -36,6 +38,9 @@ pub const LAYOUT: Layout = Layout {
     choice: 0x08,
     causes: 0x94,
     forget: 1 << 23,
+    flags,
+    failed: (0x1C, 1 << 8),
+    internal: 1,
     switches: &[
         CRYSTAL,
         LOOP,
@@ -47,6 +52,19 @@ pub const LAYOUT: Layout = Layout {
     slow_bus: 8,
     system,
 };
+
+/// Which flags a cause sets: of power-on and brown-out it is the same one.
+fn flags(cause: Cause) -> u32 {
+    match cause {
+        Cause::Power | Cause::BrownOut => clock::PIN | 1 << 27,
+        Cause::OptionBytes => clock::PIN | 1 << 25,
+        Cause::Pin => clock::PIN,
+        Cause::Software => clock::SOFTWARE,
+        Cause::Watchdog => clock::WATCHDOG,
+        Cause::WindowWatchdog => clock::WINDOW_WATCHDOG,
+        Cause::LowPower => clock::LOW_POWER,
+    }
+}
 
 fn system(register: &dyn Fn(u32) -> u32, crystal: u64) -> Option<u64> {
     const INTERNAL: u64 = 16_000_000;

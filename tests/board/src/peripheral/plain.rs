@@ -23,12 +23,12 @@ impl Plain {
     }
 
     /// What a register holds; 0 where there is none.
-    pub(super) fn get(&self, offset: u32) -> u32 {
+    pub fn get(&self, offset: u32) -> u32 {
         self.values.get(offset as usize / 4).copied().unwrap_or(0)
     }
 
     /// Has a register of the layout hold this, whoever may write it.
-    pub(super) fn set(&mut self, offset: u32, value: u32) {
+    pub fn set(&mut self, offset: u32, value: u32) {
         self.values[offset as usize / 4] = value;
     }
 

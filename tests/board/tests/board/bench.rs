@@ -90,11 +90,13 @@ impl Bench {
         Self { machine, pins, decoder: Decoder::new() }
     }
 
-    /// The same with a device that stands still, run until the scene is felt: the clamp is open.
+    /// The same with a device that stands still, armed and run until the scene is felt: the clamp is
+    /// open.
     pub fn running(chip: &'static Chip, name: &'static str) -> Self {
         /// More than the tenth of a second in which it opens.
         const OPEN: u64 = 110;
         let mut bench = Self::boot(chip, name, Still);
+        bench.armed();
         bench.run(OPEN);
         bench
     }
@@ -209,6 +211,16 @@ impl Bench {
             Message::Answer { id: ID, outcome } => Some(outcome),
             _ => None,
         })
+    }
+
+    /// Has it switched on; gives the tick in which it was.
+    pub fn armed(&mut self) -> usize {
+        // The port is open before the first sample.
+        self.run(1);
+        assert_eq!(self.arm(), Outcome::Done);
+        // On at the end of the sample that began with that tick.
+        let on = self.pins().samples.iter().position(|sample| sample.amplifier);
+        on.expect("the amplifier is on") - 1
     }
 
     /// What the board says that stopped it before it was last started.

@@ -74,6 +74,7 @@ impl Use {
         let mut bench = Bench::boot(chip, program.name, Spun::of(program, minutes));
         // Hours of them would be gigabytes.
         bench.machine.board_mut().events = None;
+        bench.armed();
         Self { bench, id: 0, sets: 0, gaps: 0, last: None }
     }
 

@@ -56,11 +56,12 @@ impl Device for Pins {
     }
 }
 
-/// A simulated device in a hand that follows its script.
+/// A simulated device in a hand that follows its script once the amplifier is on.
 pub struct InHand {
     device: SimulatedDevice,
     /// The encoder's position in counts.
     count: i32,
+    begun: bool,
 }
 
 impl InHand {
@@ -71,12 +72,16 @@ impl InHand {
 
     /// A simulated device at rest at zero.
     pub fn with(device: SimulatedDevice) -> Self {
-        Self { device, count: 0 }
+        Self { device, count: 0, begun: false }
     }
 }
 
 impl Device for InHand {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
+        self.begun |= amplifier;
+        if !self.begun {
+            return 0;
+        }
         // Without an amplifier, or without a level at its input, no torque.
         self.device.hold(code.filter(|_| amplifier).unwrap_or(MID_SCALE));
         let count = self.device.count().unwrap_or(self.count);

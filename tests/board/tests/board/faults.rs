@@ -2,11 +2,12 @@
 
 use firmware::cycle::State;
 use firmware::fault::Fault;
+use firmware::reset::ResetCause;
 use firmware::wire::message::{FaultCode, Outcome};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
-use virtual_board::core::exceptions::FIRST_INTERRUPT;
+use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
 use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
@@ -116,17 +117,44 @@ const CASES: &[Case] = &[
         expected: Some(Fault::Watchdog),
     },
     Case {
-        fault: "watchdog",
-        cause: "the crystal stops, and with it core and timers",
+        fault: "clock-lost",
+        cause: "the crystal stops",
         program: "damper_wall",
-        bound: PATIENCE,
+        bound: 1.0,
         provoke: |bench| {
             let board = bench.machine.board_mut();
             board.clock.crystal_runs = false;
             board.now
         },
         resets: true,
-        expected: Some(Fault::Watchdog),
+        expected: Some(Fault::ClockLost),
+    },
+    Case {
+        fault: "clock-lost",
+        cause: "the crystal stops while all interrupts are masked",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| {
+            bench.machine.core_mut().set_register(RegisterARM::PRIMASK, 1);
+            let board = bench.machine.board_mut();
+            board.clock.crystal_runs = false;
+            board.now
+        },
+        resets: true,
+        expected: Some(Fault::ClockLost),
+    },
+    Case {
+        fault: "non-maskable",
+        cause: "a non-maskable interrupt comes of which the chip says nothing",
+        program: "damper_wall",
+        bound: 1.0,
+        provoke: |bench| {
+            let board = bench.machine.board_mut();
+            board.system.exceptions.pend(NON_MASKABLE);
+            board.now
+        },
+        resets: true,
+        expected: Some(Fault::NonMaskable),
     },
     Case {
         fault: "hard-fault",
@@ -257,6 +285,8 @@ impl Case {
         assert_eq!(told, self.expected.unwrap_or(told), "{what}");
         let state = if self.resets { State::Disarmed } else { State::Faulted };
         assert_eq!(status.state, state, "{what}");
+        let reset = if self.resets { ResetCause::IndependentWatchdog } else { ResetCause::PowerOn };
+        assert_eq!(status.reset, reset, "{what}");
         let remembered = bench.remembered().and_then(|record| record.fault.fault());
         assert_eq!(remembered, self.resets.then_some(told), "{what}");
         let log = bench.log();

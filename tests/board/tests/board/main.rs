@@ -9,6 +9,7 @@ mod device;
 mod faults;
 mod harmless;
 mod interrupts;
+mod reset;
 mod scenes;
 mod start;
 mod stub;

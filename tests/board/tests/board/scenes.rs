@@ -53,9 +53,10 @@ where
 {
     let program = Program::find(name).unwrap();
     let mut bench = Bench::boot(chip, name, InHand::of(program));
+    let armed = bench.armed();
     // What a tick computes is put out in the sample behind the next one.
     bench.run(SAMPLES + 2);
-    let samples = &bench.pins().samples;
+    let samples = &bench.pins().samples[armed..];
     let transducers = &Transducers { counter: width(chip), ..*transducers };
     let codes = with_the_same_cycle(scene, transducers, samples);
     let at = |tick: usize| (samples[tick].count, samples[tick + 2].code.unwrap());
@@ -73,7 +74,7 @@ where
     }
 }
 
-/// The codes of the same cycle on the host, from its boot on.
+/// The codes of the same cycle on the host, from the tick on in which it is armed.
 fn with_the_same_cycle<E>(
     scene: Scene<E>,
     transducers: &Transducers,
@@ -88,6 +89,7 @@ where
         rendering: RenderingOptions::DEFAULT,
         options: Options::DEFAULT,
     });
+    host.arm();
     samples[..SAMPLES as usize].iter().map(|sample| host.tick(sample.count).0).collect()
 }
 

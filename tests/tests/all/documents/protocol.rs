@@ -82,6 +82,7 @@ fn every_variant_is_there_with_its_number() {
         (MESSAGES, "ToHost", "## To the host", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         ("firmware/src/cycle/state.rs", "State", "### State", None),
+        ("firmware/src/reset.rs", "ResetCause", "### ResetCause", None),
         ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),
         ("firmware/src/certificate/parameter.rs", "Parameter", "### Parameter", None),
     ] {

@@ -1,0 +1,52 @@
+//! What only the F405 has like this (RM0090).
+
+use embassy_stm32::pac::{DBGMCU, FLASH, RCC};
+
+use crate::fault::Fault;
+
+/// RCC_CSR: the supply was switched on.
+pub const POWER_ON: u32 = 1 << 27;
+/// RCC_CSR: the supply was below the brown-out level, and not off.
+pub const BROWN_OUT: u32 = 1 << 25;
+/// RCC_CSR: the option bytes were loaded; no such flag.
+pub const OPTION_BYTES: u32 = 0;
+
+/// What its non-maskable interrupt was for: the chip has one cause.
+pub fn non_maskable() -> Fault {
+    if RCC.cir().read().cssf() { Fault::ClockLost } else { Fault::NonMaskable }
+}
+
+/// The chip as DBGMCU_IDCODE has it, and its first revision. Chips before that one's successor say
+/// that they are others, or this revision, and must not prefetch (ES0182).
+const F405: u16 = 0x413;
+const REVISION_A: u16 = 0x1000;
+
+/// Switches the flash memory's caches and its prefetching on: it has five wait states at 168 MHz, and
+/// the clock set-up writes zeros over whatever was in that register beside them.
+pub fn cache() {
+    let chip = DBGMCU.idcode().read();
+    FLASH.acr().modify(|w| {
+        w.set_icen(true);
+        w.set_dcen(true);
+        w.set_prften(chip.dev_id() == F405 && chip.rev_id() != REVISION_A);
+    });
+}
+
+/// Has the watchdog go on while a debugger halts the core, whatever that has asked for.
+pub fn keep_watchdog_running() {
+    DBGMCU.apb1fzr().modify(|w| w.set_iwdg(false));
+}
+
+/// Warns of a brown-out level below what 168 MHz with five wait states need, which is 2.7 V
+/// (RM0090, 3.5.1). As it comes, the chip has none.
+pub fn check_brown_out() {
+    let level = FLASH.optcr().read().bor_lev();
+    if level != 0 {
+        defmt::warn!(
+            "brown-out level {=u8} lets the core run at 168 MHz below the 2.7 V that this needs: \
+             set the option byte BOR_LEV to 0 (2.7 V) with STM32_Programmer_CLI -c port=SWD \
+             -ob BOR_LEV=0",
+            level
+        );
+    }
+}

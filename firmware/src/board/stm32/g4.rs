@@ -1,0 +1,51 @@
+//! What only the G4 chips have like this (RM0440).
+
+use embassy_stm32::pac::{DBGMCU, FLASH, RCC, SYSCFG};
+
+use crate::fault::Fault;
+
+/// RCC_CSR: the supply was below the brown-out level, which it also was before it was switched on:
+/// the chip does not tell one from the other.
+pub const POWER_ON: u32 = 1 << 27;
+/// RCC_CSR: a brown-out alone; no such flag.
+pub const BROWN_OUT: u32 = 0;
+/// RCC_CSR: the option bytes were loaded.
+pub const OPTION_BYTES: u32 = 1 << 25;
+
+/// What its non-maskable interrupt was for.
+pub fn non_maskable() -> Fault {
+    if RCC.cifr().read().cssf() {
+        return Fault::ClockLost;
+    }
+    let errors = FLASH.eccr().read();
+    if errors.eccd() || errors.eccd2() {
+        return Fault::FlashEcc { address: errors.addr_ecc(), status: errors.0 };
+    }
+    if SYSCFG.cfgr2().read().spf() { Fault::RamParity } else { Fault::NonMaskable }
+}
+
+/// Both caches of the flash memory, which are on out of reset, and which nothing here relies on:
+/// what runs each tick is in core-coupled memory.
+pub fn cache() {
+    FLASH.acr().modify(|w| {
+        w.set_icen(true);
+        w.set_dcen(true);
+    });
+}
+
+/// Has the watchdog go on while a debugger halts the core, whatever that has asked for.
+pub fn keep_watchdog_running() {
+    DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(false));
+}
+
+/// Warns of a brown-out level below what the board works with. The core itself may run at 170 MHz
+/// down to the lowest level, but the converter's buffer only down to 1.8 V (DS12288).
+pub fn check_brown_out() {
+    let level = FLASH.optr().read().bor_lev();
+    if level == 0 {
+        defmt::warn!(
+            "brown-out level 0 lets the chip run down to 1.6 V; its converter needs 1.8 V: set the \
+             option byte BOR_LEV to 4 (2.8 V) with STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4"
+        );
+    }
+}
