@@ -5,12 +5,12 @@ use std::io::{self, Write};
 use clap::Args;
 use firmware::certificate::Parameter;
 use firmware::tuning::{self, TUNABLE};
-use firmware::wire::message::{Changes, Outcome, Running, Status};
+use firmware::wire::message::{Changes, Running, Status};
 use serde::Serialize;
 
 use super::common::{ForWhom, json};
 use super::{Answer, CommandError};
-use crate::link::{Address, Link};
+use crate::link::{self, Address, Link};
 use crate::scope::words;
 
 /// Arguments of `haptic tune`.
@@ -52,7 +52,7 @@ fn change(text: &str) -> Result<(Parameter, f64), String> {
 #[derive(Serialize)]
 struct Report<'a> {
     program: &'a str,
-    /// The board's sentence, where it refused.
+    /// Why the board refused, where it did.
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,
@@ -76,8 +76,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let mut link = Link::open(&arguments.port)?;
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
-        Outcome::Done => None,
-        Outcome::Refused(sentence) => Some(sentence.as_str()),
+        link::Answer::Done => None,
+        link::Answer::Refused(sentence) => Some(sentence.as_str()),
     };
     let (running, status) = (link.running()?, link.status()?);
     if arguments.answer.json {
@@ -104,15 +104,15 @@ fn request(
     link: &mut Link,
     arguments: &Arguments,
     changes: Changes,
-) -> Result<Outcome<String>, CommandError> {
-    let mut outcome = Outcome::Done;
+) -> Result<link::Answer, CommandError> {
+    let mut outcome = link::Answer::Done;
     if arguments.disarm {
         outcome = link.disarm()?;
     }
-    if outcome == Outcome::Done && !changes.is_empty() {
+    if outcome == link::Answer::Done && !changes.is_empty() {
         outcome = link.set(changes)?;
     }
-    if outcome == Outcome::Done && arguments.arm {
+    if outcome == link::Answer::Done && arguments.arm {
         outcome = link.arm()?;
     }
     Ok(outcome)

@@ -6,5 +6,5 @@ mod error;
 mod transport;
 
 pub use address::{Address, AddressError};
-pub use connection::{Link, Message};
+pub use connection::{Answer, Link, Message};
 pub use error::LinkError;

@@ -49,42 +49,17 @@ pub mod stm32;
 #[allow(unsafe_code)]
 pub mod stm32f405;
 
-use crate::text::Written;
-
 /// Bits a second on a board's serial port to the host, 8N1: the fastest of the usual rates that all
 /// boards' clocks divide into within a quarter of a per cent.
 pub const BAUD: u32 = 460_800;
 
-/// What stops a board before its servo runs. The motor has not been driven then.
+/// The board's timer cannot pace a period. The motor has not been driven then.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StartError {
-    /// The scene did not pass when it was certified again on the board.
-    Rejected(crate::certificate::Rejection),
-    /// The scene cannot be rendered in its number format with its transducers.
-    Unbuildable(crate::servo::BuildError),
-    /// The board's timer cannot pace this period.
-    Period {
-        /// The scene's period in s.
-        period: f64,
-        /// The longest period in s that the timer can pace.
-        longest: f64,
-    },
-}
-
-impl core::fmt::Display for StartError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Rejected(rejection) => write!(f, "refused on the board: {rejection}"),
-            Self::Unbuildable(error) => write!(f, "no servo can be built: {error}"),
-            Self::Period { period, longest } => write!(
-                f,
-                "the period {period} s is not between 0 and {longest} s, the longest that the \
-                 board's timer can pace",
-                period = Written(*period),
-                longest = Written(*longest),
-            ),
-        }
-    }
+pub struct PeriodError {
+    /// The scene's period in s.
+    pub period: f64,
+    /// The longest period in s that the timer can pace.
+    pub longest: f64,
 }
 
 /// Makes a program of a certified scene.

@@ -100,10 +100,22 @@ const fn certify_data<const RATIONAL: bool>(
     scene: &Scene,
     format: Format,
 ) -> Result<Assessment, Rejection> {
+    match judge_data::<RATIONAL>(scene, format) {
+        Ok(assessment) => Ok(assessment),
+        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
+    }
+}
+
+/// The same without looking for remedies.
+#[inline(always)]
+const fn judge_data<const RATIONAL: bool>(
+    scene: &Scene,
+    format: Format,
+) -> Result<Assessment, Rejection> {
     let assessment = assessed::<RATIONAL>(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
+        Err(rejection) => Err(rejection),
     }
 }
 
@@ -136,6 +148,14 @@ macro_rules! certify_for {
             /// Judges the coefficients that a servo in this number format multiplies by.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
                 match certify_data::<$rational>(&self.as_data(), format) {
+                    Ok(assessment) => Ok(Certified { scene: self, assessment }),
+                    Err(rejection) => Err(rejection),
+                }
+            }
+
+            /// The same verdict without remedies: what a board asks for, whose host looks for them.
+            pub const fn judge_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
+                match judge_data::<$rational>(&self.as_data(), format) {
                     Ok(assessment) => Ok(Certified { scene: self, assessment }),
                     Err(rejection) => Err(rejection),
                 }

@@ -9,7 +9,7 @@ mod transducers;
 
 pub use build_error::BuildError;
 pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
-pub use render_error::RenderError;
+pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};
 pub use transducers::Transducers;
 
@@ -79,7 +79,7 @@ impl<E: Tunable<N>, N: Number> Servo<E, N> {
     /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if scene.assessment().format != format && E::certify(*scene.scene()).is_err() {
+        if scene.assessment().format != format && E::judge(*scene.scene()).is_err() {
             return Err(BuildError::Uncertified { format });
         }
         Self::build(scene.scene(), transducers)

@@ -15,6 +15,7 @@ use crate::tuning::Tunable;
 
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderingOptions {
     /// Time in s in which the clamp opens from nothing to the torque limit, and closes.
     pub fade: f64,
@@ -75,7 +76,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
         if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
-        let again = E::certify(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
+        let again = E::judge(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
         let again = again.ok_or(BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
     }

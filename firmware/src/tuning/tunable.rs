@@ -10,10 +10,17 @@ use crate::servo::{OutputMode, Renders};
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
 pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
-    /// The certificate of the coefficients as rounded to the number format.
+    /// The certificate of the coefficients as rounded to the number format. Does not look for
+    /// remedies, so that a board has nothing of what it takes to find them.
     ///
     /// # Errors
     /// Why the scene is not certified.
+    fn judge(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection>;
+
+    /// The same, with remedies.
+    ///
+    /// # Errors
+    /// Why the scene is not certified, and what would be.
     fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection>;
 
     /// [`Certified::time`].
@@ -33,6 +40,10 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
 macro_rules! tunable {
     ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
+            fn judge(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
+                scene.judge_in(F::FORMAT)
+            }
+
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
                 scene.certify_in(F::FORMAT)
             }

@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 
-use crate::board::StartError;
+use crate::board::PeriodError;
 
 /// SysTick's clock in Hz: the emulated F405 runs at its full speed from the start.
 const CORE_CLOCK: f64 = 168e6;
@@ -53,11 +53,11 @@ impl Period {
     ///
     /// # Errors
     /// Where SysTick, which has 24 bits, cannot pace it.
-    pub fn of(seconds: f64) -> Result<Self, StartError> {
+    pub fn of(seconds: f64) -> Result<Self, PeriodError> {
         let longest = (LONGEST_RELOAD as f64 + 1.0) / CORE_CLOCK;
         // Written so that NaN is refused.
         if !(seconds > 1.5 / CORE_CLOCK && seconds <= longest) {
-            return Err(StartError::Period { period: seconds, longest });
+            return Err(PeriodError { period: seconds, longest });
         }
         let reload = (seconds * CORE_CLOCK + 0.5) as u32 - 1;
         let clock_counts = (f64::from(reload + 1) * (CLOCK / CORE_CLOCK) + 0.5) as u32;

@@ -14,7 +14,7 @@ use embassy_stm32::rcc;
 
 use super::registers::LONGEST_PERIOD;
 use super::wiring::CLOCK;
-use crate::board::StartError;
+use crate::board::PeriodError;
 use crate::cycle::{BEGAN_LATE, READ_WITHIN};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
@@ -38,12 +38,12 @@ impl Period {
     ///
     /// # Errors
     /// Where the timer, 16 bits behind a 16-bit prescaler, cannot pace it.
-    pub fn of(seconds: f64) -> Result<Self, StartError> {
+    pub fn of(seconds: f64) -> Result<Self, PeriodError> {
         let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
         let wanted = seconds * clock;
         // Written so that NaN is refused. A hundred counts are not time enough for any tick.
         if !(wanted >= 100.0 && seconds <= LONGEST_PERIOD) {
-            return Err(StartError::Period { period: seconds, longest: LONGEST_PERIOD });
+            return Err(PeriodError { period: seconds, longest: LONGEST_PERIOD });
         }
         // From the smallest prescaler with which the period fits, which has the finest steps, the one
         // that comes nearest: usual periods are whole numbers of counts with one of the next few, to
