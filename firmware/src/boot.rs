@@ -10,7 +10,7 @@ use crate::environment::Renderable;
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+use crate::servo::{OutputMode, Rendering, RenderingOptions, Renders, Step, Transducers};
 use crate::tuning::{self, Prepared, Tunable};
 
 /// What a board has besides, before its servo runs.
@@ -55,12 +55,12 @@ pub struct Booted<E: Renderable<N>, N: Number, M> {
 /// reset: then it stays off until somebody arms it.
 ///
 /// # Errors
-/// Where the self-check fails. The amplifier is off and the converter at mid-scale then.
+/// Where the self-check fails: in which step, whose reason [`tuning::explain`] has. The amplifier is off and the converter at mid-scale then.
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,
     requests: &Requests<'_, Rendering<E, N, M>>,
-) -> Result<Booted<E, N, M>, RenderError>
+) -> Result<Booted<E, N, M>, Step>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,

@@ -55,7 +55,7 @@ pub use timed::{Timed, TimingError};
 use crate::environment::*;
 use crate::number::Format;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders};
+use crate::servo::{OutputMode, Renders, Step};
 use rules::{Extent, assessed};
 
 /// A scene that was proved passive.
@@ -100,22 +100,10 @@ const fn certify_data<const RATIONAL: bool>(
     scene: &Scene,
     format: Format,
 ) -> Result<Assessment, Rejection> {
-    match judge_data::<RATIONAL>(scene, format) {
-        Ok(assessment) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
-    }
-}
-
-/// The same without looking for remedies.
-#[inline(always)]
-const fn judge_data<const RATIONAL: bool>(
-    scene: &Scene,
-    format: Format,
-) -> Result<Assessment, Rejection> {
     let assessment = assessed::<RATIONAL>(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(rejection),
+        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
     }
 }
 
@@ -153,11 +141,22 @@ macro_rules! certify_for {
                 }
             }
 
-            /// The same verdict without remedies: what a board asks for, whose host looks for them.
-            pub const fn judge_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
-                match judge_data::<$rational>(&self.as_data(), format) {
-                    Ok(assessment) => Ok(Certified { scene: self, assessment }),
-                    Err(rejection) => Err(rejection),
+            /// The scene timed, if [`Scene::certify_in`] and then [`Certified::time`] allow it: the
+            /// same verdict without its numbers and remedies, at a fraction of the cost. What a board
+            /// asks for, whose host has the words.
+            ///
+            /// # Errors
+            /// Which of the two does not.
+            pub const fn timed_in<M: OutputMode>(
+                self,
+                format: Format,
+            ) -> Result<Timed<Self, M>, Step>
+            where
+                $environment: Renders<M>,
+            {
+                match timed::judged::<$rational, M>(&self.as_data(), format) {
+                    Ok(limited) => Ok(Timed::new(self, format, limited)),
+                    Err(step) => Err(step),
                 }
             }
 

@@ -79,7 +79,7 @@ impl<E: Tunable<N>, N: Number> Servo<E, N> {
     /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if scene.assessment().format != format && E::judge(*scene.scene()).is_err() {
+        if scene.assessment().format != format && E::certify(*scene.scene()).is_err() {
             return Err(BuildError::Uncertified { format });
         }
         Self::build(scene.scene(), transducers)

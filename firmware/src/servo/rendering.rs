@@ -76,8 +76,8 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
         if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
-        let again = E::judge(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
-        let again = again.ok_or(BuildError::Uncertified { format })?;
+        let again = E::timed(*timed.scene());
+        let again = again.map_err(|_| BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
     }
 }

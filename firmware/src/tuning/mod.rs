@@ -17,7 +17,9 @@ use crate::certificate::Parameter;
 use crate::environment::Renderable;
 use crate::number::Number;
 use crate::scene::{Coupling, Scene};
-use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+use crate::servo::{
+    OutputMode, RenderError, Rendering, RenderingOptions, Renders, Step, Transducers,
+};
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
@@ -163,22 +165,22 @@ pub struct Prepared<E: Renderable<N>, N: Number, M> {
 /// In a frame of its own: judging takes most of the stack that a small board has.
 ///
 /// # Errors
-/// Whatever is wrong with the set, as its numbers; [`explain`] adds what would not be.
+/// The step that does not allow it. [`explain`] has the reason.
 #[inline(never)]
 pub fn prepare<E, N, M>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],
     transducers: &Transducers,
     options: &RenderingOptions,
-) -> Result<Prepared<E, N, M>, RenderError>
+) -> Result<Prepared<E, N, M>, Step>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,
     M: OutputMode,
 {
-    let scene = apply(scene, changes)?;
-    let timed = E::time(E::judge(scene)?)?;
-    let rendering = Rendering::build(&timed, transducers, options)?;
+    let scene = apply(scene, changes).map_err(|_| Step::Change)?;
+    let timed = E::timed(scene)?;
+    let rendering = Rendering::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     Ok(Prepared {
         scene,
         margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
@@ -186,11 +188,11 @@ where
     })
 }
 
-/// Why a changed scene cannot run, with the remedies that there are: what takes too much of a small
-/// board, and can be had on its host from the same numbers.
+/// Why [`prepare`] refuses a changed scene, with the remedies that there are: what takes too much of a
+/// small board, and its host has from the same numbers by the same code.
 ///
 /// # Errors
-/// As [`prepare`].
+/// Whatever is wrong with the set, as a sentence that says what would not be.
 pub fn explain<E, N, M>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],
@@ -202,14 +204,9 @@ where
     N: Number,
     M: OutputMode,
 {
-    match prepare::<E, N, M>(scene, changes, transducers, options) {
-        Ok(_) => Ok(()),
-        Err(RenderError::Rejected(rejection)) => {
-            let changed = apply(scene, changes)?;
-            Err(E::certify(changed).err().unwrap_or(rejection).into())
-        }
-        Err(error) => Err(error),
-    }
+    let timed = E::time(E::certify(apply(scene, changes)?)?)?;
+    Rendering::<E, N, M>::build(&timed, transducers, options)?;
+    Ok(())
 }
 
 #[cfg(test)]

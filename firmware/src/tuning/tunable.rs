@@ -6,18 +6,21 @@ use crate::certificate::{Certified, Rejection, Timed, TimingError};
 use crate::environment::*;
 use crate::number::Number;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders};
+use crate::servo::{OutputMode, Renders, Step};
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
 pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
-    /// The certificate of the coefficients as rounded to the number format. Does not look for
-    /// remedies, so that a board has nothing of what it takes to find them.
+    /// The scene timed, if the coefficients as rounded to the number format and the mode allow it.
+    /// Does not look for reasons and remedies, so that a board has nothing of what it takes to find
+    /// them.
     ///
     /// # Errors
-    /// Why the scene is not certified.
-    fn judge(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection>;
+    /// What does not allow it.
+    fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+    where
+        Self: Renders<M>;
 
-    /// The same, with remedies.
+    /// The certificate of the coefficients as rounded to the number format.
     ///
     /// # Errors
     /// Why the scene is not certified, and what would be.
@@ -40,8 +43,11 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
 macro_rules! tunable {
     ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
-            fn judge(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
-                scene.judge_in(F::FORMAT)
+            fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+            where
+                Self: Renders<M>,
+            {
+                scene.timed_in(F::FORMAT)
             }
 
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {

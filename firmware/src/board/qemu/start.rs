@@ -14,7 +14,7 @@ use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
-use crate::servo::{RenderError, Renders};
+use crate::servo::{Renders, Step};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
 
@@ -103,7 +103,7 @@ where
     let mut hardware = Registers::new(period);
     let Ends { requests, inbox, frames, told } = ends(&places.meeting);
     let Booted { cycle, margin, left } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|error| not_started(&error));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
     #[cfg(feature = "log")]
     if let Some(left) = left {
         let (code, [a, b]) = left.fault.encode();
@@ -159,9 +159,9 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
     let scene = core::hint::black_box(program.scene);
     let start = meter::now();
-    let judged = E::judge(scene);
+    let judged = E::certify(scene);
     let time = meter::now().wrapping_sub(start);
-    let certified = judged.unwrap_or_else(|rejection| not_started(&rejection.into()));
+    let certified = judged.unwrap_or_else(|_| not_started(Step::Certificate));
     log::certificate("compiler", compiler);
     log::certificate("board", certified.assessment());
     let (size, left) = (stack::size(), stack::left());
@@ -171,8 +171,8 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
 /// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
 /// the words for it: `haptic certify`.
 #[cold]
-fn not_started(error: &RenderError) -> ! {
-    refuse(error.step().as_str())
+fn not_started(step: Step) -> ! {
+    refuse(step.as_str())
 }
 
 /// Ends a program that cannot start.

@@ -22,7 +22,7 @@ use crate::boot::{Booted, Program, Startup, boot};
 use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
-use crate::servo::{OutputMode, OutputTiming, RenderError, Renders, Transducers};
+use crate::servo::{OutputMode, OutputTiming, Renders, Step, Transducers};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
 
@@ -93,7 +93,7 @@ where
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
     let Booted { cycle, margin, left } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|error| not_started(&error));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
@@ -166,8 +166,8 @@ pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
 /// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
 /// the words for it: `haptic certify`.
 #[cold]
-fn not_started(error: &RenderError) -> ! {
-    refuse(error.step().as_str())
+fn not_started(step: Step) -> ! {
+    refuse(step.as_str())
 }
 
 /// Ends a program that cannot start. The amplifier has never been on.

@@ -4,7 +4,7 @@ use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
 use crate::fault::Retained;
-use crate::servo::{RenderError, Renders};
+use crate::servo::{Renders, Step};
 use crate::tuning::Tunable;
 
 /// Timer counts in a period of every board here.
@@ -122,7 +122,7 @@ pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
 
 impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     /// Boots the board.
-    pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
+    pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, Step> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
         let Booted { cycle, left, .. } = boot(program, &mut board, &requests)?;

@@ -223,8 +223,8 @@ where
                     Err(_) => self.owed.refuse(id, Refusal::Busy),
                 }
             }
-            Err(error) => {
-                let outcome = Outcome::Refused(Refusal::Set(error.step()));
+            Err(step) => {
+                let outcome = Outcome::Refused(Refusal::Set(step));
                 self.outbox.put(&ToHost::Answer { id, outcome });
             }
         }
