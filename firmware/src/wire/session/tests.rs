@@ -367,7 +367,7 @@ fn every_message_fits_its_frame() {
     let fault = FaultCode { code: u32::MAX, numbers: [u32::MAX; 2] };
     let outcome = Outcome::Refused(Refusal::Fault(fault));
     for message in [
-        ToHost::Telemetry(batch),
+        Said::Telemetry(batch),
         ToHost::Answer { id: u16::MAX, outcome },
         ToHost::Running(Running { sets: u32::MAX, margin: Some(1.0), values: changes }),
         ToHost::Described(largest_description()),
