@@ -202,7 +202,10 @@ impl Link {
 
     /// The words for a refusal: what runs there is judged again here, with the remedies that a board
     /// has no room to look for.
-    fn explain(&mut self, refusal: Refusal, changes: &Changes) -> Result<String, LinkError> {
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn explain(&mut self, refusal: Refusal, changes: &Changes) -> Result<String, LinkError> {
         if let Refusal::Set(step) = refusal {
             let (description, running) = (self.description()?, self.running()?);
             let has = Parameters::of(running.values.iter().map(|(parameter, _)| *parameter));

@@ -187,6 +187,7 @@ impl Feeder {
                 ToHost::Welcome { .. }
                 | ToHost::Remembered(_)
                 | ToHost::Board(_)
+                | ToHost::Described(_)
                 | ToHost::Answer { .. } => {}
             }
         }
