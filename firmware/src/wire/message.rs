@@ -42,8 +42,6 @@ pub enum ToBoard {
     Get,
     /// How is it going? Answered by [`ToHost::Status`].
     Status,
-    /// What exactly is running? Answered by [`ToHost::Described`].
-    Describe,
     /// Change these numbers, all or none. Answered by [`ToHost::Answer`], once they run.
     Set {
         /// Comes back with the answer.
@@ -63,6 +61,8 @@ pub enum ToBoard {
     },
     /// Send every so many ticks from now on; `None`: no more. Not answered.
     Stream(Option<NonZeroU32>),
+    /// What exactly is running? Answered by [`ToHost::Described`].
+    Describe,
 }
 
 /// What a board says. `S` is the text.
@@ -89,12 +89,12 @@ pub enum ToHost<S> {
         /// What became of it.
         outcome: Outcome,
     },
-    /// The scene that runs, and how.
-    Described(Description),
     /// What stopped this board before it was last started.
     Remembered(Remembered),
     /// Ticks that were asked for with [`ToBoard::Stream`].
     Telemetry(Batch),
+    /// The scene that runs, and how.
+    Described(Description),
 }
 
 /// What the numbers of the other messages mean on this board.
