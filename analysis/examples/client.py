@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A client of a haptic board: firmware/PROTOCOL.md in Python's standard library.
 
-    client.py PORT status | get | arm | disarm
+    client.py PORT status | get | describe | arm | disarm
     client.py PORT set NAME=VALUE [NAME=VALUE ...]
     client.py PORT stream TICKS EVERY
 
@@ -32,12 +32,28 @@ PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter"
               11: "residual", 15: "torque_limit"}
 
 # Messages to the board and to the host, by number.
-HELLO, GET, STATUS, SET, ARM, DISARM, STREAM = range(7)
-TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "telemetry"]
+HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE = range(8)
+TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "telemetry",
+           "described"]
 
 # The fields of the messages in order. A field more in the protocol is a line more here.
 DISCARDED = [("broken", "u"), ("too_long", "u"), ("checksum", "u"), ("unknown", "u")]
 FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
+STEP = ("enum", [("change", []), ("certificate", []), ("timing", []), ("servo", [])])
+REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
+                    ("set", [("step", STEP)])])
+WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
+        ("face", "f64"), ("one_sided", "bool")]
+FREE = ("residual", "f64")
+SCENE = [
+    ("device", [("inertia", "f64"), ("damping", "f64"), ("passivity", ("option", "f64"))]),
+    ("timing", [("period", "f64"), ("worst_period", ("option", "f64"))]),
+    ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")])])),
+    ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
+                              ("free-mode", [FREE, ("delay", "u")]),
+                              ("free-mode-wall", [FREE, ("wall", WALL)])])),
+    ("torque_limit", ("option", "f64")),
+]
 FIELDS = {
     "welcome": [("protocol", "u"), ("program", "text")],
     "board": [("period", "f64"), ("timer_counts", "u"), ("counts_per_turn", "f64"),
@@ -65,11 +81,28 @@ FIELDS = {
     "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],
     "telemetry": [("ticks", ("list", [("later", "u"), ("moved", "i"), ("code", "u"),
                                       ("limit", "u"), ("state", "u"), ("slack", "u")]))],
+    "described": [
+        ("scene", SCENE),
+        ("transducers", [("counts_per_turn", "f64"), ("counter", ("enum", [("32", []), ("16", [])])),
+                         ("full_scale_torque", "f64"), ("largest_speed", "f64")]),
+        ("rendering", [("fade", "f64"), ("injection", ("option", "f64"))]),
+        ("format", ("enum", [("f32", []), ("f64", []), ("fixed", [("fraction_bits", "u")]),
+                             ("truncated", [("fraction_bits", "u")])])),
+        ("timing", ("enum", [("simultaneous", []), ("latched", [])])),
+    ],
 }
 
 
 class Refused(Exception):
-    """The board's sentence."""
+    """The board's reason, as `REFUSAL` has it."""
+
+    def __str__(self):
+        reason = self.args[0]
+        if reason["type"] == "set":
+            return f"refused by its {reason['step']['type']}; `haptic tune` says why"
+        if reason["type"] == "fault":
+            return f"refused: {named(reason['fault'])['name']} is still there"
+        return f"refused: {reason['type']}"
 
 
 def varint(number):
@@ -129,6 +162,9 @@ class Reader:
             what, of = kind
             if what == "option":
                 return self.value(of) if self.value("bool") else None
+            if what == "enum":
+                name, fields = of[self.value("u")]
+                return {"type": name} | self.value(fields)
             return [self.value(of) for _ in range(self.value("u"))]
         if kind == "f64":
             return struct.unpack("<d", self.take(8))[0]
@@ -153,7 +189,7 @@ def decode(message):
     if name == "answer":
         content = {"id": reader.value("u"), "refused": None}
         if reader.value("u"):
-            content["refused"] = reader.value("text")
+            content["refused"] = reader.value(REFUSAL)
     else:
         content = reader.value(FIELDS[name])
     if reader.at != len(message):
@@ -224,6 +260,9 @@ class Board:
         values = {PARAMETERS[pair["parameter"]]: pair["value"] for pair in running["values"]}
         return running | {"values": values}
 
+    def description(self):
+        return self.ask([DESCRIBE], "described")
+
     def set(self, changes):
         numbers = {name: number for number, name in PARAMETERS.items()}
         pairs = [bytes([numbers[name]]) + struct.pack("<d", value) for name, value in changes]
@@ -292,6 +331,9 @@ def main(arguments):
         elif command == "stream":
             for tick in board.stream(int(rest[0]), int(rest[1])):
                 print(json.dumps(tick))
+            return 0
+        elif command == "describe":
+            print(json.dumps({"program": board.program, **board.description()}))
             return 0
         elif command not in ("status", "get"):
             raise ValueError(f"there is no command {command}")

@@ -13,7 +13,7 @@ use crate::number::Number;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{
-    BuildError, OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers,
+    BuildError, OutputMode, Rendering, RenderingOptions, Renders, Step, Transducers,
 };
 use crate::tuning::{self, Prepared, Tunable};
 
@@ -96,12 +96,12 @@ pub struct Booted<E: Renderable<N>, N: Number, M> {
 /// says that it is armed at power-on, and this is one.
 ///
 /// # Errors
-/// Where the self-check fails. The amplifier is off and the converter at mid-scale then.
+/// Where the self-check fails: in which step, whose reason [`tuning::explain`] has. The amplifier is off and the converter at mid-scale then.
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,
     requests: &Requests<'_, Rendering<E, N, M>>,
-) -> Result<Booted<E, N, M>, RenderError>
+) -> Result<Booted<E, N, M>, Step>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,

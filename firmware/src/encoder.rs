@@ -10,6 +10,7 @@ pub trait Encoder {
 
 /// Number of bits after which the counter wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum CounterWidth {
     /// A 32-bit timer.

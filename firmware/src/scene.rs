@@ -10,6 +10,7 @@ use crate::environment::Environment;
 /// `E` is the environment: one of the types of [`crate::environment`] where the scene is a
 /// constant of a program, or [`Environment`] where it comes from a file or over the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scene<E = Environment> {
     /// The machine that the hand holds.
     pub device: Device,
@@ -27,6 +28,7 @@ pub struct Scene<E = Environment> {
 
 /// A rigid one-axis device.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Device {
     /// Inertia `m` in kg m^2; used by simulation only, the certificate does not depend on it.
     pub inertia: f64,
@@ -39,6 +41,7 @@ pub struct Device {
 
 /// Sampling of the servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Timing {
     /// Nominal period `T` in s.
     pub period: f64,
@@ -48,6 +51,7 @@ pub struct Timing {
 
 /// The virtual coupling `V` between device and environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coupling {
     /// No compliance: the environment sees the device's position.
     Rigid,

@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use firmware::certificate::Parameter;
-use firmware::wire::message::Outcome;
 use thiserror::Error;
 
 use crate::emulator::world::{Still, World};
 use crate::emulator::{Emulator, EmulatorError};
-use crate::link::{Address, Link, LinkError};
+use crate::link::{Address, Answer, Link, LinkError};
 
 /// What a set took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +46,7 @@ pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, Liv
     let stack_left = link.status()?.stack_left;
     let report = world.end()?.finish()?;
     Ok(LiveSet {
-        taken: outcome == Outcome::Done,
+        taken: outcome == Answer::Done,
         instructions: report.below_instructions.max,
         interrupt: report.interrupt_instructions.max,
         stack_left,

@@ -4,13 +4,13 @@ use std::io::{self, Write};
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::wire::message::{Changes, Outcome, Running, Status};
+use firmware::wire::message::{Changes, Running, Status};
 use serde::Serialize;
 
 use super::common::{ForWhom, json};
 use super::{Answer, CommandError};
 use crate::link::change::{change, collect};
-use crate::link::{Address, Link};
+use crate::link::{self, Address, Link};
 use crate::scope::words;
 
 /// Arguments of `haptic tune`.
@@ -42,7 +42,7 @@ pub struct Arguments {
 #[derive(Serialize)]
 struct Report<'a> {
     program: &'a str,
-    /// The board's sentence, where it refused.
+    /// Why the board refused, where it did.
     refused: Option<&'a str>,
     sets: u32,
     margin: Option<f64>,
@@ -71,8 +71,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let swaps = !changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
-        Outcome::Done => None,
-        Outcome::Refused(sentence) => Some(sentence.as_str()),
+        link::Answer::Done => None,
+        link::Answer::Refused(sentence) => Some(sentence.as_str()),
     };
     let (running, status) = (link.running()?, link.status()?);
     if arguments.answer.json {
@@ -91,15 +91,15 @@ fn request(
     link: &mut Link,
     arguments: &Arguments,
     changes: Changes,
-) -> Result<Outcome<String>, CommandError> {
-    let mut outcome = Outcome::Done;
+) -> Result<link::Answer, CommandError> {
+    let mut outcome = link::Answer::Done;
     if arguments.disarm {
         outcome = link.disarm()?;
     }
-    if outcome == Outcome::Done && !changes.is_empty() {
+    if outcome == link::Answer::Done && !changes.is_empty() {
         outcome = link.set(changes)?;
     }
-    if outcome == Outcome::Done && arguments.arm {
+    if outcome == link::Answer::Done && arguments.arm {
         outcome = link.arm()?;
     }
     Ok(outcome)

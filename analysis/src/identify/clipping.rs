@@ -99,7 +99,7 @@ fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64
         }
         let order = (column - DRIFT) / 2 + 1;
         let phase = order as f64 * angle * row as f64;
-        if (column - DRIFT) % 2 == 0 { phase.cos() } else { -phase.sin() }
+        if (column - DRIFT).is_multiple_of(2) { phase.cos() } else { -phase.sin() }
     });
     let values = DVector::from_column_slice(samples);
     let normal = (regressors.transpose() * &regressors).cholesky()?;

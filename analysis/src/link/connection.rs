@@ -3,9 +3,11 @@
 use std::io;
 use std::time::{Duration, Instant};
 
+use firmware::tuning::Parameters;
+use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Remembered, Running, Status,
-    ToBoard, ToHost,
+    Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Refusal, Remembered, Running,
+    Status, ToBoard, ToHost,
 };
 use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
@@ -14,6 +16,15 @@ use super::{Address, LinkError};
 
 /// What a board said, kept.
 pub type Message = ToHost<String>;
+
+/// What became of a request, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// It is done: what was asked for runs.
+    Done,
+    /// It is refused, and nothing has changed. The sentence says why.
+    Refused(String),
+}
 
 /// How long an answer is waited for.
 #[derive(Clone, Copy)]
@@ -112,6 +123,15 @@ fn is_closed(error: &io::Error) -> bool {
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }
 
+impl From<Outcome> for Answer {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Done => Self::Done,
+            Outcome::Refused(refusal) => Self::Refused(refusal.to_string()),
+        }
+    }
+}
+
 impl Link {
     /// Connects and asks who is there.
     ///
@@ -183,27 +203,55 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn set(&mut self, changes: Changes) -> Result<Outcome<String>, LinkError> {
-        self.request("a change of its parameters", |id| ToBoard::Set {
-            id,
-            changes: changes.clone(),
-        })
+    pub fn set(&mut self, changes: Changes) -> Result<Answer, LinkError> {
+        let set = |id| ToBoard::Set { id, changes: changes.clone() };
+        let outcome = self.request("a change of its parameters", set)?;
+        self.in_words(outcome, &changes)
+    }
+
+    /// What became of a request for these changes, in words: for a set that is refused, what runs there
+    /// is judged again here, with the remedies that a board has no room to look for.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn in_words(&mut self, outcome: Outcome, changes: &Changes) -> Result<Answer, LinkError> {
+        if let Outcome::Refused(Refusal::Set(step)) = outcome {
+            let (description, running) = (self.description()?, self.running()?);
+            let has = Parameters::of(running.values.iter().map(|(parameter, _)| *parameter));
+            if let Err(reason) = description.explain(has, changes)
+                && reason.step() == step
+            {
+                return Ok(Answer::Refused(reason.to_string()));
+            }
+        }
+        Ok(outcome.into())
     }
 
     /// Switches the amplifier on, or clears a fault and does so.
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn arm(&mut self) -> Result<Outcome<String>, LinkError> {
-        self.request("to arm", |id| ToBoard::Arm { id })
+    pub fn arm(&mut self) -> Result<Answer, LinkError> {
+        Ok(self.request("to arm", |id| ToBoard::Arm { id })?.into())
     }
 
     /// Fades the torque out and switches the amplifier off.
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn disarm(&mut self) -> Result<Outcome<String>, LinkError> {
-        self.request("to disarm", |id| ToBoard::Disarm { id })
+    pub fn disarm(&mut self) -> Result<Answer, LinkError> {
+        Ok(self.request("to disarm", |id| ToBoard::Disarm { id })?.into())
+    }
+
+    /// What exactly runs.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn description(&mut self) -> Result<Description, LinkError> {
+        self.ask("what exactly runs", &ToBoard::Describe, QUESTION, |message| match message {
+            ToHost::Described(description) => Some(description),
+            _ => None,
+        })
     }
 
     /// The numbers that run.
@@ -254,7 +302,7 @@ impl Link {
         &mut self,
         what: &'static str,
         message: impl Fn(Id) -> ToBoard,
-    ) -> Result<Outcome<String>, LinkError> {
+    ) -> Result<Outcome, LinkError> {
         let sent = self.next_id();
         self.ask(what, &message(sent), REQUEST, |message| match message {
             ToHost::Answer { id, outcome } if id == sent => Some(outcome),

@@ -1,9 +1,9 @@
 //! What somebody who watches a board may ask of it, by keys.
 
-use firmware::wire::message::{Changes, Id, Outcome, ToBoard};
+use firmware::wire::message::{Changes, Id, ToBoard};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use crate::link::change;
+use crate::link::{Answer, change};
 
 /// What is asked of a board.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,14 @@ impl Request {
         }
     }
 
+    /// The parameters that are to be changed.
+    pub fn changes(&self) -> Changes {
+        match self {
+            Self::Set(changes) => changes.clone(),
+            Self::Arm | Self::Disarm => Changes::new(),
+        }
+    }
+
     /// What is asked for, in words.
     pub fn words(&self) -> String {
         match self {
@@ -42,7 +50,7 @@ pub enum Reply {
     /// It was asked for.
     Asked,
     /// The board has answered.
-    Answered(Outcome<String>),
+    Answered(Answer),
     /// There was no answer.
     Unanswered,
     /// It was not asked for, since the board has yet to answer what was asked before.
@@ -57,8 +65,8 @@ impl Reply {
         let what = request.words();
         match self {
             Self::Asked => format!("{what} ..."),
-            Self::Answered(Outcome::Done) => format!("{what}: done"),
-            Self::Answered(Outcome::Refused(sentence)) => format!("{what}: {sentence}"),
+            Self::Answered(Answer::Done) => format!("{what}: done"),
+            Self::Answered(Answer::Refused(sentence)) => format!("{what}: {sentence}"),
             Self::Unanswered => format!("{what}: the board has not answered; it may have done it"),
             Self::Busy => {
                 format!("{what}: not sent; the board has not answered the last request yet")

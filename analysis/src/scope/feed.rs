@@ -223,13 +223,15 @@ impl Feeder {
                 ToHost::Running(running) => self.events.send(Event::Running(running))?,
                 ToHost::Answer { id, outcome } if pending.as_ref().is_some_and(|p| p.id == id) => {
                     let Some(Pending { request, .. }) = pending.take() else { continue };
-                    self.events.send(Event::Reply(request, Reply::Answered(outcome)))?;
+                    let answer = link.in_words(outcome, &request.changes())?;
+                    self.events.send(Event::Reply(request, Reply::Answered(answer)))?;
                     link.send(&ToBoard::Get)?;
                 }
                 // Of a greeting that was asked for twice, or of somebody else's question.
                 ToHost::Welcome { .. }
                 | ToHost::Remembered(_)
                 | ToHost::Board(_)
+                | ToHost::Described(_)
                 | ToHost::Answer { .. } => {}
             }
         }

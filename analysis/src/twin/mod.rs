@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 use firmware::boot::{self, Program};
 use firmware::cycle::{FrameQueue, InTime, Mailbox};
 use firmware::number::Number;
-use firmware::servo::{OutputMode, RenderError, Renders};
-use firmware::tuning::Tunable;
+use firmware::servo::{OutputMode, RenderError, Renders, Step};
+use firmware::tuning::{self, Tunable};
 use firmware::wire::{Facts, Session};
 
 use self::board::Board;
@@ -54,9 +54,17 @@ pub struct Twin {
 /// Why a twin has ended before it was asked to.
 #[derive(Debug, thiserror::Error)]
 pub enum TwinError {
-    /// Its program could not start.
-    #[error(transparent)]
-    Render(Box<RenderError>),
+    /// Its program could not start, and why.
+    #[error("refused by its {}: {reason}", .step.as_str())]
+    Render {
+        /// The step that refused it.
+        step: Step,
+        /// The reason.
+        reason: Box<RenderError>,
+    },
+    /// Its program could not start, though nothing is wrong with its scene.
+    #[error("refused by its {}", .0.as_str())]
+    Start(Step),
     /// The virtual board that it is has stopped.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
@@ -142,6 +150,20 @@ impl Drop for Twin {
     }
 }
 
+/// Why a program did not start.
+fn not_started<E, N, M>(program: &Program<E>, step: Step) -> TwinError
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let Program { scene, transducers, rendering, .. } = program;
+    match tuning::explain::<E, N, M>(scene, &[], transducers, rendering) {
+        Err(reason) => TwinError::Render { step, reason: Box::new(reason) },
+        Ok(()) => TwinError::Start(step),
+    }
+}
+
 /// The program, from boot to the end.
 fn serve<E, N, M>(
     name: &'static str,
@@ -160,7 +182,7 @@ where
     let (requests, mut inbox) = mailbox.split();
     let (mut frames, ticks) = queue.split();
     let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
-        .map_err(|error| TwinError::Render(Box::new(error)))?;
+        .map_err(|step| not_started::<E, N, M>(&program, step))?;
     let (mut cycle, margin) = (booted.cycle, booted.margin);
     let (reset, left) = (booted.reset, booted.left);
     let facts = Facts { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };

@@ -8,10 +8,16 @@ use crate::common::{answer, program, root, tool};
 use firmware::certificate::Parameter;
 use firmware::cycle::{Frame, State};
 use firmware::dac::DacCode;
+use firmware::encoder::CounterWidth;
+use firmware::environment::{Environment, Wall};
 use firmware::fault::Fault;
+use firmware::number::Format;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::{OutputTiming, RenderingOptions, Step, Transducers};
 use firmware::torque::LimitReason;
+use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Outcome, Remembered, Running, Status, ToBoard, ToHost,
+    Board, Changes, Outcome, Refusal, Remembered, Running, Status, ToBoard, ToHost,
 };
 use firmware::wire::telemetry::Batch;
 use firmware::wire::{Decoder, Discarded, PROTOCOL, encode};
@@ -74,6 +80,35 @@ fn status() -> Status {
     }
 }
 
+fn description() -> Description {
+    let wall = Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: Some(0.5),
+        delay: 300,
+        face: -0.1,
+        one_sided: true,
+    };
+    Description {
+        scene: Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.02) },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment: Environment::FreeModeWall { residual: 0.01, wall },
+            torque_limit: Some(1.5),
+        },
+        transducers: Transducers {
+            counts_per_turn: 61_440.0,
+            counter: CounterWidth::Bits16,
+            full_scale_torque: 2.0,
+            largest_speed: Transducers::NO_HAND_IS_FASTER,
+        },
+        rendering: RenderingOptions::DEFAULT,
+        format: Format::Fixed { fraction_bits: 24 },
+        timing: OutputTiming::Latched,
+    }
+}
+
 #[test]
 fn reads_every_message_to_the_host() {
     let frame = |tick, count, code| {
@@ -95,16 +130,19 @@ fn reads_every_message_to_the_host() {
     };
     let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
     let running = Running { sets: 2, margin: None, values };
-    let refused = Outcome::Refused("no \u{3b1}");
+    let refused = Outcome::Refused(Refusal::Set(Step::Timing));
+    let unarmed = Outcome::Refused(Refusal::Fault(fault().into()));
     let messages = [
         ToHost::Welcome { protocol: PROTOCOL, program: "damper_wall" },
         ToHost::Board(numbers),
         ToHost::Running(running),
         ToHost::Status(status()),
         ToHost::Answer { id: 65_535, outcome: refused },
+        ToHost::Answer { id: 7, outcome: unarmed },
         ToHost::Answer { id: 0, outcome: Outcome::Done },
         ToHost::Remembered(remembered),
         ToHost::Telemetry(batch),
+        ToHost::Described(description()),
     ];
     let code = json!({"code": 2, "first": 5000, "second": 979});
     let read = json!([
@@ -117,13 +155,30 @@ fn reads_every_message_to_the_host() {
                     "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
                     "stack_left": 2048, "reset": 3}],
-        ["answer", {"id": 65_535, "refused": "no \u{3b1}"}],
+        ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "timing"}}}],
+        ["answer", {"id": 7, "refused": {"type": "fault", "fault": code}}],
         ["answer", {"id": 0, "refused": null}],
         ["remembered", {"fault": code, "tick": 300, "count": -1}],
         ["telemetry", {"ticks": [
             {"later": u32::MAX, "moved": -40, "code": 4095, "limit": 5, "state": 3, "slack": 79},
             {"later": 2, "moved": i32::MAX.wrapping_add(40), "code": 0, "limit": 5, "state": 3,
              "slack": 79}]}],
+        ["described", {
+            "scene": {
+                "device": {"inertia": 2.2e-5, "damping": 0.022, "passivity": 0.02},
+                "timing": {"period": 0.001, "worst_period": null},
+                "coupling": {"type": "spring", "stiffness": 44.0},
+                "environment": {"type": "free-mode-wall", "residual": 0.01, "wall": {
+                    "stiffness": 22.0, "damping": 0.01, "filter": 0.5, "delay": 300,
+                    "face": -0.1, "one_sided": true}},
+                "torque_limit": 1.5,
+            },
+            "transducers": {"counts_per_turn": 61_440.0, "counter": {"type": "16"},
+                            "full_scale_torque": 2.0, "largest_speed": 100.0},
+            "rendering": {"fade": 0.1, "injection": null},
+            "format": {"type": "fixed", "fraction_bits": 24},
+            "timing": {"type": "latched"},
+        }],
     ]);
     assert_eq!(printed(DECODE, &messages.map(|message| framed(&message))), read);
 }
@@ -185,7 +240,11 @@ fn talks_to_a_board() {
     assert_eq!(running["values"]["stiffness"], 12.5);
     let refused = ask(&["set", "stiffness=300"]);
     assert_eq!(refused.status.code(), Some(1), "{refused:?}");
-    assert!(String::from_utf8_lossy(&refused.stderr).starts_with("rejected: "), "{refused:?}");
+    let reason = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(reason, "refused by its certificate; `haptic tune` says why\n");
+    let described = answer(&ask(&["describe"]));
+    assert_eq!(described["scene"]["environment"]["stiffness"], 12.5);
+    assert_eq!(described["timing"]["type"], "latched");
     let status = answer(&ask(&["disarm"]));
     assert_eq!((&status["state"], &status["sets"]), (&"disarmed".into(), &1.into()));
     assert_eq!(answer(&ask(&["arm"]))["fault"], Value::Null);

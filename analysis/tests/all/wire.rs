@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::common::{answer, haptic, program};
-use analysis::link::{Address, Link};
+use analysis::link::{Address, Answer, Link};
 use analysis::program::{Program, damper_wall};
 use analysis::rig::Plant;
 use analysis::scope::Scope;
@@ -21,7 +21,7 @@ use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
 use firmware::scene::Scene;
-use firmware::wire::message::{Changes, Outcome, Status};
+use firmware::wire::message::{Changes, Status};
 use ratatui::crossterm::event::KeyCode;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -83,7 +83,7 @@ struct Rig {
 impl Rig {
     fn new(clock: Clock) -> Self {
         let rig = Self::off(clock);
-        assert_eq!(rig.link().arm().unwrap(), Outcome::Done);
+        assert_eq!(rig.link().arm().unwrap(), Answer::Done);
         rig
     }
 
@@ -440,11 +440,11 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
         let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
         match with(stiffness, damping).certify_in(Format::F32) {
             Ok(_) => {
-                assert_eq!(outcome, Outcome::Done, "set {i}");
+                assert_eq!(outcome, Answer::Done, "set {i}");
                 running = stiffness;
             }
             Err(rejection) => {
-                assert_eq!(outcome, Outcome::Refused(rejection.to_string()), "set {i}");
+                assert_eq!(outcome, Answer::Refused(rejection.to_string()), "set {i}");
                 refused += 1;
                 // Not for a single tick.
                 let last = rig.held.after(150);

@@ -322,7 +322,7 @@ fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f
     // Without one its numbers may be out of range.
     assessment.alpha?;
     let numbers = Numbers::of(scene, assessment.format);
-    let bound = limited_bound(scene, assessment, &numbers)?;
+    let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
     let limited = Limited::of(scene, &numbers, bound)?;
     Some((bound, limited.margin(0.0)))
 }

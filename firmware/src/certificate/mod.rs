@@ -55,7 +55,7 @@ pub use timed::{Timed, TimingError};
 use crate::environment::*;
 use crate::number::Format;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders};
+use crate::servo::{OutputMode, Renders, Step};
 use rules::{Extent, assessed};
 
 /// A scene that was proved passive.
@@ -138,6 +138,25 @@ macro_rules! certify_for {
                 match certify_data::<$rational>(&self.as_data(), format) {
                     Ok(assessment) => Ok(Certified { scene: self, assessment }),
                     Err(rejection) => Err(rejection),
+                }
+            }
+
+            /// The scene timed, if [`Scene::certify_in`] and then [`Certified::time`] allow it: the
+            /// same verdict without its numbers and remedies, at a fraction of the cost. What a board
+            /// asks for, whose host has the words.
+            ///
+            /// # Errors
+            /// Which of the two does not.
+            pub const fn timed_in<M: OutputMode>(
+                self,
+                format: Format,
+            ) -> Result<Timed<Self, M>, Step>
+            where
+                $environment: Renders<M>,
+            {
+                match timed::judged::<$rational, M>(&self.as_data(), format) {
+                    Ok(limited) => Ok(Timed::new(self, format, limited)),
+                    Err(step) => Err(step),
                 }
             }
 

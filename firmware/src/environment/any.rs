@@ -12,6 +12,7 @@ use crate::servo::BuildError;
 
 /// A spring with an optional damper, as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wall {
     /// Stiffness `K` in N m/rad.
     pub stiffness: f64,
@@ -29,6 +30,7 @@ pub struct Wall {
 
 /// Any environment as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Environment {
     /// [`DelayedSpring`](super::DelayedSpring), placed or one-sided.
     DelayedSpring(Wall),
@@ -50,6 +52,8 @@ pub enum Environment {
         wall: Wall,
     },
     /// [`Rational`].
+    // No board renders one, and none says so on its wire.
+    #[cfg_attr(feature = "wire", serde(skip))]
     Rational(Rational),
 }
 

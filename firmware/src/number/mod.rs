@@ -82,6 +82,7 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
 
 /// A number format, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum Format {
     /// IEEE binary32.
     F32,

@@ -9,7 +9,7 @@ mod transducers;
 
 pub use build_error::BuildError;
 pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
-pub use render_error::RenderError;
+pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};
 pub use transducers::Transducers;
 

@@ -20,6 +20,7 @@ pub trait OutputMode: sealed::Sealed + Copy + Send + core::fmt::Debug + 'static 
 
 /// When a code reaches the motor, as data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub enum OutputTiming {
     /// At the instant of its count.
     Simultaneous,

@@ -19,6 +19,44 @@ pub enum RenderError {
     Build(BuildError),
 }
 
+/// The step from a scene to its servo that failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Step {
+    /// To change the numbers.
+    Change,
+    /// The certificate.
+    Certificate,
+    /// What a board does to a torque: its delay and its limits.
+    Timing,
+    /// The servo in its number format, with its transducers.
+    Servo,
+}
+
+impl Step {
+    /// As a word.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Change => "change",
+            Self::Certificate => "certificate",
+            Self::Timing => "timing",
+            Self::Servo => "servo",
+        }
+    }
+}
+
+impl RenderError {
+    /// Where it happened.
+    pub const fn step(&self) -> Step {
+        match self {
+            Self::Tuning(_) => Step::Change,
+            Self::Rejected(_) => Step::Certificate,
+            Self::Timing(_) => Step::Timing,
+            Self::Build(_) => Step::Servo,
+        }
+    }
+}
+
 impl fmt::Display for RenderError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

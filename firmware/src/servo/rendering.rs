@@ -15,6 +15,7 @@ use crate::tuning::Tunable;
 
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderingOptions {
     /// Time in s in which the clamp opens from nothing to the torque limit, and closes; for another set
     /// of parameters a tenth of it ([`longest_gap`](crate::cycle::longest_gap)).
@@ -95,8 +96,8 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
         if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
-        let again = E::certify(*timed.scene()).ok().and_then(|scene| E::time(scene).ok());
-        let again = again.ok_or(BuildError::Uncertified { format })?;
+        let again = E::timed(*timed.scene());
+        let again = again.map_err(|_| BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
     }
 }

@@ -11,6 +11,7 @@ use crate::torque::{LimitReason, Limiter};
 
 /// The scales of what surrounds the servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transducers {
     /// Encoder counts a turn of the device's axis, after quadrature and gearing.
     pub counts_per_turn: f64,

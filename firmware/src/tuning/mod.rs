@@ -17,7 +17,9 @@ use crate::certificate::Parameter;
 use crate::environment::Renderable;
 use crate::number::Number;
 use crate::scene::{Coupling, Scene};
-use crate::servo::{OutputMode, RenderError, Rendering, RenderingOptions, Renders, Transducers};
+use crate::servo::{
+    OutputMode, RenderError, Rendering, RenderingOptions, Renders, Step, Transducers,
+};
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
@@ -51,6 +53,12 @@ pub struct Parameters {
 }
 
 impl Parameters {
+    /// Those of the [`TUNABLE`] ones that are given.
+    pub fn of(given: impl Iterator<Item = Parameter>) -> Self {
+        let place = |parameter| TUNABLE.iter().position(|(_, known)| *known == parameter);
+        Self { bits: given.filter_map(place).fold(0, |bits, i| bits | 1 << i) }
+    }
+
     /// The parameters in the table's order.
     pub fn iter(self) -> impl Iterator<Item = Parameter> {
         TUNABLE
@@ -102,25 +110,40 @@ pub fn get<E: Values + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f
     value(&mut scene, parameter).copied()
 }
 
-/// The scene with some parameters changed. Whether the values make sense is for the certificate
-/// to judge.
+/// Whether these are changes of a scene that has these parameters.
 ///
 /// # Errors
-/// Where the scene has no such parameter, or a change is given twice.
-pub fn apply<E: Values + Copy>(
-    scene: &Scene<E>,
-    changes: &[(Parameter, f64)],
-) -> Result<Scene<E>, TuningError> {
-    let mut changed = *scene;
-    for (i, &(parameter, to)) in changes.iter().enumerate() {
+/// Where it does not have one of them, or a change is given twice.
+pub fn check(has: Parameters, changes: &[(Parameter, f64)]) -> Result<(), TuningError> {
+    for (i, &(parameter, _)) in changes.iter().enumerate() {
         if name(parameter).is_none() {
             return Err(TuningError::Fixed { parameter });
         }
         if changes.iter().take(i).any(|(earlier, _)| *earlier == parameter) {
             return Err(TuningError::Twice { parameter });
         }
-        let absent = TuningError::Absent { parameter, has: parameters(scene) };
-        *value(&mut changed, parameter).ok_or(absent)? = to;
+        if !has.iter().any(|has| has == parameter) {
+            return Err(TuningError::Absent { parameter, has });
+        }
+    }
+    Ok(())
+}
+
+/// The scene with some parameters changed. Whether the values make sense is for the certificate
+/// to judge.
+///
+/// # Errors
+/// As [`check`].
+pub fn apply<E: Values + Copy>(
+    scene: &Scene<E>,
+    changes: &[(Parameter, f64)],
+) -> Result<Scene<E>, TuningError> {
+    check(parameters(scene), changes)?;
+    let mut changed = *scene;
+    for &(parameter, to) in changes {
+        if let Some(value) = value(&mut changed, parameter) {
+            *value = to;
+        }
     }
     Ok(changed)
 }
@@ -142,27 +165,48 @@ pub struct Prepared<E: Renderable<N>, N: Number, M> {
 /// In a frame of its own: judging takes most of the stack that a small board has.
 ///
 /// # Errors
-/// Whatever is wrong with the set, as a sentence that says what would not be.
+/// The step that does not allow it. [`explain`] has the reason.
 #[inline(never)]
 pub fn prepare<E, N, M>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],
     transducers: &Transducers,
     options: &RenderingOptions,
-) -> Result<Prepared<E, N, M>, RenderError>
+) -> Result<Prepared<E, N, M>, Step>
 where
     E: Tunable<N> + Renders<M>,
     N: Number,
     M: OutputMode,
 {
-    let scene = apply(scene, changes)?;
-    let timed = E::time(E::certify(scene)?)?;
-    let rendering = Rendering::build(&timed, transducers, options)?;
+    let scene = apply(scene, changes).map_err(|_| Step::Change)?;
+    let timed = E::timed(scene)?;
+    let rendering = Rendering::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     Ok(Prepared {
         scene,
         margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
         rendering,
     })
+}
+
+/// Why [`prepare`] refuses a changed scene, with the remedies that there are: what takes too much of a
+/// small board, and its host has from the same numbers by the same code.
+///
+/// # Errors
+/// Whatever is wrong with the set, as a sentence that says what would not be.
+pub fn explain<E, N, M>(
+    scene: &Scene<E>,
+    changes: &[(Parameter, f64)],
+    transducers: &Transducers,
+    options: &RenderingOptions,
+) -> Result<(), RenderError>
+where
+    E: Tunable<N> + Renders<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let timed = E::time(E::certify(apply(scene, changes)?)?)?;
+    Rendering::<E, N, M>::build(&timed, transducers, options)?;
+    Ok(())
 }
 
 #[cfg(test)]

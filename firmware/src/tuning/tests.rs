@@ -28,8 +28,10 @@ const WALL: Scene<OneSided<DamperWall<1>>> =
 
 fn refusal(changes: &[(Parameter, f64)]) -> String {
     let options = RenderingOptions::DEFAULT;
+    let explained = explain::<_, f32, Latched>(&WALL, changes, &TRANSDUCERS, &options).unwrap_err();
     let refused = prepare::<_, f32, Latched>(&WALL, changes, &TRANSDUCERS, &options);
-    refused.map(|_| ()).unwrap_err().to_string()
+    assert_eq!(refused.map(|_| ()).unwrap_err(), explained.step());
+    explained.to_string()
 }
 
 #[test]

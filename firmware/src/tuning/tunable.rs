@@ -6,14 +6,24 @@ use crate::certificate::{Certified, Rejection, Timed, TimingError};
 use crate::environment::*;
 use crate::number::Number;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders};
+use crate::servo::{OutputMode, Renders, Step};
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
 pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
+    /// The scene timed, if the coefficients as rounded to the number format and the mode allow it.
+    /// Does not look for reasons and remedies, so that a board has nothing of what it takes to find
+    /// them.
+    ///
+    /// # Errors
+    /// What does not allow it.
+    fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+    where
+        Self: Renders<M>;
+
     /// The certificate of the coefficients as rounded to the number format.
     ///
     /// # Errors
-    /// Why the scene is not certified.
+    /// Why the scene is not certified, and what would be.
     fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection>;
 
     /// [`Certified::time`].
@@ -33,6 +43,13 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
 macro_rules! tunable {
     ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
+            fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+            where
+                Self: Renders<M>,
+            {
+                scene.timed_in(F::FORMAT)
+            }
+
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
                 scene.certify_in(F::FORMAT)
             }

@@ -54,6 +54,11 @@ impl<F: Flavor> Flavor for OutOfLine<F> {
         self.0.try_push(byte)
     }
 
+    #[inline(never)]
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        bytes.iter().try_for_each(|&byte| self.try_push(byte))
+    }
+
     fn finalize(self) -> postcard::Result<Self::Output> {
         self.0.finalize()
     }

@@ -11,18 +11,20 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::decoder::Discarded;
+use super::description::Description;
 use super::telemetry::Batch;
-use crate::certificate::{Parameter, Sentence};
+use crate::certificate::Parameter;
 use crate::cycle::State;
 use crate::fault::{Fault, Retained};
 use crate::reset::ResetCause;
+use crate::servo::Step;
 
 /// Numbers that one set may change: more than any scene has.
 pub const MAX_CHANGES: usize = 8;
 /// Longest message to a board, in bytes: the longest set, nine bytes a number.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
-/// Longest message to the host, in bytes: the longest sentence of a refusal.
-pub const LONGEST_TO_HOST: usize = 8 + Sentence::CAPACITY;
+/// Longest message to the host, in bytes: a full batch of ticks, and a program described.
+pub const LONGEST_TO_HOST: usize = 256;
 
 /// Numbers of a scene and what they are, or shall be together or not at all, in the units of a
 /// scene file.
@@ -60,6 +62,8 @@ pub enum ToBoard {
     },
     /// Send every so many ticks from now on; `None`: no more. Not answered.
     Stream(Option<NonZeroU32>),
+    /// What exactly is running? Answered by [`ToHost::Described`].
+    Describe,
 }
 
 /// What a board says. `S` is the text.
@@ -84,12 +88,14 @@ pub enum ToHost<S> {
         /// The request's.
         id: Id,
         /// What became of it.
-        outcome: Outcome<S>,
+        outcome: Outcome,
     },
     /// What stopped this board before it was last started.
     Remembered(Remembered),
     /// Ticks that were asked for with [`ToBoard::Stream`].
     Telemetry(Batch),
+    /// The scene that runs, and how.
+    Described(Description),
 }
 
 /// What the numbers of the other messages mean on this board.
@@ -121,12 +127,43 @@ pub struct Running {
 }
 
 /// What became of a request.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Outcome<S> {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Outcome {
     /// It is done: what was asked for runs.
     Done,
-    /// It is refused, and nothing has changed. The sentence says why.
-    Refused(S),
+    /// It is refused, and nothing has changed.
+    Refused(Refusal),
+}
+
+/// Why a request is refused. The words are the host's, which has the same code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// One set at a time.
+    Busy,
+    /// It is to be disarmed, which goes first.
+    Disarming,
+    /// What stopped the servo is still there.
+    Fault(FaultCode),
+    /// The set cannot run, by this step; [`Description::explain`] says why.
+    Set(Step),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Busy => f.write_str(
+                "the set of parameters before this one is still being swapped in: wait for its \
+                 answer",
+            ),
+            Self::Disarming => f.write_str("not armed: it is being disarmed; arm it after that"),
+            Self::Fault(fault) => write!(f, "not armed: {fault}"),
+            Self::Set(step) => write!(
+                f,
+                "the board refused the set by its {}, and this program cannot tell why",
+                step.as_str()
+            ),
+        }
+    }
 }
 
 /// How it is going.

@@ -1,10 +1,12 @@
 //! What a board and its host say to each other, as bytes on a serial line or a socket.
 //!
 //! [`message`] lists what can be said, [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs
-//! ticks, [`session`] answers on the board. The host asks and the board answers; of itself the board sends telemetry only, once it
-//! was asked to.
+//! ticks, [`session`] answers on the board, and
+//! with a [`description`] of what runs there the host has the words for a refusal. The host asks and
+//! the board answers; of itself the board sends telemetry only, once it was asked to.
 
 pub mod decoder;
+pub mod description;
 pub mod frame;
 pub mod message;
 pub mod session;

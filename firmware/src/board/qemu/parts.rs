@@ -17,7 +17,7 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::energy::EnergyMonitor;
 use crate::number::Number;
-use crate::servo::{OutputMode, Servo};
+use crate::servo::{OutputMode, Servo, Step};
 use crate::torque::LimitReason;
 use crate::tuning::Tunable;
 
@@ -54,7 +54,7 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
     /// where it cannot be built.
     pub fn new(program: &Program<E>) -> Self {
         let built = Servo::build(&program.scene, &program.transducers);
-        let servo = built.unwrap_or_else(|error| refuse(&error));
+        let servo = built.unwrap_or_else(|_| refuse(Step::Servo.as_str()));
         let [contact, free, energy_cost, frame_cost] = [Spread::EMPTY; 4];
         let (energy, mode) = (EnergyMonitor::default(), core::marker::PhantomData);
         Self { servo, energy, last: None, contact, free, energy_cost, frame_cost, mode }

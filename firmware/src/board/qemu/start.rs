@@ -1,7 +1,5 @@
 //! From reset to a running servo, or to a measurement.
 
-use core::fmt::Display;
-
 use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
 
@@ -16,7 +14,7 @@ use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
-use crate::servo::Renders;
+use crate::servo::{Renders, Step};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
 
@@ -105,12 +103,13 @@ where
     let mut hardware = Registers::new(period);
     let Ends { requests, inbox, frames, told } = ends(&places.meeting);
     let Booted { cycle, margin, reset, left, .. } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
     #[cfg(feature = "log")]
     defmt::info!("reset={=str}", reset.as_str());
     #[cfg(feature = "log")]
     if let Some(left) = left {
-        defmt::warn!("left={=str} {}", left.fault.as_str(), defmt::Display2Format(&left.fault));
+        let (code, [a, b]) = left.fault.encode();
+        defmt::warn!("left={=str} code={} numbers={},{}", left.fault.as_str(), code, a, b);
     }
     hardware.start();
     // SAFETY: the interrupt that uses the place is not enabled yet.
@@ -134,14 +133,14 @@ pub(super) fn begin() -> SYST {
 
 /// A period, or an end.
 pub(super) fn period(seconds: f64) -> Period {
-    Period::of(seconds).unwrap_or_else(|error| refuse(&error))
+    Period::of(seconds).unwrap_or_else(|_| refuse("the timer cannot pace its period"))
 }
 
 /// Opens the pipes to the host. The interrupt that uses them must not be enabled yet.
 pub(super) fn connect() {
     // SAFETY: called before the pacing starts.
     if unsafe { lockstep::open() }.is_err() {
-        refuse(&"no host holds the pipes");
+        refuse("no host holds the pipes");
     }
 }
 
@@ -164,18 +163,25 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     let start = meter::now();
     let judged = E::certify(scene);
     let time = meter::now().wrapping_sub(start);
-    let certified = judged.unwrap_or_else(|rejection| refuse(&rejection));
+    let certified = judged.unwrap_or_else(|_| not_started(Step::Certificate));
     log::certificate("compiler", compiler);
     log::certificate("board", certified.assessment());
     let (size, left) = (stack::size(), stack::left());
     defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - left, size);
 }
 
+/// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
+/// the words for it: `haptic certify`.
+#[cold]
+fn not_started(step: Step) -> ! {
+    refuse(step.as_str())
+}
+
 /// Ends a program that cannot start.
-pub(super) fn refuse(reason: &dyn Display) -> ! {
+pub(super) fn refuse(reason: &'static str) -> ! {
     lines::stop();
     #[cfg(feature = "log")]
-    defmt::error!("{}", defmt::Display2Format(reason));
+    defmt::error!("refused by {=str}", reason);
     #[cfg(not(feature = "log"))]
     let _ = reason;
     semihosting::process::exit(EXIT_REFUSED)

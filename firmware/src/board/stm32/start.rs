@@ -1,6 +1,5 @@
 //! From reset to a running servo.
 
-use core::fmt::Display;
 use core::task::Poll;
 
 use embassy_executor::{Executor, SpawnError, SpawnToken};
@@ -20,14 +19,14 @@ use crate::board::input_filter::InputFilter;
 use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
-use crate::board::{critical, stack};
+use crate::board::{critical, period as periods, stack};
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::cycle::Reason;
 use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
 use crate::reset::ResetCause;
-use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
+use crate::servo::{OutputMode, OutputTiming, Renders, Step, Transducers};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
 
@@ -72,7 +71,7 @@ where
     EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
         Ok(token) => spawner.spawn(token),
         // A task's place is taken only where it was spawned before, which nothing here does.
-        Err(_) => refuse(&"the task of the host's link runs already"),
+        Err(_) => refuse("the task of the host's link runs already"),
     })
 }
 
@@ -108,7 +107,7 @@ where
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
     let Booted { cycle, margin, reset, left, arms_because } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|error| refuse(&error));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
@@ -135,7 +134,11 @@ impl<E: Tunable<N> + Renders<Mode>, N: Number> HostLink<E, N> {
 
 /// A period, or an end.
 pub fn period(seconds: f64) -> Period {
-    Period::of(seconds).unwrap_or_else(|error| refuse(&error))
+    Period::of(seconds).unwrap_or_else(|_| {
+        let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
+        defmt::error!("the period of {} s is not between {} and {} s", seconds, shortest, longest);
+        refuse("its period")
+    })
 }
 
 /// Latches the converter where that is its mode, and begins to pace. The servo's interrupt is to be
@@ -158,8 +161,8 @@ fn greet(name: &str) {
 fn log_reset(reset: ResetCause, left: Option<Retained>, arms_because: Option<Reason>) {
     defmt::info!("last reset: {=str}", reset.as_str());
     if let Some(Retained { fault, tick, .. }) = left {
-        let sentence = defmt::Display2Format(&fault);
-        defmt::warn!("not armed, because of what was left in tick {}: {}", tick, sentence);
+        let (_, [a, b]) = fault.encode();
+        defmt::warn!("not armed: {=str} ({}, {}) in tick {}", fault.as_str(), a, b, tick);
     }
     if let Some(reason) = arms_because {
         defmt::warn!("armed at power-on: {=str}", reason.as_str());
@@ -188,10 +191,17 @@ pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
     C::WIDTH
 }
 
+/// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
+/// the words for it: `haptic certify`.
+#[cold]
+fn not_started(step: Step) -> ! {
+    refuse(step.as_str())
+}
+
 /// Ends a program that cannot start. The amplifier has never been on.
-pub(super) fn refuse(reason: &dyn Display) -> ! {
+pub(super) fn refuse(reason: &'static str) -> ! {
     stop();
-    defmt::error!("{}", defmt::Display2Format(reason));
+    defmt::error!("refused by {=str}", reason);
     loop {
         cortex_m::asm::wfi();
     }

@@ -8,13 +8,14 @@ use core::marker::PhantomData;
 use super::Certified;
 use super::margin::Limited;
 use super::model::{Missed, Numbers, nonlinear_bound};
+use super::posed::PosedIn;
 use super::rules::paper_limit;
 use super::{Assessment, Rule, Sentence};
 use crate::cycle::READ_WITHIN;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, OutputTiming, Simultaneous};
+use crate::servo::{OutputMode, OutputTiming, Simultaneous, Step};
 
 /// A certified scene that agrees with the mode `M` in which a board puts its torques out.
 ///
@@ -194,22 +195,46 @@ impl Assessment {
     }
 }
 
-/// Whether a scene with this assessment agrees with a mode; if so, what it is with its
-/// torque limited.
-// In a frame of its own: its transfer functions would otherwise lie on the stack of a small board while
-// the scene is judged.
+/// The verdict on a scene and on its timing, without the numbers of either; if it passes, what it is
+/// with its torque limited.
+// In a frame of its own: what it takes is not on the stack of a small board when the servo is built.
 #[inline(never)]
+pub(super) const fn judged<const RATIONAL: bool, M: OutputMode>(
+    scene: &Scene,
+    format: Format,
+) -> Result<Limited, Step> {
+    let posed = &PosedIn::<RATIONAL>::in_format(scene, format);
+    let PosedIn { numbers, rule, bound, .. } = match posed {
+        Ok(posed) if posed.is_certified() => posed,
+        _ => return Err(Step::Certificate),
+    };
+    match agreed::<M>(scene, *rule, *bound, numbers) {
+        Ok(limited) => Ok(limited),
+        Err(_) => Err(Step::Timing),
+    }
+}
+
+/// Whether a scene with this assessment agrees with a mode; if so, what it is with its torque limited.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
 ) -> Result<Limited, TimingError> {
+    let n = Numbers::of(scene, assessment.format);
+    agreed::<M>(scene, assessment.rule, assessment.bound, &n)
+}
+
+const fn agreed<M: OutputMode>(
+    scene: &Scene,
+    rule: Rule,
+    bound: Option<Interval>,
+    n: &Numbers,
+) -> Result<Limited, TimingError> {
     if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
     }
-    let n = Numbers::of(scene, assessment.format);
-    let bound = limited_bound(scene, assessment, &n);
+    let bound = limited_bound(scene, rule, bound, n);
     let limited = match bound {
-        Some(bound) => Limited::of(scene, &n, bound),
+        Some(bound) => Limited::of(scene, n, bound),
         None => None,
     };
     let Some(limited) = limited else {
@@ -218,14 +243,14 @@ pub(super) const fn agree<M: OutputMode>(
                 Some(bound) => Some(bound.hi()),
                 None => None,
             },
-            limit: match paper_limit(&n) {
+            limit: match paper_limit(n) {
                 Some(limit) => Some(limit.lo()),
                 None => None,
             },
         });
     };
     match M::TIMING {
-        OutputTiming::Latched => read_late(limited, scene.timing.period, &n),
+        OutputTiming::Latched => read_late(limited, scene.timing.period, n),
         OutputTiming::Simultaneous => Ok(limited),
     }
 }
@@ -240,7 +265,8 @@ const fn read_late(limited: Limited, period: f64, n: &Numbers) -> Result<Limited
     Err(TimingError::ReadLate { period, bound: limited.bound.hi(), limit: limit.lo() })
 }
 
-/// The bound on the index of a certified scene whose torque is limited.
+/// The bound on the index of a certified scene whose torque is limited; `bound` is that which the
+/// verdict compared, for one-sided and limited scenes.
 ///
 /// It holds for a limit that moves, too: the clip of a monotone law at any level is monotone and no
 /// steeper, and that of a damper or a canceller is a part of it that may change from tick to tick
@@ -248,11 +274,12 @@ const fn read_late(limited: Limited, period: f64, n: &Numbers) -> Result<Limited
 /// environment stores at its depth, once.
 pub(super) const fn limited_bound(
     scene: &Scene,
-    assessment: &Assessment,
+    rule: Rule,
+    bound: Option<Interval>,
     n: &Numbers,
 ) -> Option<Interval> {
-    if matches!(assessment.rule, Rule::Nonlinear) {
-        return assessment.bound;
+    if matches!(rule, Rule::Nonlinear) {
+        return bound;
     }
     nonlinear_bound(&scene.environment, None, n)
 }

@@ -5,7 +5,7 @@ use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
 use crate::fault::Retained;
 use crate::reset::ResetCause;
-use crate::servo::{RenderError, Renders};
+use crate::servo::{Renders, Step};
 use crate::tuning::Tunable;
 
 /// Timer counts in a period of every board here.
@@ -120,7 +120,7 @@ pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
 
 impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     /// Boots the board.
-    pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, RenderError> {
+    pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, Step> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
         let Booted { cycle, reset, left, arms_because, .. } = boot(program, &mut board, &requests)?;
@@ -128,7 +128,7 @@ impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     }
 
     /// Boots the board and asks for it to be armed.
-    pub fn armed(program: &Program<E>, board: Board) -> Result<Self, RenderError> {
+    pub fn armed(program: &Program<E>, board: Board) -> Result<Self, Step> {
         let bench = Self::boot(program, board)?;
         bench.requests.arm();
         Ok(bench)

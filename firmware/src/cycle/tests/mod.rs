@@ -15,7 +15,7 @@ use crate::environment::DelayedSpring;
 use crate::fault::Retained;
 use crate::reset::ResetCause;
 use crate::scene::{Coupling, Device, Scene, Timing};
-use crate::servo::{Latched, RenderError, RenderingOptions, Transducers};
+use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 
 /// A spring that pulls to both sides, so that any deflection shows.
 type Spring = DelayedSpring<1>;
@@ -86,7 +86,7 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     let (requests, _inbox) = mailbox.split();
     let result = crate::boot::boot(&program, &mut board, &requests);
     let error = result.map(|_| ()).unwrap_err();
-    assert!(matches!(error, RenderError::Rejected(_)));
+    assert_eq!(error, Step::Certificate);
     assert_eq!(board.events, [Event::Amplifier(false), Event::Write(2048)]);
 }
 

@@ -11,19 +11,18 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
-use core::fmt::{Display, Write};
-
 use self::outbox::Outbox;
-use self::owed::{Greeting, Owed, Refusal};
+use self::owed::{Greeting, Owed};
 use self::stream::Stream;
 use super::PROTOCOL;
 use super::decoder::Decoder;
+use super::description::Description;
 use super::frame::CHECKSUM;
 use super::message::{
-    Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Running, Status, ToBoard, ToHost,
+    Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Running, Status, ToBoard,
+    ToHost,
 };
 use crate::boot::Program;
-use crate::certificate::Sentence;
 use crate::cycle::{self, FrameReader, Notice, Requests};
 use crate::environment::Renderable;
 use crate::fault::Retained;
@@ -147,6 +146,7 @@ where
         match message {
             ToBoard::Hello => self.owed.greet(),
             ToBoard::Get => self.owed.running = true,
+            ToBoard::Describe => self.owed.description = true,
             ToBoard::Status => self.requests.ask_status(),
             ToBoard::Stream(every) => self.stream.set(every),
             ToBoard::Arm { id } => {
@@ -189,11 +189,13 @@ where
         if let Some(part) = self.owed.greeting() {
             self.greet(part);
         } else if let Some((id, outcome)) = self.owed.next_answer() {
-            self.answer(id, outcome);
+            self.outbox.put(&ToHost::Answer { id, outcome });
         } else if let Some(status) = self.owed.status.take() {
             self.outbox.put(&ToHost::Status(self.status(&status)));
         } else if core::mem::take(&mut self.owed.running) {
             self.outbox.put(&ToHost::Running(self.numbers()));
+        } else if core::mem::take(&mut self.owed.description) {
+            self.outbox.put(&ToHost::Described(self.description()));
         } else if let Some((id, changes)) = self.asked.take() {
             self.change(id, &changes);
         } else if let Some(batch) = self.stream.batch() {
@@ -213,21 +215,6 @@ where
         self.outbox.put(&message);
     }
 
-    // In a frame of its own, so that the sentence's place is not below the judgement's.
-    #[inline(never)]
-    fn answer(&mut self, id: Id, outcome: Result<(), impl Display>) {
-        // A sentence that is longer than any of ours is cut off.
-        let mut sentence = Sentence::new();
-        let outcome = match outcome {
-            Ok(()) => Outcome::Done,
-            Err(reason) => {
-                let _ = write!(sentence, "{reason}");
-                Outcome::Refused(sentence.as_str())
-            }
-        };
-        self.outbox.put(&ToHost::Answer { id, outcome });
-    }
-
     /// Certifies a set and gives it to the servo, or refuses it and leaves everything as it is.
     fn change(&mut self, id: Id, changes: &Changes) {
         let Program { transducers, rendering, .. } = &self.program;
@@ -239,7 +226,10 @@ where
                     Err(_) => self.owed.refuse(id, Refusal::Busy),
                 }
             }
-            Err(error) => self.answer(id, Err(error)),
+            Err(step) => {
+                let outcome = Outcome::Refused(Refusal::Set(step));
+                self.outbox.put(&ToHost::Answer { id, outcome });
+            }
         }
     }
 
@@ -254,6 +244,12 @@ where
             energy_step: transducers.energy_unit(),
             longest_gap: cycle::longest_gap(rendering, period),
         }
+    }
+
+    fn description(&self) -> Description {
+        let Program { transducers, rendering, .. } = self.program;
+        let (scene, format, timing) = (E::as_data(&self.running.scene), N::FORMAT, M::TIMING);
+        Description { scene, transducers, rendering, format, timing }
     }
 
     fn numbers(&self) -> Running {

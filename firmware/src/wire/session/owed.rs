@@ -1,13 +1,11 @@
 //! What the host is still to be told. Of each kind there is a fixed number: asking faster than the
 //! wire can answer costs answers, not memory.
 
-use core::fmt;
-
 use heapless::Deque;
 
 use crate::cycle::Status;
 use crate::fault::Fault;
-use crate::wire::message::Id;
+use crate::wire::message::{Id, Outcome, Refusal};
 
 /// Answers that wait.
 const ANSWERS: usize = 4;
@@ -18,11 +16,13 @@ pub(super) struct Owed {
     greeting: Option<Greeting>,
     /// Which numbers run.
     pub running: bool,
+    /// What exactly runs.
+    pub description: bool,
     /// How it is going.
     pub status: Option<Status>,
     /// Who asked for the amplifier to be switched on or off, where the servo has not said yet.
     switching: Option<(Id, bool)>,
-    answers: Deque<(Id, Result<(), Refusal>), ANSWERS>,
+    answers: Deque<(Id, Outcome), ANSWERS>,
 }
 
 /// The parts of a greeting, in their order.
@@ -31,30 +31,6 @@ pub(super) enum Greeting {
     Welcome,
     Remembered,
     Board,
-}
-
-/// Why a request is refused that is not a matter of its numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Refusal {
-    /// One set at a time.
-    Busy,
-    /// It is to be disarmed, which goes first.
-    Disarming,
-    /// What stopped the servo is still there.
-    Fault(Fault),
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Busy => f.write_str(
-                "the set of parameters before this one is still being swapped in: wait for its \
-                 answer",
-            ),
-            Self::Disarming => f.write_str("not armed: it is being disarmed; arm it after that"),
-            Self::Fault(fault) => write!(f, "not armed: {fault}"),
-        }
-    }
 }
 
 impl Owed {
@@ -98,26 +74,32 @@ impl Owed {
             && wanted == on
         {
             self.switching = None;
-            self.answer(id, outcome.map_err(Refusal::Fault));
+            self.answer(
+                id,
+                match outcome {
+                    Ok(()) => Outcome::Done,
+                    Err(fault) => Outcome::Refused(Refusal::Fault(fault.into())),
+                },
+            );
         }
     }
 
     /// A request was done.
     pub(super) fn done(&mut self, id: Id) {
-        self.answer(id, Ok(()));
+        self.answer(id, Outcome::Done);
     }
 
     /// A request is refused.
     pub(super) fn refuse(&mut self, id: Id, refusal: Refusal) {
-        self.answer(id, Err(refusal));
+        self.answer(id, Outcome::Refused(refusal));
     }
 
     /// The next answer.
-    pub(super) fn next_answer(&mut self) -> Option<(Id, Result<(), Refusal>)> {
+    pub(super) fn next_answer(&mut self) -> Option<(Id, Outcome)> {
         self.answers.pop_front()
     }
 
-    fn answer(&mut self, id: Id, outcome: Result<(), Refusal>) {
+    fn answer(&mut self, id: Id, outcome: Outcome) {
         if self.answers.is_full() {
             // Whoever asked so long ago has stopped waiting.
             let _ = self.answers.pop_front();

@@ -15,7 +15,7 @@ use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Timing};
-use crate::servo::{Latched, RenderingOptions, Transducers};
+use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{encode, largest_frame};
 
@@ -126,13 +126,22 @@ impl Bench {
         self.run(500)
     }
 
-    fn set(&mut self, id: Id, changes: &[(Parameter, f64)]) -> Outcome<String> {
+    fn set(&mut self, id: Id, changes: &[(Parameter, f64)]) -> Outcome {
         let changes = Changes::from_slice(changes).unwrap();
         let said = self.ask(&ToBoard::Set { id, changes });
         match said.as_slice() {
-            [ToHost::Answer { id: answered, outcome }] if *answered == id => outcome.clone(),
+            [ToHost::Answer { id: answered, outcome }] if *answered == id => *outcome,
             other => panic!("{other:?}"),
         }
+    }
+
+    /// The words that a host has for a set that was refused.
+    fn why(&mut self, changes: &[(Parameter, f64)]) -> String {
+        let said = self.ask(&ToBoard::Describe);
+        let [ToHost::Described(description)] = said.as_slice() else { panic!("{said:?}") };
+        let values = self.running().values;
+        let has = tuning::Parameters::of(values.iter().map(|(parameter, _)| *parameter));
+        description.explain(has, changes).unwrap_err().to_string()
     }
 
     fn running(&mut self) -> Running {
@@ -149,6 +158,36 @@ impl Bench {
             _ => None,
         });
         statuses.next().expect("a board says how it is going")
+    }
+}
+
+fn refused(id: Id, refusal: Refusal) -> Said {
+    ToHost::Answer { id, outcome: Outcome::Refused(refusal) }
+}
+
+/// With everything that a description can have, and numbers that take all their bytes.
+fn largest_description() -> Description {
+    let wall = crate::environment::Wall {
+        stiffness: 1.0,
+        damping: 1.0,
+        filter: Some(1.0),
+        delay: usize::MAX,
+        face: 1.0,
+        one_sided: true,
+    };
+    let program = program();
+    Description {
+        scene: Scene {
+            device: Device { passivity: Some(1.0), ..SCENE.device },
+            timing: Timing { worst_period: Some(1.0), ..SCENE.timing },
+            coupling: SCENE.coupling,
+            environment: crate::environment::Environment::FreeModeWall { residual: 1.0, wall },
+            torque_limit: Some(1.0),
+        },
+        transducers: program.transducers,
+        rendering: RenderingOptions { fade: 1.0, injection: Some(1.0) },
+        format: Format::Fixed { fraction_bits: u32::MAX },
+        timing: crate::servo::OutputTiming::Latched,
     }
 }
 
@@ -204,7 +243,7 @@ fn a_certified_set_runs_whole() {
 }
 
 #[test]
-fn a_refused_set_changes_nothing_and_comes_back_with_the_compilers_sentence() {
+fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
     let mut bench = Bench::new(None);
     bench.run(500);
     let (before, code) = (bench.running(), bench.hardware.code);
@@ -213,14 +252,16 @@ fn a_refused_set_changes_nothing_and_comes_back_with_the_compilers_sentence() {
     let sentence = scene.certify_in(Format::F32).unwrap_err().to_string();
     assert!(sentence.starts_with("rejected: "));
     let changes = [(Parameter::Damping, 0.01), (Parameter::Stiffness, 30.0)];
-    assert_eq!(bench.set(2, &changes), Outcome::Refused(sentence));
-    for (changes, part) in [
-        ([(Parameter::Residual, 0.1)], "has no residual"),
-        ([(Parameter::Period, 0.1)], "period is fixed"),
-        ([(Parameter::Stiffness, f64::NAN)], "must be finite"),
-        ([(Parameter::TorqueLimit, 5.0)], "above the converter's full scale"),
+    assert_eq!(bench.set(2, &changes), Outcome::Refused(Refusal::Set(Step::Certificate)));
+    assert_eq!(bench.why(&changes), sentence);
+    for (changes, step, part) in [
+        ([(Parameter::Residual, 0.1)], Step::Change, "has no residual"),
+        ([(Parameter::Period, 0.1)], Step::Change, "period is fixed"),
+        ([(Parameter::Stiffness, f64::NAN)], Step::Certificate, "must be finite"),
+        ([(Parameter::TorqueLimit, 5.0)], Step::Servo, "above the converter's full scale"),
     ] {
-        let Outcome::Refused(sentence) = bench.set(3, &changes) else { panic!("{changes:?}") };
+        assert_eq!(bench.set(3, &changes), Outcome::Refused(Refusal::Set(step)), "{part}");
+        let sentence = bench.why(&changes);
         assert!(sentence.contains(part), "{sentence}");
     }
     assert_eq!((bench.running(), bench.hardware.code), (before, code));
@@ -240,10 +281,7 @@ fn one_set_at_a_time() {
     bench.tell(&set(1, 10.0));
     bench.tell(&set(2, 11.0));
     let said = bench.run(3);
-    let [ToHost::Answer { id: 2, outcome: Outcome::Refused(sentence) }] = said.as_slice() else {
-        panic!("{said:?}")
-    };
-    assert!(sentence.contains("still being swapped in"), "{sentence}");
+    assert_eq!(said, [refused(2, Refusal::Busy)]);
     bench.tell(&set(1, 10.0));
     assert_eq!(bench.run(500), [done(1)]);
     assert!(bench.running().values.contains(&(Parameter::Stiffness, 10.0)));
@@ -265,12 +303,7 @@ fn disarming_goes_before_arming() {
         bench.tell(&first);
         bench.tell(&second);
         let said = bench.run(500);
-        let [ToHost::Answer { id: 3, outcome: Outcome::Refused(sentence) }, last] = said.as_slice()
-        else {
-            panic!("{said:?}")
-        };
-        assert!(sentence.contains("being disarmed"), "{sentence}");
-        assert_eq!(*last, done(4));
+        assert_eq!(said, [refused(3, Refusal::Disarming), done(4)]);
         assert_eq!(bench.status().state, State::Disarmed);
     }
 }
@@ -333,12 +366,13 @@ fn every_message_fits_its_frame() {
         let frame = Frame { tick, count, code: DacCode::MAX, limit, state, slack: u32::MAX };
         batch.push(frame).unwrap();
     }
-    let sentence = "x".repeat(Sentence::CAPACITY);
-    let outcome = Outcome::Refused(sentence.as_str());
+    let fault = FaultCode { code: u32::MAX, numbers: [u32::MAX; 2] };
+    let outcome = Outcome::Refused(Refusal::Fault(fault));
     for message in [
-        ToHost::Telemetry(batch),
+        Said::Telemetry(batch),
         ToHost::Answer { id: u16::MAX, outcome },
         ToHost::Running(Running { sets: u32::MAX, margin: Some(1.0), values: changes }),
+        ToHost::Described(largest_description()),
     ] {
         assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");
     }
@@ -419,7 +453,9 @@ proptest! {
                     prop_assert_eq!(outcome, Outcome::Done);
                 }
                 Err(rejection) => {
-                    prop_assert_eq!(outcome, Outcome::Refused(rejection.to_string()));
+                    let refused = Outcome::Refused(Refusal::Set(Step::Certificate));
+                    prop_assert_eq!(outcome, refused);
+                    prop_assert_eq!(bench.why(&changes), rejection.to_string());
                 }
             }
             bench.run(400);

@@ -205,7 +205,7 @@ impl Bench {
     }
 
     /// Asks for the amplifier to be switched on.
-    pub fn arm(&mut self) -> Outcome<String> {
+    pub fn arm(&mut self) -> Outcome {
         const ID: u16 = 7;
         self.ask(&ToBoard::Arm { id: ID }, |message| match message {
             Message::Answer { id: ID, outcome } => Some(outcome),

@@ -3,7 +3,7 @@
 use firmware::cycle::State;
 use firmware::fault::Fault;
 use firmware::reset::ResetCause;
-use firmware::wire::message::{FaultCode, Outcome};
+use firmware::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
@@ -268,8 +268,8 @@ impl Case {
         let persists = told == Fault::NotANumber;
         match bench.arm() {
             Outcome::Done => assert!(!persists, "{what}"),
-            Outcome::Refused(sentence) => {
-                assert!(persists && sentence.contains(&told.to_string()), "{what}: {sentence}");
+            Outcome::Refused(refusal) => {
+                assert!(persists && refusal == Refusal::Fault(told.into()), "{what}: {refusal}");
             }
         }
         periods

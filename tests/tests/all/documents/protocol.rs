@@ -18,7 +18,9 @@ const MESSAGES: &str = "firmware/src/wire/message.rs";
 /// What is in the braces of a type in a source file.
 fn body(path: &str, kind: &str, name: &str) -> String {
     let source = read(path);
-    let of = regex(&format!(r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<S>)? \{{\n(.*?)\n\}}"));
+    let of = regex(&format!(
+        r"(?s)\n(?:pub(?:\(\w+\))? )?{kind} {name}(?:<\w+(?: = \w+)?>)? \{{\n(.*?)\n\}}"
+    ));
     let found = of.captures(&source).unwrap_or_else(|| panic!("{path} has no {kind} {name}"));
     found[1].to_owned()
 }
@@ -59,6 +61,11 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "FaultCode"),
         (MESSAGES, "Remembered"),
         ("firmware/src/wire/decoder.rs", "Discarded"),
+        ("firmware/src/wire/description.rs", "Description"),
+        ("firmware/src/scene.rs", "Scene"),
+        ("firmware/src/environment/any.rs", "Wall"),
+        ("firmware/src/servo/transducers.rs", "Transducers"),
+        ("firmware/src/servo/rendering.rs", "RenderingOptions"),
         ("firmware/src/wire/telemetry.rs", "Packed"),
     ] {
         let table = table(&document, &format!("### {name}"));
@@ -81,6 +88,10 @@ fn every_variant_is_there_with_its_number() {
         (MESSAGES, "ToBoard", "## To the board", Some(2)),
         (MESSAGES, "ToHost", "## To the host", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
+        (MESSAGES, "Refusal", "### Refusal", Some(2)),
+        ("firmware/src/servo/render_error.rs", "Step", "### Step", None),
+        ("firmware/src/number/mod.rs", "Format", "### Format", None),
+        ("firmware/src/servo/mode.rs", "OutputTiming", "### OutputTiming", None),
         ("firmware/src/cycle/state.rs", "State", "### State", None),
         ("firmware/src/reset.rs", "ResetCause", "### ResetCause", None),
         ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),

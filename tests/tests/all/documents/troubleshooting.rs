@@ -13,7 +13,7 @@ const KINDS: [(&str, &str); 7] = [
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
     ("BuildError", "firmware/src/servo/build_error.rs"),
     ("TuningError", "firmware/src/tuning/error.rs"),
-    ("Refusal", "firmware/src/wire/session/owed.rs"),
+    ("Refusal", "firmware/src/wire/message.rs"),
     ("LinkError", "analysis/src/link/error.rs"),
 ];
 

@@ -1,0 +1,80 @@
+//! What exactly runs on a board: enough for its host to judge what the board judges.
+
+use fixed::types::{I1F31, I4F28, I8F24, I12F20, I16F16};
+use serde::{Deserialize, Serialize};
+
+use crate::certificate::Parameter;
+use crate::environment::Environment;
+use crate::number::{Format, Number};
+use crate::scene::Scene;
+use crate::servo::{
+    Latched, OutputMode, OutputTiming, RenderError, RenderingOptions, Renders, Simultaneous,
+    Transducers,
+};
+use crate::tuning::{self, Parameters, Tunable};
+
+/// The scene that runs on a board, with all that its servo is built from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// The scene, its environment as data.
+    pub scene: Scene,
+    /// Sensor and motor.
+    pub transducers: Transducers,
+    /// How it is rendered.
+    pub rendering: RenderingOptions,
+    /// The number format of the servo.
+    pub format: Format,
+    /// When its torques reach the motor.
+    pub timing: OutputTiming,
+}
+
+impl Description {
+    /// Why changes of what runs here are refused: the words that the board has no room for, from the
+    /// same numbers by the same code. `has` are the parameters that can be changed there.
+    ///
+    /// # Errors
+    /// The reason. None is found for what can run, and for a servo that cannot be built in one of the
+    /// rarer number formats.
+    pub fn explain(
+        &self,
+        has: Parameters,
+        changes: &[(Parameter, f64)],
+    ) -> Result<(), RenderError> {
+        tuning::check(has, changes)?;
+        match self.timing {
+            OutputTiming::Latched => self.by_mode::<Latched>(changes),
+            OutputTiming::Simultaneous => self.by_mode::<Simultaneous>(changes),
+        }
+    }
+
+    fn by_mode<M: OutputMode>(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError>
+    where
+        Environment: Renders<M>,
+    {
+        match self.format {
+            Format::F32 => self.by_number::<f32, M>(changes),
+            Format::F64 => self.by_number::<f64, M>(changes),
+            Format::Fixed { fraction_bits: 16 } => self.by_number::<I16F16, M>(changes),
+            Format::Fixed { fraction_bits: 20 } => self.by_number::<I12F20, M>(changes),
+            Format::Fixed { fraction_bits: 24 } => self.by_number::<I8F24, M>(changes),
+            Format::Fixed { fraction_bits: 28 } => self.by_number::<I4F28, M>(changes),
+            Format::Fixed { fraction_bits: 31 } => self.by_number::<I1F31, M>(changes),
+            format => {
+                let certified = tuning::apply(&self.scene, changes)?.certify_in(format)?;
+                certified.time::<M>()?;
+                Ok(())
+            }
+        }
+    }
+
+    fn by_number<N: Number, M: OutputMode>(
+        &self,
+        changes: &[(Parameter, f64)],
+    ) -> Result<(), RenderError>
+    where
+        Environment: Tunable<N> + Renders<M>,
+    {
+        let Self { scene, transducers, rendering, .. } = self;
+        tuning::explain::<Environment, N, M>(scene, changes, transducers, rendering)
+    }
+}
