@@ -88,7 +88,11 @@ fn refuse(error: &clap::Error) -> ! {
 }
 
 fn with_exit_status(command: clap::Command) -> clap::Command {
-    command.after_help(EXIT_STATUS).mut_subcommands(with_exit_status)
+    let after = match command.get_after_help() {
+        Some(own) => format!("{own}\n\n{EXIT_STATUS}"),
+        None => EXIT_STATUS.to_owned(),
+    };
+    command.after_help(after).mut_subcommands(with_exit_status)
 }
 
 /// What to do.

@@ -31,11 +31,12 @@ pub const KNOBS: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-/// Encoder and motor of the paddle.
+/// Encoder and motor of the paddle, its amplifier scaled to what these walls need: the smaller its steps,
+/// the nearer to its limit a wall can be told to be on one side of it.
 pub const PADDLES: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits32,
-    full_scale_torque: 2.0,
+    full_scale_torque: 0.5,
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 

@@ -78,7 +78,7 @@ fn steps_are_held_against_friction() {
         let [answer] = &lines(&output)[..] else { panic!("one object") };
         answer.clone()
     };
-    let steps = "encoder_step = 1e-4\nfull_scale = 2.047";
+    let steps = "encoder_step = 1e-4\nfull_scale = 1.791";
     let said = judge("", steps);
     // The paper's wall makes at most 924 N m of 1 rad, and half of each step is an error.
     let hum = 0.5e-4 * 924.0 + 0.5e-3;

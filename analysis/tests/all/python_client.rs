@@ -91,7 +91,7 @@ fn description() -> Description {
     };
     Description {
         scene: Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.02) },
+            device: Device { inertia: 0.25, damping: 0.022, passivity: Some(0.02) },
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment: Environment::FreeModeWall { residual: 0.01, wall },
@@ -165,7 +165,7 @@ fn reads_every_message_to_the_host() {
              "slack": 79}]}],
         ["described", {
             "scene": {
-                "device": {"inertia": 2.2e-5, "damping": 0.022, "passivity": 0.02},
+                "device": {"inertia": 0.25, "damping": 0.022, "passivity": 0.02},
                 "timing": {"period": 0.001, "worst_period": null},
                 "coupling": {"type": "spring", "stiffness": 44.0},
                 "environment": {"type": "free-mode-wall", "residual": 0.01, "wall": {

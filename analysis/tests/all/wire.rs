@@ -174,7 +174,7 @@ fn tune_says_for_how_long_an_armed_board_lets_go() {
         assert_eq!(text(&output.stdout).contains(said), lets_go, "{arguments:?}: {output:?}");
     }
     let help = rig.haptic(&["tune", "--help"]);
-    assert!(text(&help.stdout).contains("lets go of the device"), "{help:?}");
+    assert!(text(&help.stdout).contains("A board that is armed lets go"), "{help:?}");
 }
 
 #[test]
@@ -510,5 +510,5 @@ fn a_twin_is_a_board_to_try_things_on() {
     assert!(text(&second.stderr).contains("cannot listen on unix:"), "{second:?}");
     assert_eq!(twin.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
-    assert!(text(&unknown.stderr).contains("the programs are delayed_spring"), "{unknown:?}");
+    assert!(text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"), "{unknown:?}");
 }

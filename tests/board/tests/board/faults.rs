@@ -290,7 +290,7 @@ impl Case {
         let remembered = bench.remembered().and_then(|record| record.fault.fault());
         assert_eq!(remembered, self.resets.then_some(told), "{what}");
         let log = bench.log();
-        let says = |line: &String| line.contains("not armed") && line.contains(&told.to_string());
+        let says = |line: &String| line.contains("not armed") && line.contains(told.as_str());
         assert_eq!(log.iter().any(says), self.resets, "{what}: {log:?}");
         told
     }

@@ -128,7 +128,7 @@ fn check_named(bench: &mut Bench, fault: Fault) {
     assert_eq!(status.state, State::Disarmed, "{fault:?}");
     assert_eq!(status.fault.and_then(FaultCode::fault), Some(fault));
     let log = bench.log();
-    assert!(log.iter().any(|line| line.contains(&fault.to_string())), "{log:?}");
+    assert!(log.iter().any(|line| line.contains(fault.as_str())), "{log:?}");
 }
 
 /// Places in the flash memory's interface.

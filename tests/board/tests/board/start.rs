@@ -96,7 +96,7 @@ fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
         assert_eq!(board.level(port, pin), Level::Low, "port {port}, pin {pin}");
     }
     assert_eq!((board.torque(), board.amplifier()), (Some(MID_SCALE), Level::Low));
-    bench.run(3);
+    bench.armed();
     let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
     let [low, high] = [Level::Low, Level::High].map(Event::Amplifier);
     assert_eq!(events, [low, Event::Torque(Some(MID_SCALE)), high]);

@@ -27,6 +27,7 @@ const NOW_AND_THEN: u64 = 200;
 fn a_host_that_falls_silent_lets_the_device_go() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, SUPERVISED.name, Still);
+        bench.armed();
         // Beside the spring's rest, so that it pushes.
         bench.pins().turns.push_back(300);
         for _ in 0..15 {
@@ -69,13 +70,14 @@ fn check_release(bench: &Bench, chip: &Chip, heard: usize) {
 fn damping_is_injected_where_there_is_a_deficit() {
     on_both(|chip| {
         let mut bench = Bench::boot(chip, SUPERVISED.name, InHand::of(&SUPERVISED));
+        let on = bench.armed();
         let mut worst = 0;
         for _ in 0..15 {
             bench.run(NOW_AND_THEN);
             worst = bench.status().worst_deficit;
         }
         assert!(worst > 0, "{}: no deficit", chip.name);
-        let samples = &bench.pins().samples;
+        let samples = &bench.pins().samples[on..];
         let given: Vec<_> = samples[2..].iter().map(|sample| sample.code.unwrap()).collect();
         let options = [supervised_spring::PROGRAM.rendering, RenderingOptions::DEFAULT];
         let [injected, watched] = options.map(|rendering| {
@@ -98,5 +100,6 @@ fn on_the_host(chip: &Chip, rendering: RenderingOptions, samples: &[Sample]) -> 
         options: Options::DEFAULT,
         ..program
     });
+    host.arm();
     samples.iter().map(|sample| host.tick(sample.count).0).collect()
 }
