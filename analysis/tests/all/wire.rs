@@ -510,5 +510,8 @@ fn a_twin_is_a_board_to_try_things_on() {
     assert!(text(&second.stderr).contains("cannot listen on unix:"), "{second:?}");
     assert_eq!(twin.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
-    assert!(text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"), "{unknown:?}");
+    assert!(
+        text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"),
+        "{unknown:?}"
+    );
 }

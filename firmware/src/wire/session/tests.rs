@@ -15,7 +15,7 @@ use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Timing};
-use crate::servo::{Latched, RenderingOptions, Step, Transducers};
+use crate::servo::{Latched, RenderError, RenderingOptions, Step, Transducers};
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{encode, largest_frame};
 
@@ -447,15 +447,17 @@ proptest! {
                 (Parameter::Stiffness, stiffness),
             ];
             let outcome = bench.set(id as Id, &changes);
-            match wanted.certify_in(Format::F32) {
+            let timed = wanted.certify_in(Format::F32).map_err(RenderError::from);
+            let timed = timed.and_then(|certified| Ok(certified.time::<Latched>()?));
+            match timed {
                 Ok(_) => {
                     scene = wanted;
                     prop_assert_eq!(outcome, Outcome::Done);
                 }
-                Err(rejection) => {
-                    let refused = Outcome::Refused(Refusal::Set(Step::Certificate));
+                Err(reason) => {
+                    let refused = Outcome::Refused(Refusal::Set(reason.step()));
                     prop_assert_eq!(outcome, refused);
-                    prop_assert_eq!(bench.why(&changes), rejection.to_string());
+                    prop_assert_eq!(bench.why(&changes), reason.to_string());
                 }
             }
             bench.run(400);
