@@ -102,6 +102,7 @@ fn nothing_is_removed_where_nobody_can_be_asked() {
 }
 
 #[test]
+#[cfg_attr(no_terminals, ignore = "this machine has no pseudo-terminals")]
 fn a_person_at_a_terminal_is_asked_before_anything_is_removed() {
     if !is_root() {
         return nothing_is_removed_where_nobody_can_be_asked();

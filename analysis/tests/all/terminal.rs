@@ -34,6 +34,7 @@ fn shown(arguments: &[&str], columns: u32, environment: &[(&str, &str)]) -> (Str
 }
 
 #[test]
+#[cfg_attr(no_terminals, ignore = "this machine has no pseudo-terminals")]
 fn colours_are_for_terminals_that_have_them_and_people_who_want_them() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.toml");
@@ -59,6 +60,7 @@ fn colours_are_for_terminals_that_have_them_and_people_who_want_them() {
 }
 
 #[test]
+#[cfg_attr(no_terminals, ignore = "this machine has no pseudo-terminals")]
 fn messages_answers_and_help_are_as_wide_as_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
