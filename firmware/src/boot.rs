@@ -1,6 +1,6 @@
 //! From reset to a servo that may run, in an order in which nothing can move by surprise:
 //! amplifier off, converter at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays off
-//! until the servo is armed, which is the host's to ask for: see [`Arming`](crate::cycle::Arming).
+//! until the servo is armed, which is the host's to ask for: see [`Arming`].
 
 use core::hint::black_box;
 

@@ -100,7 +100,7 @@ impl From<FormatArgument> for NumberFormat {
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, as damper_wall; or, on the host, a scene file, whose
-    /// [human] holds the device, and whose [simulation] is for `haptic simulate`
+    /// table human holds the device, and whose table simulation is for `haptic simulate`
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to

@@ -2,7 +2,7 @@
 //!
 //! Each key has its unit, bound, default and example in one table ([`key`]), and each type of
 //! environment its keys in another ([`kind`]). What reads a file goes by them, and so do the
-//! reference ([`reference`], kept as `SCENE.md`), the JSON schema ([`schema`]) and the examples
+//! reference ([`mod@reference`], kept as `SCENE.md`), the JSON schema ([`schema`]) and the examples
 //! ([`example`]). An unknown key is an error, and all errors of a file are said at once.
 
 pub mod device;
