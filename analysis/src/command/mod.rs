@@ -65,7 +65,12 @@ Exit status: 0 success; 1 negative verdict: rejected, undecided, unstable, diffe
 impl Arguments {
     /// Those that the program was started with; says what is wrong with them, and ends it.
     pub fn of_program() -> Self {
-        let matches = with_exit_status(Self::command()).try_get_matches();
+        // One rule for all output: clap's own one colours a terminal without colours where `CI` is set.
+        let colour = match terminal::has_colour(io::stdout().is_terminal()) {
+            true => clap::ColorChoice::Always,
+            false => clap::ColorChoice::Never,
+        };
+        let matches = with_exit_status(Self::command()).color(colour).try_get_matches();
         let found = matches.and_then(|matches| Self::from_arg_matches(&matches));
         found.unwrap_or_else(|error| refuse(&error))
     }

@@ -18,7 +18,10 @@ fn shown(arguments: &[&str], columns: u32, environment: &[(&str, &str)]) -> (Str
     let size = ["cols", &columns.to_string(), "rows", "20"].map(str::to_owned);
     assert!(Command::new("stty").args(size).stdin(open()).status().unwrap().success());
     let mut child = program(arguments);
-    child.env_remove("NO_COLOR").env("TERM", "xterm").envs(environment.iter().copied());
+    for decides in ["NO_COLOR", "CI", "CLICOLOR", "CLICOLOR_FORCE"] {
+        child.env_remove(decides);
+    }
+    child.env("TERM", "xterm").envs(environment.iter().copied());
     let mut child = child.stdin(Stdio::null()).stdout(open()).stderr(open()).spawn().unwrap();
     master.set_timeout(std::time::Duration::from_millis(200)).unwrap();
     let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
@@ -50,11 +53,14 @@ fn colours_are_for_terminals_that_have_them_and_people_who_want_them() {
     {
         assert_eq!(coloured(arguments, &[]), (true, Some(status)), "{arguments:?}");
         for plain in [("NO_COLOR", "1"), ("TERM", "dumb")] {
-            assert_eq!(
-                coloured(arguments, &[plain]),
-                (false, Some(status)),
-                "{arguments:?} {plain:?}"
-            );
+            // A server that builds says so, which gives its terminal no colours.
+            for environment in [&[plain][..], &[plain, ("CI", "true")]] {
+                assert_eq!(
+                    coloured(arguments, environment),
+                    (false, Some(status)),
+                    "{arguments:?} {environment:?}"
+                );
+            }
         }
     }
 }
