@@ -39,7 +39,7 @@ TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "tel
 # The fields of the messages in order. A field more in the protocol is a line more here.
 DISCARDED = [("broken", "u"), ("too_long", "u"), ("checksum", "u"), ("unknown", "u")]
 FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
-STEP = ("enum", [("change", []), ("certificate", []), ("timing", []), ("servo", [])])
+STEP = ("enum", [("change", []), ("certificate", []), ("servo", [])])
 REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
                     ("set", [("step", STEP)])])
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),

@@ -130,7 +130,7 @@ fn reads_every_message_to_the_host() {
     };
     let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
     let running = Running { sets: 2, margin: None, values };
-    let refused = Outcome::Refused(Refusal::Set(Step::Timing));
+    let refused = Outcome::Refused(Refusal::Set(Step::Servo));
     let unarmed = Outcome::Refused(Refusal::Fault(fault().into()));
     let messages = [
         ToHost::Welcome { protocol: PROTOCOL, program: "damper_wall" },
@@ -155,7 +155,7 @@ fn reads_every_message_to_the_host() {
                     "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
                     "stack_left": 2048, "reset": 3}],
-        ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "timing"}}}],
+        ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "servo"}}}],
         ["answer", {"id": 7, "refused": {"type": "fault", "fault": code}}],
         ["answer", {"id": 0, "refused": null}],
         ["remembered", {"fault": code, "tick": 300, "count": -1}],

@@ -4,7 +4,7 @@
 //! not the one for which an index was compared with `delta`. So the margin is not `delta` less the
 //! index.
 
-use super::model::{Missed, Numbers, largest_gain};
+use super::model::{Missed, Numbers, largest_gain, largest_solved};
 use super::posed::Posed;
 use super::rules::{Answer, Assessment, Rule, paper_limit};
 use crate::passivity::bernstein::Closeness;
@@ -103,8 +103,22 @@ impl Limited {
     /// Of a scene with this bound on its index. `None` where that is not below the limit, or none is
     /// known.
     pub const fn of(scene: &Scene, n: &Numbers, bound: Interval) -> Option<Self> {
+        match largest_solved(&scene.environment, None, n) {
+            Some(solved) => Self::of_solved(scene, n, bound, solved),
+            None => None,
+        }
+    }
+
+    /// The same where [`largest_solved`] is known.
+    pub const fn of_solved(
+        scene: &Scene,
+        n: &Numbers,
+        bound: Interval,
+        solved: Interval,
+    ) -> Option<Self> {
+        let gain = largest_gain(&scene.environment, solved, n);
         let (Some(coupling), Some(limit), Some(gain)) =
-            (n.coupling_damping(), paper_limit(n), largest_gain(&scene.environment, n))
+            (n.coupling_damping(), paper_limit(n), gain)
         else {
             return None;
         };

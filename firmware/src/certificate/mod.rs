@@ -141,12 +141,12 @@ macro_rules! certify_for {
                 }
             }
 
-            /// The scene timed, if [`Scene::certify_in`] and then [`Certified::time`] allow it: the
-            /// same verdict without its numbers and remedies, at a fraction of the cost. What a board
-            /// asks for, whose host has the words.
+            /// The scene timed, if a board may render it: what [`Scene::certify_in`] and then
+            /// [`Certified::time`] allow, at a fraction of the cost, without numbers and remedies.
+            /// What a board asks for, whose host has the words.
             ///
             /// # Errors
-            /// Which of the two does not.
+            /// [`Step::Certificate`] where it may not.
             pub const fn timed_in<M: OutputMode>(
                 self,
                 format: Format,
@@ -154,7 +154,7 @@ macro_rules! certify_for {
             where
                 $environment: Renders<M>,
             {
-                match timed::judged::<$rational, M>(&self.as_data(), format) {
+                match timed::judged::<M>(&self.as_data(), format) {
                     Ok(limited) => Ok(Timed::new(self, format, limited)),
                     Err(step) => Err(step),
                 }

@@ -336,28 +336,25 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
-/// Where the loop is solved in the tick, out of contact by one rounded gain and in contact by
-/// another, the larger of what they make of the torque multiplies all of it.
-///
-/// `contact` is the scale of the environment's own [`transfer`] where that is known already.
+/// `solved` is what the servo's gains make of the torque: [`largest_solved`].
 pub(super) const fn nonlinear_bound(
     environment: &Environment,
-    contact: Option<Interval>,
+    solved: Interval,
     n: &Numbers,
 ) -> Option<Interval> {
-    let Some(bound) = exactly_solved_bound(environment, n) else { return None };
-    if matches!(n.format, Format::F64) {
-        return Some(bound);
-    }
-    match solved(environment, contact, n) {
-        Some(scale) => Some(bound.mul(scale)),
+    match exactly_solved_bound(environment, n) {
+        Some(bound) if matches!(n.format, Format::F64) => Some(bound),
+        Some(bound) => Some(bound.mul(solved)),
         None => None,
     }
 }
 
-/// The larger of [`Numbers::solved`] out of contact and in contact, where that is known already;
-/// `None` where it cannot be had.
-const fn solved(
+/// What the servo's gains make of the torque where the loop is solved in the tick: the larger of
+/// [`Numbers::solved`] out of contact and in contact. Exactly 1 where the environment is late.
+///
+/// `contact` is the scale of the environment's own [`transfer`] where that is known already. `None`
+/// where it cannot be had.
+pub(super) const fn largest_solved(
     environment: &Environment,
     contact: Option<Interval>,
     n: &Numbers,
@@ -378,8 +375,6 @@ const fn solved(
     })
 }
 
-// In a frame of its own: a small board asks for scenes that are late, which need no transfer function.
-#[inline(never)]
 const fn scale(environment: &Environment, n: &Numbers) -> Option<Interval> {
     match transfer::<false>(environment, n) {
         Ok(transfer) => Some(transfer.scale),
@@ -404,13 +399,17 @@ const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<
 }
 
 /// The most by which an environment's torque changes for a change of its position, in the l2 norm
-/// and times the period, in N m s/rad: one-sided and limited ones included. `None` where none is
-/// known.
+/// and times the period, in N m s/rad: one-sided and limited ones included, with `solved` as for
+/// [`nonlinear_bound`]. `None` where none is known.
 ///
 /// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between nothing and `B`, a
 /// canceller's the sum of past velocities by weights: two neighbours differ by at most twice the sum
 /// of their magnitudes.
-pub(super) const fn largest_gain(environment: &Environment, n: &Numbers) -> Option<Interval> {
+pub(super) const fn largest_gain(
+    environment: &Environment,
+    solved: Interval,
+    n: &Numbers,
+) -> Option<Interval> {
     let gain = match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall_gain(w, n),
         Environment::FreeMode { .. } | Environment::FreeModeWall { .. } => {
@@ -424,10 +423,7 @@ pub(super) const fn largest_gain(environment: &Environment, n: &Numbers) -> Opti
         }
         Environment::Rational(_) => return None,
     };
-    match solved(environment, None, n) {
-        Some(scale) => Some(gain.mul(scale)),
-        None => None,
-    }
+    Some(gain.mul(solved))
 }
 
 const fn wall_gain(w: &Wall, n: &Numbers) -> Interval {

@@ -1,6 +1,6 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
-use super::model::{Numbers, nonlinear_bound, transfer};
+use super::model::{Numbers, largest_solved, nonlinear_bound, transfer};
 use super::parameter::first_invalid;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
@@ -100,7 +100,11 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = nonlinear_bound(&scene.environment, Some(environment.scale), &numbers);
+            let contact = Some(environment.scale);
+            let bound = match largest_solved(&scene.environment, contact, &numbers) {
+                Some(solved) => nonlinear_bound(&scene.environment, solved, &numbers),
+                None => None,
+            };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
             (Rule::Exact, None, !loop_gain.contains(0.0))

@@ -231,9 +231,12 @@ impl Rational {
         out
     }
 
-    /// Its delay in whole samples, in the denominator or beside it.
+    /// Its delay in whole samples, in the denominator or beside it: that of [`Rational::cancelled`],
+    /// since what is cancelled has no part in it.
     pub(crate) const fn whole_delay(&self) -> usize {
-        self.cancelled().delay
+        let mut out = *self;
+        out.move_delay();
+        out.delay
     }
 
     /// Takes poles at `z = 0` out of the denominator, each a sample of delay. What is left has to be

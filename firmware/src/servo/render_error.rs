@@ -25,10 +25,8 @@ pub enum RenderError {
 pub enum Step {
     /// To change the numbers.
     Change,
-    /// The certificate.
+    /// The certificate, with what a board does to a torque: its delay and its limits.
     Certificate,
-    /// What a board does to a torque: its delay and its limits.
-    Timing,
     /// The servo in its number format, with its transducers.
     Servo,
 }
@@ -39,7 +37,6 @@ impl Step {
         match self {
             Self::Change => "change",
             Self::Certificate => "certificate",
-            Self::Timing => "timing",
             Self::Servo => "servo",
         }
     }
@@ -50,8 +47,7 @@ impl RenderError {
     pub const fn step(&self) -> Step {
         match self {
             Self::Tuning(_) => Step::Change,
-            Self::Rejected(_) => Step::Certificate,
-            Self::Timing(_) => Step::Timing,
+            Self::Rejected(_) | Self::Timing(_) => Step::Certificate,
             Self::Build(_) => Step::Servo,
         }
     }

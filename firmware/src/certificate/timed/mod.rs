@@ -7,11 +7,12 @@ use core::marker::PhantomData;
 #[cfg(doc)]
 use super::Certified;
 use super::margin::Limited;
-use super::model::{Missed, Numbers, nonlinear_bound};
-use super::posed::PosedIn;
+use super::model::{Missed, Numbers, largest_solved, nonlinear_bound};
+use super::parameter::first_invalid;
 use super::rules::paper_limit;
 use super::{Assessment, Rule, Sentence};
 use crate::cycle::READ_WITHIN;
+use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
@@ -195,22 +196,36 @@ impl Assessment {
     }
 }
 
-/// The verdict on a scene and on its timing, without the numbers of either; if it passes, what it is
-/// with its torque limited.
+/// Whether a board may render a scene; if so, what it is with its torque limited.
+///
+/// A board limits every torque, so that the nonlinear bound has to pass the paper's rule, whatever
+/// rule the scene's verdict follows. That proves the scene on its own: the bound is one on the index
+/// (equation 31), and what it is known for has an index, since no wall pulls away and all that is
+/// filtered decays. The loop is solvable each tick, too: a feedthrough that took it away would be
+/// larger than the bound allows. So nothing is searched for, and a board has nothing of the
+/// polynomials by which a host finds the index itself.
 // In a frame of its own: what it takes is not on the stack of a small board when the servo is built.
 #[inline(never)]
-pub(super) const fn judged<const RATIONAL: bool, M: OutputMode>(
-    scene: &Scene,
-    format: Format,
-) -> Result<Limited, Step> {
-    let posed = &PosedIn::<RATIONAL>::in_format(scene, format);
-    let PosedIn { numbers, rule, bound, .. } = match posed {
-        Ok(posed) if posed.is_certified() => posed,
-        _ => return Err(Step::Certificate),
+pub(super) const fn judged<M: OutputMode>(scene: &Scene, format: Format) -> Result<Limited, Step> {
+    // For a rational environment no bound is known.
+    if matches!(scene.environment, Environment::Rational(_))
+        || first_invalid::<false>(scene).is_some()
+    {
+        return Err(Step::Certificate);
+    }
+    let n = &Numbers::of(scene, format);
+    let solved = match M::TIMING {
+        OutputTiming::Latched if scene.environment.is_late() => Some(Interval::ONE),
+        OutputTiming::Latched => None,
+        OutputTiming::Simultaneous => largest_solved(&scene.environment, None, n),
     };
-    match agreed::<M>(scene, *rule, *bound, numbers) {
-        Ok(limited) => Ok(limited),
-        Err(_) => Err(Step::Timing),
+    let Some(solved) = solved else { return Err(Step::Certificate) };
+    let Some(bound) = nonlinear_bound(&scene.environment, solved, n) else {
+        return Err(Step::Certificate);
+    };
+    match Limited::of_solved(scene, n, bound, solved) {
+        Some(limited) if stands_counts_read_late::<M>(&limited, scene, n) => Ok(limited),
+        _ => Err(Step::Certificate),
     }
 }
 
@@ -249,20 +264,35 @@ const fn agreed<M: OutputMode>(
             },
         });
     };
+    if stands_counts_read_late::<M>(&limited, scene, n) {
+        return Ok(limited);
+    }
+    Err(TimingError::ReadLate {
+        period: scene.timing.period,
+        bound: limited.bound.hi(),
+        limit: read_late(&limited, n).lo(),
+    })
+}
+
+/// Whether a scene stands counts that are read up to [`READ_WITHIN`] after the beginning of a period,
+/// as they are where torques are latched.
+const fn stands_counts_read_late<M: OutputMode>(
+    limited: &Limited,
+    scene: &Scene,
+    n: &Numbers,
+) -> bool {
     match M::TIMING {
-        OutputTiming::Latched => read_late(limited, scene.timing.period, n),
-        OutputTiming::Simultaneous => Ok(limited),
+        OutputTiming::Latched => {
+            scene.timing.period > READ_WITHIN && limited.bound.is_below(read_late(limited, n))
+        }
+        OutputTiming::Simultaneous => true,
     }
 }
 
-/// The scene, if it stands counts that are read up to [`READ_WITHIN`] after the beginning of a period.
-const fn read_late(limited: Limited, period: f64, n: &Numbers) -> Result<Limited, TimingError> {
+/// What the bound has to stay below for that.
+const fn read_late(limited: &Limited, n: &Numbers) -> Interval {
     let late = Interval::exact(READ_WITHIN).div(n.period);
-    let limit = Missed::read_late(n, late).limit(limited.coupling);
-    if period > READ_WITHIN && limited.bound.is_below(limit) {
-        return Ok(limited);
-    }
-    Err(TimingError::ReadLate { period, bound: limited.bound.hi(), limit: limit.lo() })
+    Missed::read_late(n, late).limit(limited.coupling)
 }
 
 /// The bound on the index of a certified scene whose torque is limited; `bound` is that which the
@@ -281,7 +311,10 @@ pub(super) const fn limited_bound(
     if matches!(rule, Rule::Nonlinear) {
         return bound;
     }
-    nonlinear_bound(&scene.environment, None, n)
+    match largest_solved(&scene.environment, None, n) {
+        Some(solved) => nonlinear_bound(&scene.environment, solved, n),
+        None => None,
+    }
 }
 
 #[cfg(test)]
