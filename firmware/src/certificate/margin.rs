@@ -104,19 +104,19 @@ impl Limited {
     /// known.
     pub const fn of(scene: &Scene, n: &Numbers, bound: Interval) -> Option<Self> {
         match largest_solved(&scene.environment, None, n) {
-            Some(solved) => Self::of_solved(scene, n, bound, solved),
+            Some(solved) => Self::of_solved::<true>(scene, n, bound, solved),
             None => None,
         }
     }
 
     /// The same where [`largest_solved`] is known.
-    pub const fn of_solved(
+    pub const fn of_solved<const CANCELS: bool>(
         scene: &Scene,
         n: &Numbers,
         bound: Interval,
         solved: Interval,
     ) -> Option<Self> {
-        let gain = largest_gain(&scene.environment, solved, n);
+        let gain = largest_gain::<CANCELS>(&scene.environment, solved, n);
         let (Some(coupling), Some(limit), Some(gain)) =
             (n.coupling_damping(), paper_limit(n), gain)
         else {

@@ -1,7 +1,8 @@
 //! From a [`Scene`] to a [`Certified`] scene, or to a [`Rejection`] that says why not.
 //!
-//! The same `const fn` judges at compile time, when the board starts, and for every change that
-//! arrives over the wire.
+//! At compile time and on the host all of it is known: the index, what stands against it, and what would
+//! pass. A board limits every torque, and asks when it starts, and for every change that arrives over the
+//! wire, for the part that decides then ([`Scene::timed_in`]), by the same functions.
 //!
 //! ```
 //! use firmware::certificate::Certified;
@@ -45,7 +46,7 @@ mod varied;
 pub use assumption::{Assumption, Assumptions, Standing};
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
-pub use posed::{Posed, PosedIn};
+pub use posed::Posed;
 pub use rejection::{Rejection, Sentence};
 pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
@@ -88,22 +89,10 @@ pub const fn certify(scene: &Scene) -> Result<Assessment, Rejection> {
 
 /// The same of the coefficients that a servo in this number format multiplies by.
 pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rejection> {
-    certify_data::<true>(scene, format)
-}
-
-/// The same. Where the type of an environment tells that it is not `RATIONAL`, a program has nothing
-/// of what only those take: degrees above that of a wall, and poles on the unit circle.
-// In a frame of its own it would hold the assessment twice while the scene is judged, which is when
-// a small board's stack is at its fullest.
-#[inline(always)]
-const fn certify_data<const RATIONAL: bool>(
-    scene: &Scene,
-    format: Format,
-) -> Result<Assessment, Rejection> {
-    let assessment = assessed::<RATIONAL>(scene, format, Extent::OwnRule);
+    let assessment = assessed(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies::<RATIONAL>(rejection, scene, format)),
+        Err(rejection) => Err(remedy::with_remedies(rejection, scene, format)),
     }
 }
 
@@ -114,7 +103,7 @@ const fn refuse(sentence: &Sentence) -> ! {
 }
 
 macro_rules! certify_for {
-    ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
         impl<$($generics)*> Scene<$environment> {
             /// The same scene with its environment as data.
             pub const fn as_data(&self) -> Scene {
@@ -135,7 +124,7 @@ macro_rules! certify_for {
 
             /// Judges the coefficients that a servo in this number format multiplies by.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
-                match certify_data::<$rational>(&self.as_data(), format) {
+                match certify_in(&self.as_data(), format) {
                     Ok(assessment) => Ok(Certified { scene: self, assessment }),
                     Err(rejection) => Err(rejection),
                 }
@@ -154,7 +143,10 @@ macro_rules! certify_for {
             where
                 $environment: Renders<M>,
             {
-                match timed::judged::<M>(&self.as_data(), format) {
+                let scene = self.as_data();
+                // Asked here, where the type tells.
+                let is_late = scene.environment.is_late();
+                match timed::judged::<$cancels, M>(&scene, is_late, format) {
                     Ok(limited) => Ok(Timed::new(self, format, limited)),
                     Err(step) => Err(step),
                 }

@@ -82,6 +82,11 @@ impl Missed {
 
 impl Numbers {
     pub const fn of(scene: &Scene, format: Format) -> Self {
+        Self::of_late(scene, scene.environment.is_late(), format)
+    }
+
+    /// The same where it is known whether the environment [is late](Environment::is_late).
+    pub const fn of_late(scene: &Scene, is_late: bool, format: Format) -> Self {
         let period = Interval::decimal(scene.timing.period);
         let delta = Interval::decimal(match scene.device.passivity {
             Some(passivity) => passivity,
@@ -91,10 +96,7 @@ impl Numbers {
             Some(worst) if worst != scene.timing.period => {
                 let worst = Interval::decimal(worst);
                 let missed = Missed { stretch: worst.div(period), declared: delta };
-                (
-                    delta.mul(period).div(worst),
-                    if scene.environment.is_late() { Some(missed) } else { None },
-                )
+                (delta.mul(period).div(worst), if is_late { Some(missed) } else { None })
             }
             _ => (delta, None),
         };
@@ -179,7 +181,7 @@ const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interva
 
 /// `E(z)`, causal and with a proper denominator.
 #[inline(never)]
-pub(super) const fn transfer<const RATIONAL: bool>(
+pub(super) const fn transfer(
     environment: &Environment,
     n: &Numbers,
 ) -> Result<Transfer, Unbuildable> {
@@ -191,8 +193,7 @@ pub(super) const fn transfer<const RATIONAL: bool>(
             Some(free)
         }
         Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(&wall(w, n)),
-        Environment::Rational(r) if RATIONAL => rational(r, n),
-        Environment::Rational(_) => None,
+        Environment::Rational(r) => rational(r, n),
     };
     match built {
         None => Err(Unbuildable::OutOfRange),
@@ -336,13 +337,15 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
-/// `solved` is what the servo's gains make of the torque: [`largest_solved`].
-pub(super) const fn nonlinear_bound(
+/// `solved` is what the servo's gains make of the torque: [`largest_solved`]. For a rational
+/// environment none is known, and none is given for one that cancels damping where it does not
+/// `CANCELS`: a program whose environment's type tells so has nothing of what that takes.
+pub(super) const fn nonlinear_bound<const CANCELS: bool>(
     environment: &Environment,
     solved: Interval,
     n: &Numbers,
 ) -> Option<Interval> {
-    match exactly_solved_bound(environment, n) {
+    match exactly_solved_bound::<CANCELS>(environment, n) {
         Some(bound) if matches!(n.format, Format::F64) => Some(bound),
         Some(bound) => Some(bound.mul(solved)),
         None => None,
@@ -376,25 +379,28 @@ pub(super) const fn largest_solved(
 }
 
 const fn scale(environment: &Environment, n: &Numbers) -> Option<Interval> {
-    match transfer::<false>(environment, n) {
+    match transfer(environment, n) {
         Ok(transfer) => Some(transfer.scale),
         Err(_) => None,
     }
 }
 
-const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<Interval> {
+const fn exactly_solved_bound<const CANCELS: bool>(
+    environment: &Environment,
+    n: &Numbers,
+) -> Option<Interval> {
     // A spring that pulls away is no monotone law.
     if matches!(wall_of(environment), Some(w) if w.stiffness < 0.0) {
         return None;
     }
     match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall_bound(w, n)),
-        Environment::FreeMode { .. } => canceller_bound(n),
-        Environment::FreeModeWall { wall: w, .. } => match canceller_bound(n) {
+        Environment::FreeMode { .. } if CANCELS => canceller_bound(n),
+        Environment::FreeModeWall { wall: w, .. } if CANCELS => match canceller_bound(n) {
             Some(bound) => Some(bound.add(wall_bound(w, n))),
             None => None,
         },
-        Environment::Rational(_) => None,
+        _ => None,
     }
 }
 
@@ -405,14 +411,14 @@ const fn exactly_solved_bound(environment: &Environment, n: &Numbers) -> Option<
 /// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between nothing and `B`, a
 /// canceller's the sum of past velocities by weights: two neighbours differ by at most twice the sum
 /// of their magnitudes.
-pub(super) const fn largest_gain(
+pub(super) const fn largest_gain<const CANCELS: bool>(
     environment: &Environment,
     solved: Interval,
     n: &Numbers,
 ) -> Option<Interval> {
     let gain = match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall_gain(w, n),
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } => {
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if CANCELS => {
             let Some(canceller) = canceller_bound(n) else { return None };
             match environment {
                 Environment::FreeModeWall { wall: w, .. } => {
@@ -421,7 +427,7 @@ pub(super) const fn largest_gain(
                 _ => canceller.double(),
             }
         }
-        Environment::Rational(_) => return None,
+        _ => return None,
     };
     Some(gain.mul(solved))
 }
@@ -496,11 +502,11 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
-        if first_invalid::<true>(scene).is_some() {
+        if first_invalid(scene).is_some() {
             return Err(Unbuildable::OutOfRange);
         }
         let n = Numbers::of(scene, format);
-        let environment = match transfer::<true>(&scene.environment, &n) {
+        let environment = match transfer(&scene.environment, &n) {
             Ok(environment) => environment,
             Err(error) => return Err(error),
         };
@@ -526,12 +532,12 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn equivalent_where_latched(scene: &Scene) -> Result<Option<Transfer>, Unbuildable> {
-        if first_invalid::<true>(scene).is_some() {
+        if first_invalid(scene).is_some() {
             return Err(Unbuildable::OutOfRange);
         }
         let n = Numbers::of(scene, Format::F64);
         let Some(excess) = n.excess_where_latched() else { return Ok(None) };
-        let environment = match transfer::<true>(&scene.environment, &n) {
+        let environment = match transfer(&scene.environment, &n) {
             Ok(environment) => environment,
             Err(error) => return Err(error),
         };

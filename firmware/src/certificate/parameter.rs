@@ -110,7 +110,7 @@ const NO_MORE_THAN_DAMPING: &str =
     "finite and at most the device damping, which no device's passivity exceeds:";
 
 /// The first number of the scene that is out of its range.
-pub(super) const fn first_invalid<const RATIONAL: bool>(scene: &Scene) -> Option<InvalidParameter> {
+pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     let mut check = Check { found: None };
     let device = &scene.device;
     check.positive(Parameter::Inertia, device.inertia);
@@ -127,7 +127,7 @@ pub(super) const fn first_invalid<const RATIONAL: bool>(scene: &Scene) -> Option
     if let Coupling::Spring { stiffness } = scene.coupling {
         check.positive(Parameter::CouplingStiffness, stiffness);
     }
-    check.environment::<RATIONAL>(&scene.environment);
+    check.environment(&scene.environment);
     if let Some(limit) = scene.torque_limit {
         check.positive(Parameter::TorqueLimit, limit);
     }
@@ -164,7 +164,7 @@ impl Check {
         self.that(value.is_finite(), parameter, value, FINITE);
     }
 
-    const fn environment<const RATIONAL: bool>(&mut self, environment: &Environment) {
+    const fn environment(&mut self, environment: &Environment) {
         match environment {
             Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => self.wall(wall),
             Environment::FreeMode { residual, delay } => {
@@ -175,8 +175,7 @@ impl Check {
                 self.finite(Parameter::Residual, *residual);
                 self.wall(wall);
             }
-            Environment::Rational(rational) if RATIONAL => self.rational(rational),
-            Environment::Rational(_) => {}
+            Environment::Rational(rational) => self.rational(rational),
         }
     }
 

@@ -8,7 +8,7 @@ use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::bernstein::Closeness;
-use crate::passivity::discrete::{RealPart, index_in, reduced_index, velocity_reduced};
+use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::{Doubt, Obstacle, Reduced, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
@@ -17,9 +17,6 @@ use crate::scene::Scene;
 /// Width of an index, relative to its magnitude, that a search follows: it shifts the place of its
 /// zero by a tenth of the last of three digits.
 const ROUGHLY: f64 = 1e-4;
-
-/// A [`PosedIn`] with any environment.
-pub type Posed = PosedIn<true>;
 
 /// A scene whose numbers are valid, whose device is passive, and whose coupling and environment
 /// have one solution every tick.
@@ -52,7 +49,7 @@ pub type Posed = PosedIn<true>;
 /// assert!(passes(23.9) && !passes(24.1));
 /// ```
 #[derive(Clone, Copy)]
-pub struct PosedIn<const RATIONAL: bool> {
+pub struct Posed {
     pub(super) numbers: Numbers,
     pub(super) environment: Transfer,
     pub(super) rule: Rule,
@@ -60,7 +57,7 @@ pub struct PosedIn<const RATIONAL: bool> {
     pub(super) bound: Option<Interval>,
 }
 
-impl<const RATIONAL: bool> PosedIn<RATIONAL> {
+impl Posed {
     /// Poses a scene as it was written.
     ///
     /// # Errors
@@ -75,7 +72,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// # Errors
     /// As [`Posed::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
-        match first_invalid::<RATIONAL>(scene) {
+        match first_invalid(scene) {
             Some(invalid) => Err(Rejection::Invalid(invalid)),
             None => Self::with(scene, Numbers::of(scene, format)),
         }
@@ -86,12 +83,11 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
-        let environment = match transfer::<RATIONAL>(&scene.environment, &numbers) {
+        let environment = match transfer(&scene.environment, &numbers) {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
         };
-        if RATIONAL
-            && matches!(scene.environment, Environment::Rational(_))
+        if matches!(scene.environment, Environment::Rational(_))
             && let Some(cos_theta) = hidden_mode(&environment)
         {
             return Err(Rejection::HiddenMode { cos_theta });
@@ -102,7 +98,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
             // agree.
             let contact = Some(environment.scale);
             let bound = match largest_solved(&scene.environment, contact, &numbers) {
-                Some(solved) => nonlinear_bound(&scene.environment, solved, &numbers),
+                Some(solved) => nonlinear_bound::<true>(&scene.environment, solved, &numbers),
                 None => None,
             };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
@@ -268,7 +264,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match self.behind_reduced(self.numbers.compliance, true) {
-            Ok(late) => reduced_index::<RATIONAL>(&late, closeness),
+            Ok(late) => reduced_index(&late, closeness),
             Err(obstacle) => Err(obstacle),
         }
     }
@@ -282,7 +278,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
 
     /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
-        index_in::<RATIONAL>(&self.environment, self.numbers.period, true, closeness)
+        index_looked_at(&self.environment, self.numbers.period, true, closeness)
     }
 
     /// Index of `E'`; that of the environment alone is not asked for again where it is known.
@@ -315,7 +311,7 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
     #[inline(never)]
     const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
         match self.behind_reduced(excess, false) {
-            Ok(equivalent) => reduced_index::<RATIONAL>(&equivalent, closeness),
+            Ok(equivalent) => reduced_index(&equivalent, closeness),
             Err(obstacle) => Err(obstacle),
         }
     }
@@ -335,13 +331,13 @@ impl<const RATIONAL: bool> PosedIn<RATIONAL> {
             Err(_) => return Err(Obstacle::Undecided(Doubt::OutOfRange)),
         };
         controller.shift -= a_sample_late as i32;
-        velocity_reduced::<RATIONAL>(&controller, self.numbers.period, false)
+        velocity_reduced(&controller, self.numbers.period, false)
     }
 
     /// The environment behind a coupling of this compliance, without their common factors.
     #[inline(never)]
     const fn controller(&self, compliance: Interval) -> Result<Transfer, Unbuildable> {
-        cancelled::<RATIONAL>(&self.environment).behind(compliance)
+        cancelled(&self.environment).behind(compliance)
     }
 }
 

@@ -6,7 +6,7 @@ use super::between::passes_upwards;
 use super::digits::{Digits, Side};
 use super::model::Numbers;
 use super::parameter::Parameter;
-use super::posed::PosedIn;
+use super::posed::Posed;
 use super::rejection::Rejection;
 use super::varied::{FARTHEST, Varied};
 use crate::environment::Environment;
@@ -172,7 +172,7 @@ impl Remedies {
 }
 
 /// The rejection with the remedies that there are, where a remedy makes sense.
-pub(super) const fn with_remedies<const RATIONAL: bool>(
+pub(super) const fn with_remedies(
     rejection: Rejection,
     scene: &Scene,
     format: Format,
@@ -182,25 +182,25 @@ pub(super) const fn with_remedies<const RATIONAL: bool>(
         Rejection::Shortage { remedies, .. }
         | Rejection::Missed { remedies, .. }
         | Rejection::Coupling { remedies, .. }
-        | Rejection::Undecided { remedies, .. } => *remedies = search::<RATIONAL>(scene, format),
+        | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
         Rejection::UnstablePole { of_coupling: true, remedies, behind_standard, .. } => {
-            *remedies = search::<RATIONAL>(scene, format);
-            *behind_standard = softer_behind_standard::<RATIONAL>(scene, format);
+            *remedies = search(scene, format);
+            *behind_standard = softer_behind_standard(scene, format);
         }
         _ => {}
     }
     out
 }
 
-const fn search<const RATIONAL: bool>(scene: &Scene, format: Format) -> Remedies {
-    let own = shortage::<RATIONAL>(scene, format);
+const fn search(scene: &Scene, format: Format) -> Remedies {
+    let own = shortage(scene, format);
     let mut found = Remedies::NONE;
     let mut i = 0;
     while i < CANDIDATES {
-        let varied = Varied::<RATIONAL> { scene, format, parameter: ORDER[i] };
+        let varied = Varied { scene, format, parameter: ORDER[i] };
         let remedy = match ORDER[i] {
             Parameter::CouplingStiffness => standard_coupling(&varied),
-            Parameter::Passivity => more_damping::<RATIONAL>(scene, format),
+            Parameter::Passivity => more_damping(scene, format),
             _ => varied.remedy(own),
         };
         found.put(i, remedy);
@@ -212,19 +212,16 @@ const fn search<const RATIONAL: bool>(scene: &Scene, format: Format) -> Remedies
 /// The stiffness with which the scene passes behind the standard coupling to three digits, on the soft
 /// side, where that coupling alone is not enough. In a frame of its own, for the second scene.
 #[inline(never)]
-const fn softer_behind_standard<const RATIONAL: bool>(
-    scene: &Scene,
-    format: Format,
-) -> Option<(f64, Remedy)> {
+const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, Remedy)> {
     let numbers = Numbers::of(scene, format);
     let standard = numbers.delta.double().div(numbers.period).midpoint();
     let stiffness = Digits::of(standard, Side::Below).value();
     let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
-    let own = shortage::<RATIONAL>(&standard, format);
+    let own = shortage(&standard, format);
     if matches!(own, Some(own) if own < 0.0) {
         return None;
     }
-    let varied = Varied::<RATIONAL> { scene: &standard, format, parameter: Parameter::Stiffness };
+    let varied = Varied { scene: &standard, format, parameter: Parameter::Stiffness };
     match varied.remedy(own) {
         Some(remedy) => Some((stiffness, remedy)),
         None => None,
@@ -233,8 +230,8 @@ const fn softer_behind_standard<const RATIONAL: bool>(
 
 /// What the scene lacks as it is.
 #[inline(never)]
-const fn shortage<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<f64> {
-    match PosedIn::<RATIONAL>::in_format(scene, format) {
+const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
+    match Posed::in_format(scene, format) {
         Ok(posed) => posed.shortage(),
         Err(_) => None,
     }
@@ -242,7 +239,7 @@ const fn shortage<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option
 
 /// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
 /// digits as pass, on the soft side.
-const fn standard_coupling<const RATIONAL: bool>(varied: &Varied<RATIONAL>) -> Option<Remedy> {
+const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
     let numbers = Numbers::of(varied.scene, varied.format);
     if numbers.is_standard {
         return None;
@@ -267,7 +264,7 @@ const fn standard_coupling<const RATIONAL: bool>(varied: &Varied<RATIONAL>) -> O
 
 /// A device with more damping; where its passivity was declared, with more of that, up to the
 /// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
-const fn more_damping<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<Remedy> {
+const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
     let cancels = matches!(
         scene.environment,
         Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
@@ -278,7 +275,7 @@ const fn more_damping<const RATIONAL: bool>(scene: &Scene, format: Format) -> Op
         None => return None,
     };
     let numbers = Numbers::of(scene, format);
-    let Some(needed) = needed_passivity::<RATIONAL>(scene, format) else { return None };
+    let Some(needed) = needed_passivity(scene, format) else { return None };
     // A device gives only so much of its passivity as its longest period leaves.
     let scale = match scene.timing.worst_period {
         Some(worst) => worst / scene.timing.period,
@@ -287,7 +284,7 @@ const fn more_damping<const RATIONAL: bool>(scene: &Scene, format: Format) -> Op
     if needed > FARTHEST * numbers.delta.hi() {
         return None;
     }
-    let varied = Varied::<RATIONAL> { scene, format, parameter };
+    let varied = Varied { scene, format, parameter };
     match varied.certified(Digits::of(needed * scale, Side::Above), Side::Above) {
         Some(value) if passes_upwards(scene, &numbers, value / scale) => {
             Some(Remedy::at_least(parameter, value))
@@ -299,8 +296,8 @@ const fn more_damping<const RATIONAL: bool>(scene: &Scene, format: Format) -> Op
 
 /// In a frame of its own, as what it calls.
 #[inline(never)]
-const fn needed_passivity<const RATIONAL: bool>(scene: &Scene, format: Format) -> Option<f64> {
-    match PosedIn::<RATIONAL>::in_format(scene, format) {
+const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
+    match Posed::in_format(scene, format) {
         Ok(posed) => posed.needed_passivity(),
         Err(_) => None,
     }

@@ -4,7 +4,7 @@
 use super::model::Missed;
 use super::model::Numbers;
 use super::parameter::first_invalid;
-use super::posed::PosedIn;
+use super::posed::Posed;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use crate::environment::{Environment, Wall};
@@ -91,7 +91,7 @@ pub const fn assess(scene: &Scene) -> Assessment {
 /// Judges the coefficients that a servo in this number format multiplies by, without looking for
 /// remedies.
 pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
-    assessed::<true>(scene, format, Extent::BothRules)
+    assessed(scene, format, Extent::BothRules)
 }
 
 /// How much is found out about a scene.
@@ -104,11 +104,7 @@ pub(super) enum Extent {
 }
 
 #[inline(never)]
-pub(super) const fn assessed<const RATIONAL: bool>(
-    scene: &Scene,
-    format: Format,
-    extent: Extent,
-) -> Assessment {
+pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> Assessment {
     let rule = if is_nonlinear(scene) { Rule::Nonlinear } else { Rule::Exact };
     let mut out = Assessment {
         alpha: None,
@@ -122,14 +118,14 @@ pub(super) const fn assessed<const RATIONAL: bool>(
         format,
         outcome: Ok(()),
     };
-    if let Some(invalid) = first_invalid::<RATIONAL>(scene) {
+    if let Some(invalid) = first_invalid(scene) {
         out.outcome = Err(Rejection::Invalid(invalid));
         return out;
     }
     let numbers = Numbers::of(scene, format);
     out.delta = numbers.delta;
     // By reference: moved out of the result, the scene would be on a small board's stack twice.
-    out.outcome = match &PosedIn::<RATIONAL>::with(scene, numbers) {
+    out.outcome = match &Posed::with(scene, numbers) {
         Ok(posed) => judge(posed, extent, &mut out),
         Err(rejection) => Err(*rejection),
     };
@@ -186,11 +182,7 @@ pub(super) const fn exact_limit(n: &Numbers) -> Interval {
     }
 }
 
-const fn judge<const RATIONAL: bool>(
-    posed: &PosedIn<RATIONAL>,
-    extent: Extent,
-    out: &mut Assessment,
-) -> Result<(), Rejection> {
+const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<(), Rejection> {
     let n = &posed.numbers;
     let alone = posed.alone(&Closeness::TIGHT);
     if let Ok(found) = alone {

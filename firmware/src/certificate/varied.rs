@@ -3,7 +3,7 @@
 use super::between::{Between, between};
 use super::digits::{Digits, Side};
 use super::parameter::Parameter;
-use super::posed::PosedIn;
+use super::posed::Posed;
 use super::remedy::Remedy;
 use super::secant::{Bracket, Look, Search};
 use crate::environment::Environment;
@@ -22,13 +22,13 @@ const LEAST_STEP: f64 = 1.01;
 const CANDIDATES: u32 = 3;
 
 /// A scene with one of its numbers open.
-pub(super) struct Varied<'a, const RATIONAL: bool> {
+pub(super) struct Varied<'a> {
     pub scene: &'a Scene,
     pub format: Format,
     pub parameter: Parameter,
 }
 
-impl<const RATIONAL: bool> Varied<'_, RATIONAL> {
+impl Varied<'_> {
     /// The values that pass, from the nearest on: to three digits on the side that passes, and
     /// certified.
     ///
@@ -168,9 +168,9 @@ impl<const RATIONAL: bool> Varied<'_, RATIONAL> {
     }
 
     #[inline(never)]
-    const fn posed(&self, value: f64) -> Option<PosedIn<RATIONAL>> {
+    const fn posed(&self, value: f64) -> Option<Posed> {
         let Some(scene) = with(self.scene, self.parameter, value) else { return None };
-        match PosedIn::in_format(&scene, self.format) {
+        match Posed::in_format(&scene, self.format) {
             Ok(posed) => Some(posed),
             Err(_) => None,
         }

@@ -7,8 +7,8 @@
 //! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
 //! Each is data first; [`Renderable`] turns it into its [`Law`], which the servo runs.
 
-/// Gives a macro all environments, each with its generic parameters and with whether it may be
-/// rational: the one list of them.
+/// Gives a macro all environments, each with its generic parameters and with whether it may cancel the
+/// device's damping: the one list of them.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
@@ -21,14 +21,14 @@ macro_rules! for_every_environment {
             [const N: usize] FilteredWall<N>: false;
             [const N: usize] Placed<FilteredWall<N>>: false;
             [const N: usize] OneSided<FilteredWall<N>>: false;
-            [const N: usize] FreeMode<N>: false;
-            [const N: usize] FreeModeWall<DelayedSpring<N>>: false;
-            [const N: usize] FreeModeWall<DamperWall<N>>: false;
-            [const N: usize] FreeModeWall<FilteredWall<N>>: false;
-            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: false;
-            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: false;
-            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: false;
-            [] Rational: true;
+            [const N: usize] FreeMode<N>: true;
+            [const N: usize] FreeModeWall<DelayedSpring<N>>: true;
+            [const N: usize] FreeModeWall<DamperWall<N>>: true;
+            [const N: usize] FreeModeWall<FilteredWall<N>>: true;
+            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true;
+            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true;
+            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true;
+            [] Rational: false;
             [] Environment: true;
         }
     };

@@ -234,22 +234,28 @@ impl Rational {
     /// Its delay in whole samples, in the denominator or beside it: that of [`Rational::cancelled`],
     /// since what is cancelled has no part in it.
     pub(crate) const fn whole_delay(&self) -> usize {
-        let mut out = *self;
-        out.move_delay();
-        out.delay
+        self.delay + self.poles_at_zero()
     }
 
-    /// Takes poles at `z = 0` out of the denominator, each a sample of delay. What is left has to be
-    /// proper, and the delay one that can be stored.
+    /// Takes poles at `z = 0` out of the denominator, each a sample of delay.
     const fn move_delay(&mut self) {
+        let poles = self.poles_at_zero();
+        self.denominator.len -= poles;
+        self.delay += poles;
+    }
+
+    /// Poles at `z = 0` that are delay: without them the rest is proper, and the delay can be stored.
+    const fn poles_at_zero(&self) -> usize {
         let zeros = if self.numerator.is_zero() { 0 } else { self.unit_zeros };
-        while self.delay < MAX_DELAY
-            && self.denominator.degree() > self.numerator.degree() + zeros
-            && self.denominator.values[self.denominator.len - 1] == 0.0
+        let above = self.denominator.degree().saturating_sub(self.numerator.degree() + zeros);
+        let mut poles = 0;
+        while self.delay + poles < MAX_DELAY
+            && poles < above
+            && self.denominator.values[self.denominator.len - 1 - poles] == 0.0
         {
-            self.denominator.len -= 1;
-            self.delay += 1;
+            poles += 1;
         }
+        poles
     }
 
     const fn cancel(&mut self, root: f64) {

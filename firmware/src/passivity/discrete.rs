@@ -4,7 +4,7 @@
 use super::bernstein::{Closeness, Minimum, minimum};
 use super::chebyshev::{Kernel, Series, at_cosine};
 use super::interval::Interval;
-use super::poles::{Doubt, Obstacle, Reduced, reduce, reduce_in};
+use super::poles::{Doubt, Obstacle, Reduced, reduce};
 use super::polynomial::UnitRoot;
 use super::transfer::Transfer;
 
@@ -26,7 +26,7 @@ pub struct RealPart {
 #[inline(never)]
 pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
     match reduce(&g, widen) {
-        Ok(reduced) => real_part::<true>(&reduced, &Closeness::TIGHT),
+        Ok(reduced) => real_part(&reduced, &Closeness::TIGHT),
         Err(obstacle) => Err(obstacle),
     }
 }
@@ -47,7 +47,7 @@ pub const fn index(
     period: Interval,
     widen: bool,
 ) -> Result<RealPart, Obstacle> {
-    index_looked_at(environment, period, widen, &Closeness::TIGHT)
+    index_looked_at(&environment, period, widen, &Closeness::TIGHT)
 }
 
 /// [`index`], as tight as it takes to tell on which side of `limit` it is: a sound enclosure at a
@@ -59,7 +59,7 @@ pub const fn index_near(
     widen: bool,
     limit: Interval,
 ) -> Result<RealPart, Obstacle> {
-    index_looked_at(environment, period, widen, &Closeness::around(limit.neg()))
+    index_looked_at(&environment, period, widen, &Closeness::around(limit.neg()))
 }
 
 /// [`index`], its enclosure no tighter than `tolerance` times its magnitude: sound as that, and
@@ -70,71 +70,56 @@ pub const fn index_within(
     widen: bool,
     tolerance: f64,
 ) -> Result<RealPart, Obstacle> {
-    index_looked_at(environment, period, widen, &Closeness::within(tolerance))
+    index_looked_at(&environment, period, widen, &Closeness::within(tolerance))
 }
 
-/// [`index`], looked at so closely; see [`index_in`].
-pub const fn index_looked_at(
-    environment: Transfer,
-    period: Interval,
-    widen: bool,
-    closeness: &Closeness,
-) -> Result<RealPart, Obstacle> {
-    index_in::<true>(&environment, period, widen, closeness)
-}
-
-/// [`index`], looked at so closely, of an environment that may be `RATIONAL`: where it is known not to
-/// be, its poles are those of walls and free mode, not at -1 and not in pairs on the circle. The
-/// border is one of the real part: the negative of a limit.
+/// [`index`], looked at so closely. The border is one of the real part: the negative of a limit.
 // In a frame of its own, which the caller would otherwise have several times.
 #[inline(never)]
-pub const fn index_in<const RATIONAL: bool>(
+pub const fn index_looked_at(
     environment: &Transfer,
     period: Interval,
     widen: bool,
     closeness: &Closeness,
 ) -> Result<RealPart, Obstacle> {
-    match velocity_reduced::<RATIONAL>(environment, period, widen) {
-        Ok(reduced) => reduced_index::<RATIONAL>(&reduced, closeness),
+    match velocity_reduced(environment, period, widen) {
+        Ok(reduced) => reduced_index(&reduced, closeness),
         Err(obstacle) => Err(obstacle),
     }
 }
 
-/// `(T z / (z - 1)) E` with its poles told apart: the first half of [`index_in`].
+/// `(T z / (z - 1)) E` with its poles told apart: the first half of [`index_looked_at`].
 // In a frame of its own: a small board's stack has no room for the function beside what comes of it.
 #[inline(never)]
-pub(crate) const fn velocity_reduced<const RATIONAL: bool>(
+pub(crate) const fn velocity_reduced(
     environment: &Transfer,
     period: Interval,
     widen: bool,
 ) -> Result<Reduced, Obstacle> {
-    reduce_in::<RATIONAL>(&environment.from_velocity(period), widen)
+    reduce(&environment.from_velocity(period), widen)
 }
 
-/// The index of an environment whose `(T z / (z - 1)) E` this is: the second half of [`index_in`].
-pub(crate) const fn reduced_index<const RATIONAL: bool>(
+/// The index of an environment whose `(T z / (z - 1)) E` this is: the second half of [`index_looked_at`].
+pub(crate) const fn reduced_index(
     velocity: &Reduced,
     closeness: &Closeness,
 ) -> Result<RealPart, Obstacle> {
-    match real_part::<RATIONAL>(velocity, closeness) {
+    match real_part(velocity, closeness) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
     }
 }
 
 #[inline(never)]
-const fn real_part<const RATIONAL: bool>(
-    g: &Reduced,
-    closeness: &Closeness,
-) -> Result<RealPart, Obstacle> {
-    if let Err(obstacle) = residues_at_real_points::<RATIONAL>(g) {
+const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+    if let Err(obstacle) = residues_at_real_points(g) {
         return Err(obstacle);
     }
-    let (kernel, shift) = kernel_of::<RATIONAL>(g);
+    let (kernel, shift) = kernel_of(g);
     let Some(mut p) = Series::real_part(kernel, shift, &g.numerator, &g.denominator) else {
         return Err(Obstacle::Undecided(Doubt::OutOfRange));
     };
-    if RATIONAL && let Some(sum) = g.pair {
+    if let Some(sum) = g.pair {
         p = match without_pair(g, p, sum.half()) {
             Ok(p) => p,
             Err(obstacle) => return Err(obstacle),
@@ -157,10 +142,10 @@ const fn real_part<const RATIONAL: bool>(
 }
 
 /// The kernel of the poles at 1 and -1, and the power of `z` that is left beside it.
-const fn kernel_of<const RATIONAL: bool>(g: &Reduced) -> (Kernel, i32) {
+const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
     // 1 / (z^2 - 2 c0 z + 1) = z^-1 / (2 (c - c0)) on the circle.
-    let shift = if RATIONAL && g.pair.is_some() { g.shift - 1 } else { g.shift };
-    match (g.at_one, RATIONAL && g.at_minus_one) {
+    let shift = if g.pair.is_some() { g.shift - 1 } else { g.shift };
+    match (g.at_one, g.at_minus_one) {
         (false, false) => (Kernel::One, shift),
         (true, false) => (Kernel::AtOne, shift - 1),
         (false, true) => (Kernel::AtMinusOne, shift),
@@ -169,9 +154,9 @@ const fn kernel_of<const RATIONAL: bool>(g: &Reduced) -> (Kernel, i32) {
 }
 
 /// Residues at `z = 1` and `z = -1`: `k = residue / z_0` must be positive.
-const fn residues_at_real_points<const RATIONAL: bool>(g: &Reduced) -> Result<(), Obstacle> {
+const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
     if g.at_one {
-        let residue = residue_at::<RATIONAL>(g, UnitRoot::Plus);
+        let residue = residue_at(g, UnitRoot::Plus);
         if residue.is_negative() {
             return Err(Obstacle::NegativeResidue { residue });
         }
@@ -179,8 +164,8 @@ const fn residues_at_real_points<const RATIONAL: bool>(g: &Reduced) -> Result<()
             return Err(Obstacle::Undecided(Doubt::ResidueSign));
         }
     }
-    if RATIONAL && g.at_minus_one {
-        let k = residue_at::<RATIONAL>(g, UnitRoot::Minus).neg();
+    if g.at_minus_one {
+        let k = residue_at(g, UnitRoot::Minus).neg();
         if k.is_negative() {
             return Err(Obstacle::ResidueAngle { cos_theta: Interval::ONE.neg() });
         }
@@ -191,12 +176,9 @@ const fn residues_at_real_points<const RATIONAL: bool>(g: &Reduced) -> Result<()
     Ok(())
 }
 
-const fn residue_at<const RATIONAL: bool>(g: &Reduced, root: UnitRoot) -> Interval {
+const fn residue_at(g: &Reduced, root: UnitRoot) -> Interval {
     let mut value = g.scale.mul(g.numerator.at_unit_root(root));
     value = value.div(g.denominator.at_unit_root(root));
-    if !RATIONAL {
-        return value;
-    }
     let two = Interval::exact(2.0);
     match root {
         UnitRoot::Plus => {
@@ -232,7 +214,7 @@ const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Ob
     if !remainder.is_zero() {
         return Err(Obstacle::Undecided(Doubt::ResidueSign));
     }
-    let (kernel, shift) = kernel_of::<true>(g);
+    let (kernel, shift) = kernel_of(g);
     let (real, imaginary) = at_cosine(c0, shift, &g.numerator, &g.denominator);
     // Imaginary part of K(z) z^shift n conj(d), times a positive factor, by kernel.
     let sign = match kernel {

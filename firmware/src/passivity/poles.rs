@@ -76,34 +76,21 @@ pub enum Doubt {
 /// Structure (which factors are there) is read from the doubles as they are; the enclosure that
 /// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
 /// result depend on them being exact.
-pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, Obstacle> {
-    reduce_in::<true>(g, widen)
-}
-
-/// The same. Where it is not `RATIONAL`, it is told that poles are not at -1 or in pairs on the circle:
-/// if they are, they are not proved to be inside.
 #[inline(never)]
-pub(super) const fn reduce_in<const RATIONAL: bool>(
-    g: &Transfer,
-    widen: bool,
-) -> Result<Reduced, Obstacle> {
+pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, Obstacle> {
     if g.numerator.is_zero() {
         return Ok(constant_zero());
     }
-    let mut work = Work::new::<RATIONAL>(g, widen);
+    let mut work = Work::new(g, widen);
     if work.exact.ones < -1 {
         return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE });
     }
     if work.exact.minus_ones < -1 {
         return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
     }
-    let pair = if RATIONAL {
-        match work.strip_pairs() {
-            Ok(pair) => pair,
-            Err(obstacle) => return Err(obstacle),
-        }
-    } else {
-        None
+    let pair = match work.strip_pairs() {
+        Ok(pair) => pair,
+        Err(obstacle) => return Err(obstacle),
     };
     let exactly = pair.is_some() || work.exact.minus_ones < 0;
     let kept = if exactly { &work.exact } else { &work.wide };
@@ -117,7 +104,7 @@ pub(super) const fn reduce_in<const RATIONAL: bool>(
         scale: kept.scale,
         shift: kept.shift,
         at_one: kept.ones < 0,
-        at_minus_one: RATIONAL && kept.minus_ones < 0,
+        at_minus_one: kept.minus_ones < 0,
         pair,
         numerator,
         denominator: kept.denominator,
@@ -127,8 +114,8 @@ pub(super) const fn reduce_in<const RATIONAL: bool>(
 /// `G` with its exact common factors at 0, 1 and -1 cancelled and the others moved to the
 /// exponents; coefficients as the decimals they stand for.
 #[inline(never)]
-pub const fn cancelled<const RATIONAL: bool>(g: &Transfer) -> Transfer {
-    if g.numerator.is_zero() { *g } else { Work::new::<RATIONAL>(g, true).wide }
+pub const fn cancelled(g: &Transfer) -> Transfer {
+    if g.numerator.is_zero() { *g } else { Work::new(g, true).wide }
 }
 
 const fn constant_zero() -> Reduced {
@@ -168,7 +155,7 @@ struct Work {
 }
 
 impl Work {
-    const fn new<const RATIONAL: bool>(g: &Transfer, widen: bool) -> Self {
+    const fn new(g: &Transfer, widen: bool) -> Self {
         let mut work = Self { wide: *g, exact: *g };
         if widen {
             work.wide.numerator = widened(&g.numerator);
@@ -176,9 +163,7 @@ impl Work {
         }
         work.strip_origin();
         work.strip_unit_root(UnitRoot::Plus, g.ones < 0);
-        if RATIONAL {
-            work.strip_unit_root(UnitRoot::Minus, g.minus_ones < 0);
-        }
+        work.strip_unit_root(UnitRoot::Minus, g.minus_ones < 0);
         work
     }
 

@@ -41,7 +41,7 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
 }
 
 macro_rules! tunable {
-    ($([$($generics:tt)*] $environment:ty: $rational:literal;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
         impl<F: Number, $($generics)*> Tunable<F> for $environment {
             fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
             where

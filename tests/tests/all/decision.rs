@@ -1,9 +1,12 @@
 //! Yes and no without the numbers against the assessment with them: the same answers, far from the
 //! line, next to it, and where rounding decides.
 
-use firmware::certificate::{Answer, Posed, assess};
+use firmware::certificate::{Answer, Posed, Rejection, assess};
 use firmware::environment::{Environment, Wall};
+use firmware::number::{Format, Number};
 use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::{Latched, OutputMode, Renders, Simultaneous, Step};
+use fixed::types::{I8F24, I12F20};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes::{self, Poles};
@@ -24,6 +27,45 @@ fn compare(scene: &Scene) -> bool {
         Err(rejection) => assert_eq!(assessment.outcome, Err(rejection), "{scene:?}"),
     }
     assessment.outcome.is_ok()
+}
+
+/// Compares what a board asks for, the bound of a limited torque alone, with certificate and timing, which
+/// search for the index: what the one renders the other has certified.
+fn compare_on_board<M: OutputMode>(scene: &Scene, format: Format) -> bool
+where
+    Environment: Renders<M>,
+{
+    let quick = scene.timed_in::<M>(format);
+    let (room, margin) = match scene.certify_in(format).map(|scene| scene.time::<M>()) {
+        Ok(Ok(timed)) => (timed.room(), timed.margin()),
+        // A search may leave open what the bound in closed form settles, next to the line only.
+        Err(Rejection::Undecided { index: Some(index), limit: Some(limit), .. })
+            if quick.is_ok() =>
+        {
+            assert!(limit.hi() - index.lo() < 1e-9 * limit.hi(), "{scene:?} {index:?} {limit:?}");
+            return true;
+        }
+        other => {
+            assert_eq!(quick.err(), Some(Step::Certificate), "{scene:?}\n{other:?}");
+            return false;
+        }
+    };
+    let quick = quick.unwrap_or_else(|_| panic!("{scene:?}"));
+    assert_eq!((quick.room(), quick.margin()), (room, margin), "{scene:?}");
+    true
+}
+
+/// The same in each number format and each mode that the environment may have; tells whether one of
+/// them renders it.
+fn compare_on_boards(scene: &Scene) -> bool {
+    let formats = [Format::F64, Format::F32, <I8F24 as Number>::FORMAT, <I12F20 as Number>::FORMAT];
+    let modes = formats.map(|format| {
+        [
+            compare_on_board::<Latched>(scene, format),
+            compare_on_board::<Simultaneous>(scene, format),
+        ]
+    });
+    modes.as_flattened().contains(&true)
 }
 
 /// Couplings from half the standard one to a rigid one.
@@ -72,10 +114,11 @@ fn with_stiffness(scene: &Scene, value: f64) -> Scene {
 /// bisection with the assessment finds in it.
 #[test]
 fn walls_of_every_delay_behind_every_coupling() {
-    let (mut judged, mut certified) = (0, 0);
+    let (mut judged, mut certified, mut rendered) = (0, 0, 0);
     let mut count = |scene: &Scene| {
         judged += 1;
         certified += u32::from(compare(scene));
+        rendered += u32::from(compare_on_boards(scene));
     };
     for delay in 0..=8 {
         for (kind, coupling) in couplings(0.022, 0.001).into_iter().enumerate() {
@@ -109,16 +152,20 @@ fn walls_of_every_delay_behind_every_coupling() {
             }
         }
     }
-    println!("scenes={judged} certified={certified}");
+    println!("scenes={judged} certified={certified} rendered={rendered}");
     assert!(judged > 20_000 && certified * 5 > judged && certified * 5 < 4 * judged);
+    assert!(rendered * 10 > judged && rendered < certified);
 }
 
 #[test]
 fn environments_of_every_kind() {
-    let certified = (0..3000)
-        .filter(|&seed| compare(&scenes::any(&mut ChaCha8Rng::seed_from_u64(seed)).scene))
-        .count();
-    assert!(certified > 300, "{certified}");
+    let (mut certified, mut rendered) = (0, 0);
+    for seed in 0..3000 {
+        let scene = scenes::any(&mut ChaCha8Rng::seed_from_u64(seed)).scene;
+        certified += u32::from(compare(&scene));
+        rendered += u32::from(compare_on_boards(&scene));
+    }
+    assert!(certified > 300 && rendered > 30, "{certified} {rendered}");
 }
 
 /// Where the subdivision has the most to do, and where it may have to give up.

@@ -12,7 +12,6 @@ use super::parameter::first_invalid;
 use super::rules::paper_limit;
 use super::{Assessment, Rule, Sentence};
 use crate::cycle::READ_WITHIN;
-use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
@@ -204,26 +203,30 @@ impl Assessment {
 /// filtered decays. The loop is solvable each tick, too: a feedthrough that took it away would be
 /// larger than the bound allows. So nothing is searched for, and a board has nothing of the
 /// polynomials by which a host finds the index itself.
+///
+/// Where the type of an environment tells that it does not cancel damping, a program has nothing of
+/// what that takes: it is told that none is cancelled, and says no if some is.
 // In a frame of its own: what it takes is not on the stack of a small board when the servo is built.
 #[inline(never)]
-pub(super) const fn judged<M: OutputMode>(scene: &Scene, format: Format) -> Result<Limited, Step> {
-    // For a rational environment no bound is known.
-    if matches!(scene.environment, Environment::Rational(_))
-        || first_invalid::<false>(scene).is_some()
-    {
+pub(super) const fn judged<const CANCELS: bool, M: OutputMode>(
+    scene: &Scene,
+    is_late: bool,
+    format: Format,
+) -> Result<Limited, Step> {
+    if first_invalid(scene).is_some() {
         return Err(Step::Certificate);
     }
-    let n = &Numbers::of(scene, format);
+    let n = &Numbers::of_late(scene, is_late, format);
     let solved = match M::TIMING {
-        OutputTiming::Latched if scene.environment.is_late() => Some(Interval::ONE),
+        OutputTiming::Latched if is_late => Some(Interval::ONE),
         OutputTiming::Latched => None,
         OutputTiming::Simultaneous => largest_solved(&scene.environment, None, n),
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
-    let Some(bound) = nonlinear_bound(&scene.environment, solved, n) else {
+    let Some(bound) = nonlinear_bound::<CANCELS>(&scene.environment, solved, n) else {
         return Err(Step::Certificate);
     };
-    match Limited::of_solved(scene, n, bound, solved) {
+    match Limited::of_solved::<CANCELS>(scene, n, bound, solved) {
         Some(limited) if stands_counts_read_late::<M>(&limited, scene, n) => Ok(limited),
         _ => Err(Step::Certificate),
     }
@@ -312,7 +315,7 @@ pub(super) const fn limited_bound(
         return bound;
     }
     match largest_solved(&scene.environment, None, n) {
-        Some(solved) => nonlinear_bound(&scene.environment, solved, n),
+        Some(solved) => nonlinear_bound::<true>(&scene.environment, solved, n),
         None => None,
     }
 }
