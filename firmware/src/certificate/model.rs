@@ -130,6 +130,11 @@ impl Numbers {
         }
     }
 
+    /// `2 delta / T`, the stiffness of the standard coupling in N m/rad.
+    pub const fn standard_stiffness(&self) -> Interval {
+        self.delta.double().div(self.period)
+    }
+
     /// `V - T / (2 delta)`: what the coupling has over the standard one.
     pub const fn excess_compliance(&self) -> Interval {
         self.compliance.sub(standard(self.period, self.delta))

@@ -217,7 +217,7 @@ const fn softer_behind_standard<const RATIONAL: bool>(
     format: Format,
 ) -> Option<(f64, Remedy)> {
     let numbers = Numbers::of(scene, format);
-    let standard = numbers.delta.double().div(numbers.period).midpoint();
+    let standard = numbers.standard_stiffness().midpoint();
     let stiffness = Digits::of(standard, Side::Below).value();
     let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
     let own = shortage::<RATIONAL>(&standard, format);
@@ -247,7 +247,7 @@ const fn standard_coupling<const RATIONAL: bool>(varied: &Varied<RATIONAL>) -> O
     if numbers.is_standard {
         return None;
     }
-    let value = numbers.delta.double().div(numbers.period).midpoint();
+    let value = numbers.standard_stiffness().midpoint();
     let mut digits = Digits::of(value, Side::Below);
     if digits.value() != value && !varied.is_certified(value) {
         return None;
