@@ -96,7 +96,8 @@ pub struct Booted<E: Renderable<N>, N: Number, M> {
 /// says that it is armed at power-on, and this is one.
 ///
 /// # Errors
-/// Where the self-check fails: in which step, whose reason [`tuning::explain`] has. The amplifier is off and the converter at mid-scale then.
+/// Where the self-check fails: in which step, whose reason [`tuning::explain`] has. The amplifier is off and
+/// the converter at mid-scale then.
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,

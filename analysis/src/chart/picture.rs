@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::fontdb::{Database, Source};
-use resvg::usvg::{Options, Tree};
+use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
 
 use super::ChartError;
 
 /// Pixels of a PNG for each pixel of the drawing: sharp in print and on dense screens.
 const SCALE: f32 = 2.0;
+
+/// Dots per inch of the pixels of a drawing on paper, as in CSS.
+const DOTS_PER_INCH: f32 = 96.0;
 
 /// A drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +78,22 @@ impl Output {
     }
 }
 
+/// A drawing for one of the libraries that make files of it, with the same letters on every machine. They
+/// read SVG with two versions of `usvg`, each with types of its own: the resvg that has svg2pdf's version
+/// writes PNGs of four times the size.
+macro_rules! tree {
+    ($library:ident, $svg:expr) => {{
+        use $library::usvg::fontdb::{Database, Source};
+        use $library::usvg::{Options, Tree};
+
+        let mut fonts = Database::new();
+        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
+        fonts.set_sans_serif_family("DejaVu Sans");
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        Tree::from_str($svg, &options).map_err(failed)
+    }};
+}
+
 impl Picture {
     /// A picture from its SVG.
     pub(super) fn new(svg: String) -> Self {
@@ -92,45 +110,28 @@ impl Picture {
     /// # Errors
     /// Where it cannot be drawn.
     pub fn png(&self, scale: f32) -> Result<Vec<u8>, ChartError> {
-        let mut fonts = Database::new();
-        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
-        fonts.set_sans_serif_family("DejaVu Sans");
-        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-        let failed = |error: String| ChartError::Drawing(error);
-        let tree = Tree::from_str(&self.svg, &options).map_err(|e| failed(e.to_string()))?;
+        let tree = tree!(resvg, &self.svg)?;
         let size = tree.size().to_int_size();
         let size = size.scale_by(scale).unwrap_or(size);
-        let mut pixels = Pixmap::new(size.width(), size.height())
-            .ok_or_else(|| failed("it has no area".to_owned()))?;
+        let mut pixels =
+            Pixmap::new(size.width(), size.height()).ok_or_else(|| failed("it has no area"))?;
         let scale = Transform::from_scale(scale, scale);
         resvg::render(&tree, scale, &mut pixels.as_mut());
-        pixels.encode_png().map_err(|e| failed(e.to_string()))
+        pixels.encode_png().map_err(failed)
     }
-}
 
-/// Dots per inch of the pixels of a drawing on paper, as in CSS.
-const DOTS_PER_INCH: f32 = 96.0;
-
-impl Picture {
     /// As PDF: lines that stay sharp, text that can be searched, and its letters embedded.
     ///
     /// # Errors
     /// Where it cannot be drawn.
     pub fn pdf(&self) -> Result<Vec<u8>, ChartError> {
-        // Of another version than that of the PNG, with types of its own.
-        use svg2pdf::usvg::fontdb::{Database, Source};
-        use svg2pdf::usvg::{Options, Tree};
-        use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
-
-        let mut fonts = Database::new();
-        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
-        fonts.set_sans_serif_family("DejaVu Sans");
-        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-        let failed = |error: String| ChartError::Drawing(error);
-        let tree = Tree::from_str(&self.svg, &options).map_err(|e| failed(e.to_string()))?;
         let page = PageOptions { dpi: DOTS_PER_INCH };
-        to_pdf(&tree, ConversionOptions::default(), page).map_err(|e| failed(e.to_string()))
+        to_pdf(&tree!(svg2pdf, &self.svg)?, ConversionOptions::default(), page).map_err(failed)
     }
+}
+
+fn failed(error: impl ToString) -> ChartError {
+    ChartError::Drawing(error.to_string())
 }
 
 #[cfg(test)]

@@ -339,8 +339,8 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assump
 
 /// Of a scene that has no certificate: how far its friction goes without one. A controller that
 /// needs `alpha` of damping where there is `delta` puts in `pi (alpha - delta) omega A^2` a cycle
-/// of amplitude `A`, of which friction takes `4 f_c A` (equation 33). The index is that of the whole controller
-/// one sample later, which is the condition without a coupling (theory, section 5).
+/// of amplitude `A`, of which friction takes `4 f_c A` (equation 33). The index is that of the whole
+/// controller one sample later, which is the condition without a coupling (theory, section 5).
 fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<Assumption> {
     let friction = steps.friction.filter(|&friction| friction > 0.0)?;
     if assessment.outcome.is_ok() {

@@ -132,6 +132,11 @@ impl Numbers {
         }
     }
 
+    /// `2 delta / T`, the stiffness of the standard coupling in N m/rad.
+    pub const fn standard_stiffness(&self) -> Interval {
+        self.delta.double().div(self.period)
+    }
+
     /// `V - T / (2 delta)`: what the coupling has over the standard one.
     pub const fn excess_compliance(&self) -> Interval {
         self.compliance.sub(standard(self.period, self.delta))
@@ -474,6 +479,21 @@ const fn canceller_bound(n: &Numbers) -> Option<Interval> {
     }
 }
 
+/// The numbers of a scene and its environment alone, where none of the numbers is out of range.
+const fn valid_environment(
+    scene: &Scene,
+    format: Format,
+) -> Result<(Numbers, Transfer), Unbuildable> {
+    if first_invalid(scene).is_some() {
+        return Err(Unbuildable::OutOfRange);
+    }
+    let n = Numbers::of(scene, format);
+    match transfer(&scene.environment, &n) {
+        Ok(environment) => Ok((n, environment)),
+        Err(error) => Err(error),
+    }
+}
+
 /// A scene's linear transfer functions from position (rad) to torque (N m), as the certificate
 /// sees them: for pictures, and for simulating what was not certified.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -502,12 +522,8 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
-        if first_invalid(scene).is_some() {
-            return Err(Unbuildable::OutOfRange);
-        }
-        let n = Numbers::of(scene, format);
-        let environment = match transfer(&scene.environment, &n) {
-            Ok(environment) => environment,
+        let (n, environment) = match valid_environment(scene, format) {
+            Ok(found) => found,
             Err(error) => return Err(error),
         };
         let controller = match environment.behind(n.compliance) {
@@ -532,15 +548,11 @@ impl Loop {
     /// # Errors
     /// As [`Loop::of`].
     pub const fn equivalent_where_latched(scene: &Scene) -> Result<Option<Transfer>, Unbuildable> {
-        if first_invalid(scene).is_some() {
-            return Err(Unbuildable::OutOfRange);
-        }
-        let n = Numbers::of(scene, Format::F64);
-        let Some(excess) = n.excess_where_latched() else { return Ok(None) };
-        let environment = match transfer(&scene.environment, &n) {
-            Ok(environment) => environment,
+        let (n, environment) = match valid_environment(scene, Format::F64) {
+            Ok(found) => found,
             Err(error) => return Err(error),
         };
+        let Some(excess) = n.excess_where_latched() else { return Ok(None) };
         match environment.behind(excess) {
             Ok(equivalent) => Ok(Some(equivalent)),
             Err(error) => Err(error),

@@ -214,7 +214,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
 #[inline(never)]
 const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, Remedy)> {
     let numbers = Numbers::of(scene, format);
-    let standard = numbers.delta.double().div(numbers.period).midpoint();
+    let standard = numbers.standard_stiffness().midpoint();
     let stiffness = Digits::of(standard, Side::Below).value();
     let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
     let own = shortage(&standard, format);
@@ -244,7 +244,7 @@ const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
     if numbers.is_standard {
         return None;
     }
-    let value = numbers.delta.double().div(numbers.period).midpoint();
+    let value = numbers.standard_stiffness().midpoint();
     let mut digits = Digits::of(value, Side::Below);
     if digits.value() != value && !varied.is_certified(value) {
         return None;

@@ -258,7 +258,7 @@ const fn coupling_rejection(n: &Numbers, out: &Assessment) -> Rejection {
         alpha_coupled,
         delta: n.delta,
         stiffness: n.coupling,
-        standard: n.delta.double().div(n.period),
+        standard: n.standard_stiffness(),
         remedies: Remedies::NONE,
     }
 }

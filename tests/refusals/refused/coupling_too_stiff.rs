@@ -1,14 +1,12 @@
 //! The paper's wall behind ten times the standard coupling.
 use firmware::certificate::Certified;
-use firmware::environment::*;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::environment::DamperWall;
+use firmware::scene::{Coupling, Scene};
+use refusals::scene;
 
 const SCENE: Scene<DamperWall<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 440.0 },
-    environment: DamperWall { stiffness: 22.0, damping: 0.01 },
-    torque_limit: None,
+    ..scene(DamperWall { stiffness: 22.0, damping: 0.01 })
 };
 const CERTIFIED: Certified<Scene<DamperWall<1>>> = SCENE.certified();
 

@@ -1,25 +1,9 @@
 //! A counter of 16 bits wraps unseen between two ticks.
-
-use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Transducers};
+use firmware::servo::Transducers;
+use refusals::*;
 
-const SCENE: Scene<DelayedSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: 14.0 },
-    torque_limit: Some(1.0),
-};
-const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 1e4,
-};
+const TRANSDUCERS: Transducers = Transducers { largest_speed: 1e4, ..refusals::TRANSDUCERS };
 
 firmware::scene_program! {
     scene: SCENE: DelayedSpring<1>,

@@ -1,25 +1,7 @@
 //! Damping that would take the certificate away.
-
-use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{RenderingOptions, Transducers};
-
-const SCENE: Scene<DelayedSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: 14.0 },
-    torque_limit: Some(1.0),
-};
-const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
+use firmware::servo::RenderingOptions;
+use refusals::*;
 
 firmware::scene_program! {
     scene: SCENE: DelayedSpring<1>,

@@ -1,16 +1,11 @@
 //! A stiffness that is no number.
 use firmware::certificate::Certified;
-use firmware::environment::*;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::environment::DelayedSpring;
+use firmware::scene::Scene;
+use refusals::scene;
 
-const SCENE: Scene<DelayedSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: f64::NAN },
-    torque_limit: None,
-};
-const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
+const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
+    scene(DelayedSpring { stiffness: f64::NAN }).certified();
 
 fn main() {
     let _ = CERTIFIED;

@@ -1,16 +1,12 @@
 //! The same, felt on one side only and judged by the nonlinear bound.
 use firmware::certificate::Certified;
-use firmware::environment::*;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::environment::{DamperWall, OneSided};
+use firmware::scene::Scene;
+use refusals::scene;
 
-const SCENE: Scene<OneSided<DamperWall<1>>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: OneSided { face: 0.1, wall: DamperWall { stiffness: 22.0, damping: 0.0115 } },
-    torque_limit: None,
-};
-const CERTIFIED: Certified<Scene<OneSided<DamperWall<1>>>> = SCENE.certified();
+const CERTIFIED: Certified<Scene<OneSided<DamperWall<1>>>> =
+    scene(OneSided { face: 0.1, wall: DamperWall { stiffness: 22.0, damping: 0.0115 } })
+        .certified();
 
 fn main() {
     let _ = CERTIFIED;

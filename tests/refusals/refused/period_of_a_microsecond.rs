@@ -1,25 +1,12 @@
 //! A period that no board finishes a tick in.
-
 use firmware::certificate::Certified;
-use firmware::encoder::CounterWidth;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Transducers};
+use firmware::scene::{Scene, Timing};
+use refusals::TRANSDUCERS;
 
-const SCENE: Scene<DelayedSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 1e-6, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: 14.0 },
-    torque_limit: Some(1.0),
-};
+const SCENE: Scene<DelayedSpring<1>> =
+    Scene { timing: Timing { period: 1e-6, worst_period: None }, ..refusals::SCENE };
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 2.0,
-    largest_speed: 100.0,
-};
 
 firmware::scene_program! {
     scene: SCENE: DelayedSpring<1>,

@@ -1,16 +1,11 @@
 //! The paper's wall with a little too much damping: alpha = 0.0225.
 use firmware::certificate::Certified;
-use firmware::environment::*;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::environment::DamperWall;
+use firmware::scene::Scene;
+use refusals::scene;
 
-const SCENE: Scene<DamperWall<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.001, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DamperWall { stiffness: 22.0, damping: 0.0115 },
-    torque_limit: None,
-};
-const CERTIFIED: Certified<Scene<DamperWall<1>>> = SCENE.certified();
+const CERTIFIED: Certified<Scene<DamperWall<1>>> =
+    scene(DamperWall { stiffness: 22.0, damping: 0.0115 }).certified();
 
 fn main() {
     let _ = CERTIFIED;

@@ -1,15 +1,10 @@
 //! A servo that never comes to the next sample.
 use firmware::certificate::Certified;
-use firmware::environment::*;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::environment::DelayedSpring;
+use firmware::scene::{Scene, Timing};
 
-const SCENE: Scene<DelayedSpring<1>> = Scene {
-    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-    timing: Timing { period: 0.0, worst_period: None },
-    coupling: Coupling::Spring { stiffness: 44.0 },
-    environment: DelayedSpring { stiffness: 22.0 },
-    torque_limit: None,
-};
+const SCENE: Scene<DelayedSpring<1>> =
+    Scene { timing: Timing { period: 0.0, worst_period: None }, ..refusals::SCENE };
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
 
 fn main() {

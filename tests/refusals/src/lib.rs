@@ -1,1 +1,35 @@
-//! Nothing is exported: the programs are in `refused` and `accepted`, the test in `tests`.
+//! What the programs have in common, and passes: a device, its transducers and a scene. A program in
+//! `refused` changes what it must not compile for, its neighbour in `examples` what compiles; the test is
+//! in `tests`.
+
+use firmware::certificate::Certified;
+use firmware::encoder::CounterWidth;
+use firmware::environment::DelayedSpring;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+/// An environment behind the paper's device and the standard coupling, and no torque limit.
+pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+        timing: Timing { period: 0.001, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        torque_limit: None,
+    }
+}
+
+/// A spring that boards can render.
+pub const SCENE: Scene<DelayedSpring<1>> =
+    Scene { torque_limit: Some(1.0), ..scene(DelayedSpring { stiffness: 14.0 }) };
+
+/// Its certificate.
+pub const CERTIFIED: Certified<Scene<DelayedSpring<1>>> = SCENE.certified();
+
+/// Sensor and motor.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+    largest_speed: 100.0,
+};

@@ -14,9 +14,12 @@ use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
-use crate::servo::{Renders, Step};
+use crate::servo::Renders;
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
+
+#[cfg(feature = "log")]
+use crate::servo::Step;
 
 #[cfg(feature = "log")]
 use super::{
@@ -103,7 +106,7 @@ where
     let mut hardware = Registers::new(period);
     let Ends { requests, inbox, frames, told } = ends(&places.meeting);
     let Booted { cycle, margin, reset, left, .. } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     #[cfg(feature = "log")]
     defmt::info!("reset={=str}", reset.as_str());
     #[cfg(feature = "log")]
@@ -163,21 +166,16 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     let start = meter::now();
     let judged = E::certify(scene);
     let time = meter::now().wrapping_sub(start);
-    let certified = judged.unwrap_or_else(|_| not_started(Step::Certificate));
+    let certified = judged.unwrap_or_else(|_| refuse(Step::Certificate.as_str()));
     log::certificate("compiler", compiler);
     log::certificate("board", certified.assessment());
     let (size, left) = (stack::size(), stack::left());
     defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - left, size);
 }
 
-/// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
-/// the words for it: `haptic certify`.
+/// Ends a program that cannot start. Where this machine refuses a scene that passed when it was compiled,
+/// the host has the words for it: `haptic certify`.
 #[cold]
-fn not_started(step: Step) -> ! {
-    refuse(step.as_str())
-}
-
-/// Ends a program that cannot start.
 pub(super) fn refuse(reason: &'static str) -> ! {
     lines::stop();
     #[cfg(feature = "log")]

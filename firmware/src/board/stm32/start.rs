@@ -26,7 +26,7 @@ use crate::environment::Renderable;
 use crate::fault::Retained;
 use crate::number::Number;
 use crate::reset::ResetCause;
-use crate::servo::{OutputMode, OutputTiming, Renders, Step, Transducers};
+use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
 use crate::tuning::Tunable;
 use crate::wire::{Facts, Session};
 
@@ -107,7 +107,7 @@ where
     let timer_counts = hardware.period();
     let Ends { requests, inbox, frames, told } = ends(places.meeting);
     let Booted { cycle, margin, reset, left, arms_because } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| not_started(step));
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
@@ -191,14 +191,9 @@ pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
     C::WIDTH
 }
 
-/// Ends a program whose scene passed when it was compiled and is refused by this machine. The host has
-/// the words for it: `haptic certify`.
+/// Ends a program that cannot start. The amplifier has never been on. Where this machine refuses a scene
+/// that passed when it was compiled, the host has the words for it: `haptic certify`.
 #[cold]
-fn not_started(step: Step) -> ! {
-    refuse(step.as_str())
-}
-
-/// Ends a program that cannot start. The amplifier has never been on.
 pub(super) fn refuse(reason: &'static str) -> ! {
     stop();
     defmt::error!("refused by {=str}", reason);

@@ -183,7 +183,7 @@ const CASES: &[Case] = &[
             // The place in the source that a panic is told, as the compiler lays it out: a file's
             // name, line and column.
             let place = 0x2000_0000 + bench.machine.board().chip().ram - 16;
-            let (panic, _) = bench.symbol("9panicking18panic_bounds_check");
+            let (panic, _) = bench.symbol("9panicking5panic");
             let core = bench.machine.core_mut();
             let words = [0_u32, 0, 12, 34].map(u32::to_le_bytes).concat();
             assert!(core.set_memory(place, &words));
