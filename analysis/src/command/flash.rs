@@ -7,7 +7,7 @@ use clap::Args;
 use super::run::FormatArgument;
 use super::{Answer, CommandError};
 use crate::progress;
-use crate::toolchain::{self, Board, Memory, NoBoard, Tools, probe};
+use crate::toolchain::{self, Board, Memory, Tools, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -16,7 +16,7 @@ pub struct Arguments {
     #[arg(value_name = "PROGRAM")]
     pub program: String,
     /// The board: nucleo-g474re, b-g431b-esc1 or stm32f405
-    #[arg(long, value_parser = board)]
+    #[arg(long, value_parser = Board::find)]
     pub board: Board,
     /// Number format that it computes in
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
@@ -27,10 +27,6 @@ pub struct Arguments {
     /// The debug probe to use where there are several: VID:PID or VID:PID:SERIAL
     #[arg(long, value_name = "PROBE")]
     pub probe: Option<String>,
-}
-
-fn board(name: &str) -> Result<Board, NoBoard> {
-    Board::find(name)
 }
 
 /// Runs the command.

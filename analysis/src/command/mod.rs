@@ -44,7 +44,7 @@ use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
 use crate::table::TableError;
 use crate::terminal;
-use crate::toolchain::{Board, BuildError, NoBoard, SetupError};
+use crate::toolchain::{BuildError, SetupError};
 use crate::twin::TwinError;
 use crate::virtual_board::VirtualBoardError;
 
@@ -411,11 +411,6 @@ pub fn execute(arguments: Arguments) -> ExitCode {
             if error.is_a_no() { ExitCode::FAILURE } else { ExitCode::from(2) }
         }
     }
-}
-
-/// A board of which there is a virtual one, on the command line.
-fn virtual_board(name: &str) -> Result<Board, NoBoard> {
-    Board::find_virtual(name)
 }
 
 /// A time on the command line.

@@ -61,7 +61,7 @@ impl FromStr for Target {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
             _ => match text.strip_prefix(BOARD) {
-                Some(name) => Ok(Self::Board(Board::find_virtual(name)?)),
+                Some(name) => Ok(Self::Board(Board::find(name)?)),
                 None => Err(NoTarget::Word(text.into())),
             },
         }
@@ -104,7 +104,7 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to
-    /// that board (nucleo-g474re, stm32f405) on a virtual one
+    /// that board (nucleo-g474re, b-g431b-esc1, stm32f405) on a virtual one
     #[arg(long, default_value_t = Target::Host)]
     pub target: Target,
     /// Recorded counts (column `count`), one a tick, in place of the simulated device

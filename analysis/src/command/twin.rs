@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::run::Flashed;
-use super::{Answer, CommandError, own, seconds, virtual_board as board};
+use super::{Answer, CommandError, own, seconds};
 use crate::link::Address;
 use crate::program::Program;
 use crate::rig::SimulatedDevice;
@@ -23,9 +23,9 @@ pub struct Arguments {
     /// Where it listens: tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
-    /// A virtual board with what would be flashed to this one (nucleo-g474re, stm32f405), instead of a
-    /// thread with the same servo
-    #[arg(long, value_name = "BOARD", value_parser = board)]
+    /// A virtual board with what would be flashed to this one (nucleo-g474re, b-g431b-esc1, stm32f405),
+    /// instead of a thread with the same servo
+    #[arg(long, value_name = "BOARD", value_parser = Board::find)]
     pub board: Option<Board>,
     /// End after so many seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,

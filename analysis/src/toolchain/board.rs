@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A board; each is a feature of the firmware's package and a file in its `board` folder.
+/// A board; each is a feature of the firmware's package, a file in its `board` folder, and a virtual board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Board {
     /// NUCLEO-G474RE.
@@ -15,30 +15,15 @@ pub enum Board {
 
 /// There is no such board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoBoard {
-    /// None of that name.
-    #[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
-    Named {
-        /// What was asked for.
-        name: String,
-    },
-    /// None of that name that is virtual.
-    #[error(
-        "there is no virtual board {name}; there are {}",
-        Board::VIRTUAL.map(Board::name).join(", ")
-    )]
-    Virtual {
-        /// What was asked for.
-        name: String,
-    },
+#[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
+pub struct NoBoard {
+    /// What was asked for.
+    pub name: String,
 }
 
 impl Board {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::NucleoG474re, Self::BG431bEsc1, Self::Stm32f405];
-
-    /// Those that there is a virtual one of: the B-G431B-ESC1's chip is the Nucleo's, but for pins.
-    pub const VIRTUAL: [Self; 2] = [Self::NucleoG474re, Self::Stm32f405];
 
     /// Its name, which is also the feature's.
     pub const fn name(self) -> &'static str {
@@ -65,16 +50,7 @@ impl Board {
     /// Where there is none; the error names those that there are.
     pub fn find(name: &str) -> Result<Self, NoBoard> {
         let found = Self::ALL.into_iter().find(|board| board.name() == name);
-        found.ok_or_else(|| NoBoard::Named { name: name.into() })
-    }
-
-    /// The virtual board of that name.
-    ///
-    /// # Errors
-    /// Where there is none; the error names those that there are.
-    pub fn find_virtual(name: &str) -> Result<Self, NoBoard> {
-        let found = Self::VIRTUAL.into_iter().find(|board| board.name() == name);
-        found.ok_or_else(|| NoBoard::Virtual { name: name.into() })
+        found.ok_or_else(|| NoBoard { name: name.into() })
     }
 }
 
@@ -96,10 +72,6 @@ mod tests {
         assert_eq!(
             Board::find("arduino").unwrap_err().to_string(),
             "there is no board arduino; there are nucleo-g474re, b-g431b-esc1, stm32f405"
-        );
-        assert_eq!(
-            Board::find_virtual("b-g431b-esc1").unwrap_err().to_string(),
-            "there is no virtual board b-g431b-esc1; there are nucleo-g474re, stm32f405"
         );
     }
 }

@@ -110,6 +110,7 @@ fn description() -> Description {
 }
 
 #[test]
+#[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn reads_every_message_to_the_host() {
     let frame = |tick, count, code| {
         let (limit, state) = (LimitReason::Ramp, State::FadingOut);
@@ -184,6 +185,7 @@ fn reads_every_message_to_the_host() {
 }
 
 #[test]
+#[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn frames_are_those_of_the_board() {
     let code = "import client, json, sys; print(json.dumps([[client.frame(\
                 client.unframe(bytes.fromhex(frame)[1:-1])).hex(), client.unframe(bytes.fromhex(\
@@ -200,6 +202,7 @@ fn frames_are_those_of_the_board() {
 }
 
 #[test]
+#[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn what_it_sends_is_a_message_to_the_board() {
     let code = "import client, json
 class Told(client.Board):
@@ -225,6 +228,7 @@ print(json.dumps(board.sent))";
 }
 
 #[test]
+#[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn talks_to_a_board() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());

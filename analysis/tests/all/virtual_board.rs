@@ -11,7 +11,7 @@ use crate::common::{answer, haptic, program};
 
 #[test]
 fn what_is_flashed_gives_the_codes_of_the_host() {
-    for board in Board::VIRTUAL {
+    for board in Board::ALL {
         for scene in ["delayed_spring", "damper_wall", "free_mode"] {
             let target = format!("board:{board}");
             let run = haptic(&["run", "--target", &target, scene, "--json", "--ticks", "3000"]);
@@ -30,8 +30,8 @@ fn what_is_flashed_gives_the_codes_of_the_host() {
 fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
     for (arguments, parts) in [
         (
-            &["run", "--target", "board:b-g431b-esc1", "damper_wall"][..],
-            ["no virtual board b-g431b-esc1", "nucleo-g474re, stm32f405"],
+            &["run", "--target", "board:arduino", "damper_wall"][..],
+            ["no board arduino", "nucleo-g474re, b-g431b-esc1, stm32f405"],
         ),
         (&["run", "--target", "board", "damper_wall"], ["no target board", "board:NAME"]),
         (
@@ -40,7 +40,7 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
         ),
         (
             &["twin", "damper_wall", "--board", "arduino", "--port", "unix:x"],
-            ["no virtual board arduino", "nucleo-g474re, stm32f405"],
+            ["no board arduino", "nucleo-g474re, b-g431b-esc1, stm32f405"],
         ),
     ] {
         let output = haptic(arguments);
@@ -87,7 +87,7 @@ impl Drop for Twin {
 /// Over the serial port that the drivers have set up, judged by the certificate in the flash.
 #[test]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
-    for board in Board::VIRTUAL {
+    for board in Board::ALL {
         let twin = Twin::of(board, "damper_wall");
         let (status, running) = twin.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");

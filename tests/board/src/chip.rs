@@ -144,17 +144,12 @@ static DEBUG_F405: &[(u32, u32, u32)] =
 static G4: &Layout = &clock_g4::LAYOUT;
 static F4: &Layout = &clock_f4::LAYOUT;
 
-/// STM32G474RE on a NUCLEO-G474RE.
-pub static NUCLEO_G474RE: Chip = Chip {
-    name: "nucleo-g474re",
-    flash: 512 << 10,
-    ram: 96 << 10,
-    coupled: (32 << 10, true),
-    crystal: 24_000_000,
-    core: 170_000_000,
-    map: &[
-        place(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
-        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+/// The map of an STM32G4. Which two timers are the encoder's counter and the free-running clock depends
+/// on the board; all else is in the same place.
+const fn g4_map([first, second]: [Place; 2]) -> [Place; 18] {
+    [
+        first,
+        second,
         place(0x4000_1000, "TIM6", Unit::Pacer, 0x58, 0x38, 4),
         always(0x4000_3000, "IWDG", Unit::Watchdog),
         place(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
@@ -171,7 +166,21 @@ pub static NUCLEO_G474RE: Chip = Chip {
         place(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
         place(0x5000_0800, "DAC1", Unit::Converter, 0x4C, 0x2C, 16),
         always(0xE004_2000, "DBGMCU", Unit::Debug),
-    ],
+    ]
+}
+
+/// STM32G474RE on a NUCLEO-G474RE.
+pub static NUCLEO_G474RE: Chip = Chip {
+    name: "nucleo-g474re",
+    flash: 512 << 10,
+    ram: 96 << 10,
+    coupled: (32 << 10, true),
+    crystal: 24_000_000,
+    core: 170_000_000,
+    map: &g4_map([
+        place(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
+        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+    ]),
     counter: 32,
     amplifier: (1, 10),
     // TIM2_CH1 and TIM2_CH2.
@@ -204,26 +213,10 @@ pub static B_G431B_ESC1: Chip = Chip {
     ram: 22 << 10,
     coupled: (10 << 10, true),
     crystal: 8_000_000,
-    map: &[
+    map: &g4_map([
         place(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
         place(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
-        place(0x4000_1000, "TIM6", Unit::Pacer, 0x58, 0x38, 4),
-        always(0x4000_3000, "IWDG", Unit::Watchdog),
-        place(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
-        place(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
-        place(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
-        always(0x4002_1000, "RCC", Unit::Clock),
-        place(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
-        place(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
-        place(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
-        place(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
-        place(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
-        place(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
-        place(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
-        place(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
-        place(0x5000_0800, "DAC1", Unit::Converter, 0x4C, 0x2C, 16),
-        always(0xE004_2000, "DBGMCU", Unit::Debug),
-    ],
+    ]),
     counter: 16,
     amplifier: (0, 15),
     // TIM4_CH1 and TIM4_CH2.
@@ -295,12 +288,15 @@ pub static NETDUINO_PLUS_2: Chip = Chip {
 };
 
 impl Chip {
+    /// One for each board that is flashed.
+    pub const BOARDS: [&'static Self; 3] = [&NUCLEO_G474RE, &B_G431B_ESC1, &STM32F405];
+
     /// Those that every test runs on: one of each family.
     pub const ALL: [&'static Self; 2] = [&NUCLEO_G474RE, &STM32F405];
 
     /// The chip of the board of this name, where there is a virtual one.
     pub fn find(name: &str) -> Option<&'static Self> {
-        Self::ALL.into_iter().chain([&B_G431B_ESC1]).find(|chip| chip.name == name)
+        Self::BOARDS.into_iter().find(|chip| chip.name == name)
     }
 
     /// The unit at an address.

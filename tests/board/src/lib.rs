@@ -1,12 +1,12 @@
 //! A board that is a simulation down to the registers, with a program that does not know it.
 //!
-//! What `haptic flash` would write to an STM32G474RE or an STM32F405RG runs here unmodified: the
-//! drivers set clocks up and wait for them, the pacing timer interrupts, the encoder's counter is
-//! turned by a simulated device, and the converter's output drives that device.
+//! What `haptic flash` would write to an STM32G474RE, an STM32G431CB or an STM32F405RG runs here
+//! unmodified: the drivers set clocks up and wait for them, the pacing timer interrupts, the encoder's
+//! counter is turned by a simulated device, and the converter's output drives that device.
 //!
 //! - [`machine`]: the board with its power on.
 //! - [`board`]: the units, and the world that is wired to them.
-//! - [`chip`]: the two chips: where what is, and which pins it uses.
+//! - [`chip`]: the chips: where what is, and which pins it uses.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.

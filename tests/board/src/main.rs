@@ -59,7 +59,7 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         return Err("usage: virtual-board BOARD PROGRAM.elf".into());
     };
     let Some(chip) = Chip::find(board) else {
-        let names = Chip::ALL.map(|chip| chip.name).join(", ");
+        let names = Chip::BOARDS.map(|chip| chip.name).join(", ");
         return Err(format!("there is no virtual board {board}; there are {names}").into());
     };
     let wire = Arc::<Mutex<Wire>>::default();
