@@ -18,7 +18,6 @@ pub mod identify;
 pub mod mu;
 
 // What runs: a program's scene in a servo, with a simulated device or a recording around it.
-pub mod arithmetic;
 pub mod controller;
 pub mod device;
 pub mod hand;
@@ -30,7 +29,6 @@ pub mod scenario;
 pub mod table;
 
 // The board, emulated or virtual, what builds for it, and what was built.
-pub mod anatomy;
 pub mod emulator;
 pub mod toolchain;
 pub mod virtual_board;
@@ -41,20 +39,20 @@ pub mod listing;
 pub mod scope;
 pub mod twin;
 
+// What is measured once and kept.
+pub mod studies;
+
 // What scenes would do, certified or not, and how far one may go.
 pub mod design;
-pub mod failures;
 pub mod limits;
 pub mod map;
-pub mod model;
 pub mod open_loop;
 pub mod response;
 pub mod simulation;
 pub mod stability;
 pub mod worst_hand;
 
-// What is shown and measured.
-pub mod bench;
+// What is shown.
 pub mod chart;
 pub mod circle;
 pub mod date;
@@ -64,7 +62,6 @@ pub mod progress;
 pub mod quantity;
 pub mod report;
 pub mod terminal;
-pub mod tradeoff;
 
 /// The scene file of the README, as this library reads it.
 ///

@@ -245,7 +245,7 @@ pub enum CommandError {
     },
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
-    Live(#[from] crate::bench::live::LiveError),
+    Live(#[from] crate::studies::bench::live::LiveError),
     /// A picture could not be drawn.
     #[error(transparent)]
     Chart(#[from] ChartError),
@@ -324,10 +324,10 @@ pub enum CommandError {
     },
     /// A case of failure could not be shown.
     #[error(transparent)]
-    Failure(#[from] crate::failures::FailureError),
+    Failure(#[from] crate::studies::failures::FailureError),
     /// Models of a device that cannot be compared.
     #[error(transparent)]
-    Model(#[from] crate::model::ModelError),
+    Model(#[from] crate::studies::model::ModelError),
     /// A design asks for what the environment does not have.
     #[error("the environment of {scene} has no {quantity}")]
     NoSuchQuantity {

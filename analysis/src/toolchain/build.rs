@@ -13,7 +13,7 @@ use super::prepare::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{BadName, Sources};
 use super::{Board, TARGET};
-use crate::anatomy::{Anatomy, ListingError};
+use crate::studies::anatomy::{Anatomy, ListingError};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

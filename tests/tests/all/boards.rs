@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use analysis::anatomy::{Part, Share};
+use analysis::studies::anatomy::{Part, Share};
 use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).

@@ -9,8 +9,6 @@ use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
 
 use super::words::{Answered, Simulated, message, text};
-use crate::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
-use crate::bench::CORE_CLOCK;
 use crate::command::common::ForWhom;
 use crate::command::identify::positive;
 use crate::command::run::{scene_file, script_of, transducers_of};
@@ -18,8 +16,10 @@ use crate::command::{Answer, CommandError};
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::tradeoff::ticks::Ticks;
-use crate::tradeoff::{self, simulation};
+use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
+use crate::studies::bench::CORE_CLOCK;
+use crate::studies::tradeoff::ticks::Ticks;
+use crate::studies::tradeoff::{self, simulation};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]

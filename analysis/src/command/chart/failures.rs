@@ -5,8 +5,8 @@ use clap::{Args, ValueEnum};
 use super::OutputArguments;
 use crate::chart::{self, Chart, Data};
 use crate::command::CommandError;
-use crate::failures::region::{METHODS, Region};
 use crate::simulation::method::Method;
+use crate::studies::failures::region::{METHODS, Region};
 
 /// Arguments of `haptic chart failures`.
 #[derive(Debug, Args)]

@@ -13,10 +13,12 @@ use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Beside, Input, play};
 use crate::simulation::wall;
+use crate::studies::tradeoff::ticks::{self, Ticks};
+use crate::studies::tradeoff::{
+    self, Subject, Tradeoff, certificate, rate, servo, simulation, sine,
+};
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
-use crate::tradeoff::ticks::{self, Ticks};
-use crate::tradeoff::{self, Subject, Tradeoff, certificate, rate, servo, simulation, sine};
 
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]

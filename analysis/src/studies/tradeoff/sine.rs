@@ -84,7 +84,7 @@ mod tests {
 
     /// The table that is kept.
     fn kept() -> Tradeoff {
-        let kept = include_bytes!("../../pictures/tradeoff/sine.csv");
+        let kept = include_bytes!("../../../pictures/tradeoff/sine.csv");
         Tradeoff::read(&SUBJECT, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()
     }
 

@@ -7,10 +7,10 @@ use firmware::scene::Scene;
 use serde::Serialize;
 
 use super::Model;
-use crate::bench::median;
 use crate::file::SceneFile;
 use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
 use crate::stability;
+use crate::studies::bench::median;
 use crate::verdict::{self, Report};
 
 /// What a model says.

@@ -12,10 +12,10 @@ use firmware::number::Arithmetic;
 
 use super::NUMBER;
 use super::servo::Case;
-use crate::arithmetic::cost;
 use crate::command::CommandError;
 use crate::emulator::Trials;
 use crate::program::Program;
+use crate::studies::arithmetic::cost;
 use crate::table::{Column, Table, TableError};
 
 /// Most instructions of a tick from count to code, by type of scene and format.
@@ -65,7 +65,7 @@ impl Ticks {
     /// # Errors
     /// Where they are no such table.
     pub fn kept() -> Result<Self, TableError> {
-        let kept = include_bytes!("../../pictures/tradeoff/ticks.csv");
+        let kept = include_bytes!("../../../pictures/tradeoff/ticks.csv");
         let mut table = Table::new("ticks.csv", &kept[..])?;
         let name = table.column(TYPE)?;
         let mut places = Vec::new();
@@ -195,7 +195,7 @@ fn of_degree(degree: usize, delay: usize) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::servo;
+    use crate::studies::tradeoff::servo;
 
     /// Whatever a file names has a row.
     #[test]

@@ -2,7 +2,7 @@ use super::*;
 use crate::table::Table;
 
 fn kept() -> Tradeoff {
-    let kept = include_bytes!("../../../pictures/tradeoff/certificate.csv");
+    let kept = include_bytes!("../../../../pictures/tradeoff/certificate.csv");
     Tradeoff::read(&SUBJECT, Table::new("certificate.csv", &kept[..]).unwrap()).unwrap()
 }
 

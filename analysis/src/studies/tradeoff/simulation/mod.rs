@@ -101,7 +101,7 @@ fn released(plant: Plant, device: Device) -> Experiment {
 /// # Errors
 /// Where it is not a table of this subject.
 pub fn kept() -> Result<Tradeoff, TableError> {
-    let kept = include_bytes!("../../../pictures/tradeoff/simulation.csv");
+    let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
     Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..])?)
 }
 

@@ -46,7 +46,7 @@ fn apparent_limits_are_those_of_theory() {
 }
 
 fn kept() -> Tradeoff {
-    let kept = include_bytes!("../../../pictures/tradeoff/simulation.csv");
+    let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
     Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..]).unwrap()).unwrap()
 }
 

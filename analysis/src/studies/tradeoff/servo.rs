@@ -8,11 +8,11 @@ use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff};
-use crate::arithmetic::{self, HALF_A_TURN, Losses, Motion, cost};
 use crate::command::CommandError;
 use crate::emulator::Trials;
 use crate::hand::Script;
 use crate::program::{self, Program};
+use crate::studies::arithmetic::{self, HALF_A_TURN, Losses, Motion, cost};
 use crate::table::{Column, Table, TableError};
 
 /// What is compared.
@@ -112,7 +112,7 @@ pub fn measure() -> Result<Tradeoff, CommandError> {
 /// # Errors
 /// Where it is not a table of this subject.
 pub fn kept() -> Result<Tradeoff, TableError> {
-    let kept = include_bytes!("../../pictures/tradeoff/servo.csv");
+    let kept = include_bytes!("../../../pictures/tradeoff/servo.csv");
     Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)
 }
 
@@ -150,7 +150,7 @@ fn family(arithmetic: Arithmetic) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::{Rest, Units, at_rest};
+    use crate::studies::arithmetic::{Rest, Units, at_rest};
 
     /// The kept figures that do not depend on a compiler for the board.
     #[test]

@@ -5,7 +5,7 @@ use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::method::Method;
 use crate::simulation::{Experiment, Stride};
 use crate::stability::critical_stiffness;
-use crate::tradeoff::simulation;
+use crate::studies::tradeoff::simulation;
 
 /// The methods that are looked at, the one that errs the most first.
 pub const METHODS: [Method; 4] = [Method::SemiImplicit, Method::Rk4, Method::Tustin, Method::Euler];

@@ -4,10 +4,10 @@
 use std::f64::consts::TAU;
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff};
-use crate::bench::CORE_CLOCK;
 use crate::limits::{Limit, at_period, largest_stiffness, with_wall};
 use crate::program::Program;
 use crate::simulation::wall;
+use crate::studies::bench::CORE_CLOCK;
 use crate::table::Column;
 
 /// What is compared.

@@ -4,8 +4,8 @@ use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
 use super::Figure;
-use crate::anatomy::{Part, Share};
 use crate::program::{Program, State};
+use crate::studies::anatomy::{Part, Share};
 use crate::toolchain::{self, BuildError, NumberFormat};
 
 /// What a scene's program has.

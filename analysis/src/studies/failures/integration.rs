@@ -10,7 +10,7 @@ use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Stride};
 use crate::stability::critical_stiffness;
-use crate::tradeoff::simulation;
+use crate::studies::tradeoff::simulation;
 
 /// Two masses in a hand, of which the first has motor, encoder and all of the device's damping to
 /// the ground, so that this is its passivity (theory, section 3.2): the knob's.
