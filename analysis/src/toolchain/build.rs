@@ -8,8 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::memory::{Memory, NoLength};
-use super::plan::Compiler;
-use super::prepare::last_lines;
+use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{BadName, Sources};
 use super::{Board, TARGET};
@@ -111,6 +110,15 @@ pub enum BuildError {
         /// Why.
         source: SizeError,
     },
+}
+
+/// The compiler that builds for the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compiler {
+    /// The one that builds everything else here.
+    Own,
+    /// Debian's, which builds `core` from source as well.
+    Debian,
 }
 
 /// What builds programs for the board; [`prepare`](super::prepare()) gives it.

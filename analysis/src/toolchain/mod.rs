@@ -1,6 +1,6 @@
 //! How programs for the board are built: the one place that knows.
 //!
-//! [`prepare`] looks at the machine ([`facts`]), chooses a route ([`plan`], a pure function), takes
+//! [`prepare`] looks at the machine ([`observe`]), chooses a route ([`plan`], a pure function), takes
 //! it, and gives a [`Toolchain`]; everything else asks that.
 
 mod apt;
@@ -8,6 +8,8 @@ mod board;
 mod build;
 pub mod facts;
 mod memory;
+pub mod observe;
+mod output;
 pub mod plan;
 mod prepare;
 pub mod probe;
