@@ -223,6 +223,9 @@ pub enum CommandError {
     /// A program does not build.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// A program could not be taken apart.
+    #[error(transparent)]
+    Anatomy(#[from] crate::studies::anatomy::AnatomyError),
     /// A program could not be flashed.
     #[error(transparent)]
     Probe(#[from] crate::toolchain::probe::ProbeError),

@@ -12,7 +12,6 @@ use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{BadName, Sources};
 use super::{Board, TARGET};
-use crate::studies::anatomy::{Anatomy, ListingError};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -93,14 +92,6 @@ pub enum BuildError {
         path: PathBuf,
         /// Why.
         source: NoLength,
-    },
-    /// The program could not be taken apart.
-    #[error("{path}: {source}")]
-    Listing {
-        /// The program's file.
-        path: PathBuf,
-        /// Why.
-        source: ListingError,
     },
     /// The program's size could not be read.
     #[error("{path}: {source}")]
@@ -452,17 +443,6 @@ impl Program {
             Ok(sizes) => Ok(Self { path, sizes }),
             Err(source) => Err(BuildError::Size { path, source }),
         }
-    }
-
-    /// What it has of each part of a tick.
-    ///
-    /// # Errors
-    /// Where its file cannot be read or taken apart.
-    pub fn anatomy(&self) -> Result<Anatomy, BuildError> {
-        let path = || self.path.clone();
-        let elf = fs::read(&self.path);
-        let elf = elf.map_err(|source| BuildError::File { path: path(), source })?;
-        Anatomy::of_elf(&elf).map_err(|source| BuildError::Listing { path: path(), source })
     }
 }
 

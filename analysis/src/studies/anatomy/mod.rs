@@ -10,8 +10,34 @@ mod part;
 pub use listing::ListingError;
 pub use part::Part;
 
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
 use listing::{Instruction, listing};
 use serde::Serialize;
+use thiserror::Error;
+
+/// Why a program's file could not be taken apart.
+#[derive(Debug, Error)]
+pub enum AnatomyError {
+    /// It could not be read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// It cannot be listed.
+    #[error("{path}: {source}")]
+    Listing {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: ListingError,
+    },
+}
 
 /// What a program has of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -31,6 +57,16 @@ pub struct Anatomy {
 }
 
 impl Anatomy {
+    /// Takes the linked program in a file apart.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is not as [`of_elf`](Self::of_elf) needs it.
+    pub fn of_file(path: &Path) -> Result<Self, AnatomyError> {
+        let elf = fs::read(path)
+            .map_err(|source| AnatomyError::File { path: path.to_owned(), source })?;
+        Self::of_elf(&elf).map_err(|source| AnatomyError::Listing { path: path.to_owned(), source })
+    }
+
     /// Takes the linked program in an ELF file apart. The tick is in it twice, with and without
     /// [injected damping](Part::Injection), as far as the two have nothing in common.
     ///

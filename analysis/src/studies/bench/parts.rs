@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::Figure;
 use crate::program::{Program, State};
-use crate::studies::anatomy::{Part, Share};
-use crate::toolchain::{self, BuildError, NumberFormat};
+use crate::studies::anatomy::{Anatomy, AnatomyError, Part, Share};
+use crate::toolchain::{self, NumberFormat};
 
 /// What a scene's program has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,8 +43,8 @@ impl Inventory {
     ///
     /// # Errors
     /// Where the program cannot be taken apart.
-    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, BuildError> {
-        let anatomy = built.anatomy()?;
+    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, AnatomyError> {
+        let anatomy = Anatomy::of_file(&built.path)?;
         let part = |part: Part| PartShare { part: part.to_string(), share: anatomy.share(part) };
         Ok(Self {
             scene: program.name,
