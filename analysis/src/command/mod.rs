@@ -44,7 +44,7 @@ use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
 use crate::table::TableError;
 use crate::terminal;
-use crate::toolchain::{BuildError, SetupError};
+use crate::toolchain::{BuildError, SetupError, SourcesError};
 use crate::twin::TwinError;
 use crate::virtual_board::VirtualBoardError;
 
@@ -220,6 +220,9 @@ pub enum CommandError {
     /// The machine cannot build or run programs for the board.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// A scene cannot be begun.
+    #[error(transparent)]
+    Sources(#[from] SourcesError),
     /// A program does not build.
     #[error(transparent)]
     Build(#[from] BuildError),

@@ -10,7 +10,7 @@ use std::process::Command;
 use super::memory::{Memory, NoLength};
 use super::output::last_lines;
 use super::size::{SizeError, Sizes};
-use super::sources::{BadName, Sources};
+use super::sources::{Sources, SourcesError, workspace_root};
 use super::{Board, TARGET};
 
 /// The format that a scene's program computes in.
@@ -44,9 +44,9 @@ impl fmt::Display for NumberFormat {
 /// Why a program could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// The source is not where it was when this program was built.
-    #[error("the workspace is no longer at {0}: run `haptic` from it by `cargo haptic`")]
-    NoWorkspace(PathBuf),
+    /// The source is not what it should be.
+    #[error(transparent)]
+    Sources(#[from] SourcesError),
     /// A file could not be read or written.
     #[error("{path}: {source}")]
     File {
@@ -55,25 +55,6 @@ pub enum BuildError {
         /// Why.
         source: io::Error,
     },
-    /// There is no such scene.
-    #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
-    NoScene {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        scenes: Vec<String>,
-    },
-    /// A new scene cannot have this name.
-    #[error("a scene cannot be called `{name}`: {why}")]
-    Name {
-        /// The name.
-        name: String,
-        /// Why not.
-        why: BadName,
-    },
-    /// A new scene's file is there.
-    #[error("{} is there already; it is left as it is", .0.display())]
-    Exists(PathBuf),
     /// Cargo could not be started.
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
@@ -169,7 +150,7 @@ impl Toolchain {
     /// # Errors
     /// Where the source cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
-        Sources::of(&self.workspace.root).programs()
+        Ok(Sources::of(&self.workspace.root).programs()?)
     }
 
     /// Builds a scene's program for the emulated board, with its log, and gives its file.
@@ -327,7 +308,7 @@ impl Toolchain {
     ) -> Result<Vec<PathBuf>, BuildError> {
         let scenes = self.scenes()?;
         match names.iter().find(|name| !scenes.iter().any(|scene| scene == *name)) {
-            Some(name) => Err(BuildError::NoScene { name: (*name).into(), scenes }),
+            Some(name) => Err(SourcesError::NoScene { name: (*name).into(), scenes }.into()),
             None => self.build(names, variant),
         }
     }
@@ -449,8 +430,7 @@ impl Program {
 impl Workspace {
     /// The workspace that this program was built from.
     pub(super) fn find() -> Result<Self, BuildError> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let root = root.canonicalize().map_err(|_| BuildError::NoWorkspace(root))?;
+        let root = workspace_root()?;
         let target = variable("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
         // Relative to the workspace for cargo's own default, and to where cargo was started
         // otherwise; an absolute path replaces either.

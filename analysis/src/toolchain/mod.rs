@@ -24,7 +24,7 @@ pub use memory::Memory;
 pub use plan::Tools;
 pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
-pub use sources::Sources;
+pub use sources::{Sources, SourcesError};
 pub use version::Version;
 
 /// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.
