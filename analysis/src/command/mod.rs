@@ -32,6 +32,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use firmware::certificate::Rejection;
 use thiserror::Error;
 
+use crate::batch::BatchError;
 use crate::chart::ChartError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
@@ -42,6 +43,8 @@ use crate::quantity::significant;
 use crate::recorded::RecordedError;
 use crate::scenario::ScenarioError;
 use crate::simulation::SimulationError;
+use crate::studies::arithmetic::ArithmeticError;
+use crate::studies::tradeoff::TradeoffError;
 use crate::table::TableError;
 use crate::terminal;
 use crate::toolchain::{BuildError, SetupError, SourcesError};
@@ -205,9 +208,6 @@ pub enum CommandError {
     /// The servo cannot be built of the certified scene.
     #[error(transparent)]
     Servo(#[from] firmware::servo::BuildError),
-    /// An angle does not fit the servo's number format.
-    #[error("the device's angle: {0}")]
-    Angle(#[from] firmware::number::OutOfRange),
     /// A number of the scene does not fit the number format.
     #[error(transparent)]
     Number(#[from] crate::number::DoesNotFit),
@@ -238,17 +238,9 @@ pub enum CommandError {
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// The emulated board computes something else.
-    #[error(
-        "in {format} the torque of the emulated board is not that of this machine at tick {tick}: \
-         its program is of another version"
-    )]
-    Differs {
-        /// The number format.
-        format: &'static str,
-        /// The tick, counted from 0.
-        tick: usize,
-    },
+    /// A number format has no figures; what refuses a scene, or cannot simulate it, says so by itself.
+    #[error(transparent)]
+    Arithmetic(ArithmeticError),
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
     Live(#[from] crate::studies::bench::live::LiveError),
@@ -365,6 +357,36 @@ pub enum CommandError {
     /// The answer could not be written.
     #[error("cannot write the answer: {0}")]
     Output(#[from] io::Error),
+}
+
+impl From<ArithmeticError> for CommandError {
+    fn from(error: ArithmeticError) -> Self {
+        match error {
+            ArithmeticError::Refused(rejection) => Self::Refused(rejection),
+            ArithmeticError::Simulation(error) => Self::Simulation(error),
+            other => Self::Arithmetic(other),
+        }
+    }
+}
+
+impl From<TradeoffError> for CommandError {
+    fn from(error: TradeoffError) -> Self {
+        match error {
+            TradeoffError::Arithmetic(error) => error.into(),
+            TradeoffError::Setup(error) => error.into(),
+            TradeoffError::Build(error) => error.into(),
+            TradeoffError::Emulator(error) => error.into(),
+        }
+    }
+}
+
+impl From<BatchError> for CommandError {
+    fn from(error: BatchError) -> Self {
+        match error {
+            BatchError::File(error) => error.into(),
+            BatchError::Output(error) => error.into(),
+        }
+    }
 }
 
 impl CommandError {

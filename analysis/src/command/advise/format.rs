@@ -145,7 +145,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
 fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
     let ticks = Ticks::kept()?;
     let environment = &motion.subject().scene.environment;
-    Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))
+    Ok(Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
 }
 
 /// With the instructions that this scene takes on the emulated board.

@@ -87,8 +87,8 @@ impl Topic {
 
     fn measure(self) -> Result<Tradeoff, CommandError> {
         match self {
-            Self::Servo => servo::measure(),
-            Self::Sine => sine::measure(),
+            Self::Servo => Ok(servo::measure()?),
+            Self::Sine => Ok(sine::measure()?),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
             Self::Certificate => {
                 let bar = progress::bar(certificate::steps() as u64, "certificate");

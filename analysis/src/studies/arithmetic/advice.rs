@@ -4,8 +4,7 @@ use firmware::certificate::Rest;
 use firmware::number::Arithmetic;
 use serde::{Serialize, Serializer};
 
-use super::{Losses, Motion};
-use crate::command::CommandError;
+use super::{ArithmeticError, Losses, Motion};
 use crate::quantity::significant;
 use crate::verdict::AtRest;
 
@@ -79,14 +78,14 @@ impl Advice {
     pub fn new(
         motion: &Motion,
         figures: &Figures,
-        mut instructions: impl FnMut(Arithmetic) -> Result<f64, CommandError>,
-    ) -> Result<Self, CommandError> {
+        mut instructions: impl FnMut(Arithmetic) -> Result<f64, ArithmeticError>,
+    ) -> Result<Self, ArithmeticError> {
         let mut candidates = Vec::new();
         let mut encoder_hum = None;
         for arithmetic in Arithmetic::ALL {
             let losses = match Losses::of(motion, arithmetic) {
                 Ok(losses) => Ok(losses),
-                Err(error @ (CommandError::Servo(_) | CommandError::Angle(_))) => Err(error),
+                Err(error @ (ArithmeticError::Servo(_) | ArithmeticError::Angle(_))) => Err(error),
                 Err(error) => return Err(error),
             };
             if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
@@ -125,7 +124,7 @@ fn hum(candidate: &Candidate) -> f64 {
 fn candidate(
     arithmetic: Arithmetic,
     instructions: f64,
-    losses: Result<Losses, CommandError>,
+    losses: Result<Losses, ArithmeticError>,
     rest: Option<Rest>,
     figures: &Figures,
 ) -> Candidate {

@@ -3,8 +3,7 @@
 use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
 
-use super::Motion;
-use crate::command::CommandError;
+use super::{ArithmeticError, Motion};
 use crate::emulator::Trials;
 
 /// Instructions of a tick from count to code, on the emulated board.
@@ -25,7 +24,7 @@ pub fn cost(
     board: &mut Trials,
     motion: &Motion,
     arithmetic: Arithmetic,
-) -> Result<Cost, CommandError> {
+) -> Result<Cost, ArithmeticError> {
     let here = motion.torques(arithmetic)?;
     let units = motion.subject().units(arithmetic);
     let (scene, transducers) = motion.subject().scaled(arithmetic);
@@ -38,7 +37,7 @@ pub fn cost(
         bits(torque, code) != bits(there.value * units.torque, there.code)
     });
     if let Some(tick) = differs {
-        return Err(CommandError::Differs { format: arithmetic.name(), tick });
+        return Err(ArithmeticError::Differs { format: arithmetic.name(), tick });
     }
     let instructions = there.iter().map(|output| output.instructions);
     let most = instructions.clone().max().unwrap_or_default();

@@ -3,8 +3,7 @@
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
-use super::{Motion, Offset, Rest, at_rest};
-use crate::command::CommandError;
+use super::{ArithmeticError, Motion, Offset, Rest, at_rest};
 
 /// What a format loses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -24,7 +23,7 @@ impl Losses {
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, CommandError> {
+    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, ArithmeticError> {
         let elsewhere = motion.at(Offset::Rad(1.0));
         Ok(Self {
             error: motion.error(arithmetic)?,

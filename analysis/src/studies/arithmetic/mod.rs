@@ -3,6 +3,7 @@
 
 mod advice;
 mod cost;
+mod error;
 mod friction;
 mod losses;
 mod motion;
@@ -11,6 +12,7 @@ mod units;
 
 pub use advice::{Advice, Candidate, Figures};
 pub use cost::{Cost, cost};
+pub use error::ArithmeticError;
 pub use losses::Losses;
 pub use motion::{Motion, Offset};
 pub use rest::{Rest, at_rest};
@@ -21,7 +23,6 @@ use firmware::number::{Arithmetic, InEach, Number};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
-use crate::command::CommandError;
 use crate::controller::{Controller, controller};
 
 /// Largest angle in rad to each side that a scaled format has to hold, unless it is told: a knob's or
@@ -68,7 +69,7 @@ impl Subject {
     ///
     /// # Errors
     /// Where the scene is refused, or cannot be had in this format.
-    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, CommandError> {
+    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, ArithmeticError> {
         let (scene, transducers) = self.scaled(arithmetic);
         let controller = arithmetic.choose(Build { scene, transducers })?;
         Ok(FormatServo { controller, units: self.units(arithmetic) })
@@ -86,7 +87,7 @@ impl FormatServo {
     ///
     /// # Errors
     /// Where the format does not hold the angle.
-    pub fn tick_at(&mut self, angle: f64) -> Result<f64, CommandError> {
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, ArithmeticError> {
         Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
     }
 }
@@ -98,10 +99,10 @@ struct Build {
 }
 
 impl InEach for Build {
-    type Output = Result<Box<dyn Controller>, CommandError>;
+    type Output = Result<Box<dyn Controller>, ArithmeticError>;
 
     fn with<N: Number>(self) -> Self::Output {
-        let certified = self.scene.certify().map_err(|r| CommandError::Refused(Box::new(r)))?;
+        let certified = self.scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
         Ok(controller::<_, N>(&certified, &self.transducers)?)
     }
 }

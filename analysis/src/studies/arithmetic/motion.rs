@@ -3,8 +3,7 @@
 use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
 
-use super::Subject;
-use crate::command::CommandError;
+use super::{ArithmeticError, Subject};
 use crate::controller::controller;
 use crate::hand::Script;
 use crate::rig::{Alone, SimulatedDevice, run};
@@ -35,11 +34,11 @@ impl Motion {
     ///
     /// # Errors
     /// Where the scene is refused or cannot be simulated.
-    pub fn new(subject: &Subject, script: Script, seconds: f64) -> Result<Self, CommandError> {
+    pub fn new(subject: &Subject, script: Script, seconds: f64) -> Result<Self, ArithmeticError> {
         let Subject { scene, transducers, .. } = *subject;
         let period = scene.timing.period;
         let mut device = SimulatedDevice::new(scene.device, script, period, &transducers)?;
-        let certified = scene.certify().map_err(|r| CommandError::Refused(Box::new(r)))?;
+        let certified = scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;
         let Ok(run) = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
@@ -93,7 +92,7 @@ impl Motion {
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, CommandError> {
+    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, ArithmeticError> {
         let mut servo = self.subject.servo(arithmetic)?;
         Ok(self.counts.iter().map(|&count| servo.tick(count)).collect())
     }
@@ -102,7 +101,7 @@ impl Motion {
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, CommandError> {
+    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, ArithmeticError> {
         let (here, reference) = (self.torques(arithmetic)?, self.torques(Arithmetic::F64)?);
         let pairs = here.iter().zip(&reference).skip(self.begin);
         Ok(pairs.fold(0.0, |most, (here, reference)| (here.0 - reference.0).abs().max(most)))

@@ -5,8 +5,7 @@ use firmware::environment::Environment;
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
-use super::{FormatServo, Subject};
-use crate::command::CommandError;
+use super::{ArithmeticError, FormatServo, Subject};
 use crate::device::{Grip, Hand, Motion, SimulatedEncoder};
 use crate::simulation::held::HeldDevice;
 
@@ -39,7 +38,7 @@ pub fn at_rest(
     subject: &Subject,
     arithmetic: Arithmetic,
     with_encoder: bool,
-) -> Result<Rest, CommandError> {
+) -> Result<Rest, ArithmeticError> {
     let encoder = with_encoder.then(|| SimulatedEncoder::new(subject.transducers.counts_per_turn));
     let scene = &subject.scene;
     let device = HeldDevice::new(scene.device, Hand::default(), scene.timing.period)?;
@@ -78,7 +77,7 @@ struct Settling<'a> {
 
 impl Settling<'_> {
     /// What is left in a window of so many ticks when it has become as little as it will.
-    fn settle(&mut self, ticks: usize) -> Result<Rest, CommandError> {
+    fn settle(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
         let mut last = self.window(ticks)?;
         for _ in 1..WINDOWS {
             let next = self.window(ticks)?;
@@ -90,7 +89,7 @@ impl Settling<'_> {
         Ok(last)
     }
 
-    fn window(&mut self, ticks: usize) -> Result<Rest, CommandError> {
+    fn window(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
         let (mut torques, mut angles) = (Span::EMPTY, Span::EMPTY);
         for _ in 0..ticks {
             let angle = self.motion.position;

@@ -5,6 +5,7 @@
 //! measured, kept as CSV beside the picture that is drawn of it ([`crate::chart::tradeoff`]).
 
 pub mod certificate;
+mod error;
 pub mod rate;
 pub mod servo;
 pub mod simulation;
@@ -15,7 +16,8 @@ use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::command::CommandError;
+pub use error::TradeoffError;
+
 use crate::emulator::Trials;
 use crate::progress;
 use crate::quantity::significant;
@@ -259,7 +261,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 ///
 /// # Errors
 /// Where its program cannot be built or the emulator cannot be started.
-pub fn board() -> Result<Trials, CommandError> {
+pub fn board() -> Result<Trials, TradeoffError> {
     boot("building the trial of the formats", Toolchain::build_trial)
 }
 
@@ -267,14 +269,14 @@ pub fn board() -> Result<Trials, CommandError> {
 ///
 /// # Errors
 /// As of [`board`].
-pub fn any_board() -> Result<Trials, CommandError> {
+pub fn any_board() -> Result<Trials, TradeoffError> {
     boot("building all types of scenes in all formats", Toolchain::build_survey)
 }
 
 fn boot(
     what: &str,
     build: fn(&Toolchain) -> Result<PathBuf, BuildError>,
-) -> Result<Trials, CommandError> {
+) -> Result<Trials, TradeoffError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner(what);

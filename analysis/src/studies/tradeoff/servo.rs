@@ -7,12 +7,11 @@ use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff};
-use crate::command::CommandError;
+use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
 use crate::emulator::Trials;
 use crate::hand::Script;
 use crate::program::{self, Program};
-use crate::studies::arithmetic::{self, HALF_A_TURN, Losses, Motion, cost};
+use crate::studies::arithmetic::{self, ArithmeticError, HALF_A_TURN, Losses, Motion, cost};
 use crate::table::{Column, Table, TableError};
 
 /// What is compared.
@@ -71,7 +70,7 @@ impl Case {
     ///
     /// # Errors
     /// Where the scene cannot be simulated.
-    pub fn motion(&self) -> Result<Motion, CommandError> {
+    pub fn motion(&self) -> Result<Motion, ArithmeticError> {
         Motion::new(&self.subject, self.script.clone(), SECONDS)
     }
 }
@@ -94,7 +93,7 @@ pub fn cases() -> Vec<Case> {
 ///
 /// # Errors
 /// Where the board cannot be built or fails.
-pub fn measure() -> Result<Tradeoff, CommandError> {
+pub fn measure() -> Result<Tradeoff, TradeoffError> {
     let mut board = super::board()?;
     let mut methods = Vec::new();
     for case in cases() {
@@ -121,7 +120,7 @@ fn row(
     motion: &Motion,
     board: &mut Trials,
     arithmetic: Arithmetic,
-) -> Result<Method, CommandError> {
+) -> Result<Method, ArithmeticError> {
     let cost = cost(board, motion, arithmetic)?;
     let Losses { error, error_elsewhere, alone, with_encoder } = Losses::of(motion, arithmetic)?;
     let values = [

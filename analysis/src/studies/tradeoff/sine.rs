@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 use firmware::board::trial::{Output, Trial};
 use firmware::excitation::sines::Sine;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff};
-use crate::command::CommandError;
+use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
 use crate::table::Column;
 
 /// What is compared.
@@ -50,7 +49,7 @@ fn exact(turn: f32) -> f64 {
 ///
 /// # Errors
 /// Where the board cannot be built or fails.
-pub fn measure() -> Result<Tradeoff, CommandError> {
+pub fn measure() -> Result<Tradeoff, TradeoffError> {
     let mut board = super::board()?;
     let inputs: Vec<_> = turns().into_iter().map(f32::to_bits).collect();
     let mut methods = Vec::new();

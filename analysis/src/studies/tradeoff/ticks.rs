@@ -12,10 +12,9 @@ use firmware::number::Arithmetic;
 
 use super::NUMBER;
 use super::servo::Case;
-use crate::command::CommandError;
 use crate::emulator::Trials;
 use crate::program::Program;
-use crate::studies::arithmetic::cost;
+use crate::studies::arithmetic::{ArithmeticError, cost};
 use crate::table::{Column, Table, TableError};
 
 /// Most instructions of a tick from count to code, by type of scene and format.
@@ -46,7 +45,7 @@ impl Ticks {
     ///
     /// # Errors
     /// Where the board fails, or computes something else than this machine.
-    pub fn measure(board: &mut Trials, mut step: impl FnMut()) -> Result<Self, CommandError> {
+    pub fn measure(board: &mut Trials, mut step: impl FnMut()) -> Result<Self, ArithmeticError> {
         let mut rows = Vec::new();
         for case in cases() {
             let motion = case.motion()?;
