@@ -10,8 +10,8 @@ use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
 use crate::emulator::Report;
 use crate::listing::listing;
 use crate::program::{self, Program, damper_wall};

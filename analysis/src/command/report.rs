@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::chart::map;
 use super::common::{Arithmetic, SceneArgument};
-use super::{Answer, CommandError};
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::{Trace, trace};
 use crate::chart::{ChartError, Window};

@@ -9,10 +9,10 @@ use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
 
 use super::words::{Answered, Simulated, message, text};
+use crate::command::answer::{Answer, CommandError};
 use crate::command::common::ForWhom;
-use crate::command::identify::positive;
-use crate::command::run::{scene_file, script_of, transducers_of};
-use crate::command::{Answer, CommandError};
+use crate::command::file_scene::{scene_file, script_of, transducers_of};
+use crate::command::values::positive;
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
+use crate::command::answer::{Answer, CommandError};
 use crate::command::common::{ForWhom, folder};
-use crate::command::{Answer, CommandError};
 use crate::file::{Purpose, load_for};
 use crate::listing::listing;
 use crate::quantity::significant;

@@ -2,9 +2,9 @@
 
 use clap::{Args, ValueEnum};
 
-use super::OutputArguments;
+use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::simulation::method::Method;
 use crate::studies::failures::region::{METHODS, Region};
 

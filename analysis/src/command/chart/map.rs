@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use clap::Args;
 
-use super::{OutputArguments, range};
+use super::output::OutputArguments;
 use crate::chart::map::Overlay;
 use crate::chart::{self, Chart, Data};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::command::common::SceneArgument;
+use crate::command::values::range;
 use crate::file::SceneFile;
 use crate::map::border::closed_form_border;
 use crate::map::{Family, Map, MapError, Region};

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::{Files, OutputArguments, WindowArguments};
+use super::output::{Files, OutputArguments, WindowArguments};
 use crate::chart::trace::{Trace, trace};
 use crate::chart::{Chart, ChartError};
+use crate::command::answer::{Answer, CommandError};
 use crate::command::common::folder;
-use crate::command::{Answer, CommandError};
 use crate::file::{self, Purpose};
 use crate::recorded::{self, RecordedError};
 
@@ -20,10 +20,10 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: String,
     /// Period of the servo in s, for a .csv that counts ticks
-    #[arg(long, value_name = "SECONDS", value_parser = crate::command::identify::positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::command::values::positive)]
     pub period: Option<f64>,
     /// Torque limit in N m to be drawn; of a scene file it is known
-    #[arg(long, value_name = "N M", value_parser = crate::command::identify::positive)]
+    #[arg(long, value_name = "N M", value_parser = crate::command::values::positive)]
     pub torque_limit: Option<f64>,
     /// Title of the picture; otherwise the scene's or the file's name
     #[arg(long)]

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Output};
-use crate::command::{Answer, CommandError};
+use crate::command::answer::{Answer, CommandError};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
