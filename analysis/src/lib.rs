@@ -21,6 +21,7 @@ pub mod mu;
 pub mod controller;
 pub mod device;
 pub mod hand;
+pub mod missed;
 pub mod program;
 pub mod recorded;
 pub mod replay;

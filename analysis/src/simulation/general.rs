@@ -6,12 +6,12 @@ use nalgebra::DVector;
 use super::drive::Drive;
 use super::friction::Rubbing;
 use super::kernel::{DEAD, LOOK};
-use super::missed::Missed;
 use super::plant::{POSITION, VELOCITY};
 use super::rendering::Rendering;
 use super::served::Served;
 use super::tick::Tick;
 use super::{Columns, Experiment, SimulationError, Stride};
+use crate::missed::Missed;
 
 /// A loop in motion.
 #[derive(Debug)]

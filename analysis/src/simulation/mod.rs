@@ -29,7 +29,6 @@ pub mod friction;
 pub mod held;
 pub mod kernel;
 pub mod method;
-pub mod missed;
 pub mod plant;
 pub mod rendering;
 pub mod served;
@@ -48,6 +47,7 @@ use thiserror::Error;
 
 use crate::device::Motion;
 use crate::file::{FileError, SceneFile};
+use crate::missed::Missed;
 use crate::quantity::significant;
 
 use closed::ClosedLoop;
@@ -56,7 +56,6 @@ use general::General;
 pub(crate) use general::Machine;
 use kernel::Linear;
 use method::Method;
-use missed::Missed;
 use plant::Plant;
 use served::Served;
 use tick::{Stepping, Tick};

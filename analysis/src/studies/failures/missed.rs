@@ -6,7 +6,7 @@ use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{KNOB, KNOBS, PERIOD, rigid, trial, wall_of};
 use super::{FailureError, Study};
-use crate::simulation::missed::Missed;
+use crate::missed::Missed;
 
 /// 0.95 of the limit of the nominal period, and of that of the worst one.
 pub fn missed_ticks() -> Result<Study, FailureError> {
