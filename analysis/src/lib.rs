@@ -63,6 +63,7 @@ pub mod progress;
 pub mod quantity;
 pub mod report;
 pub mod terminal;
+pub mod trace;
 
 /// The scene file of the README, as this library reads it.
 ///

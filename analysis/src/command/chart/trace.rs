@@ -5,12 +5,13 @@ use std::path::Path;
 use clap::Args;
 
 use super::output::{Files, OutputArguments, WindowArguments};
-use crate::chart::trace::{Trace, trace};
+use crate::chart::trace::{data, drawable, trace};
 use crate::chart::{Chart, ChartError};
 use crate::command::answer::{Answer, CommandError};
 use crate::command::common::folder;
 use crate::file::{self, Purpose};
 use crate::recorded::{self, RecordedError};
+use crate::trace::Trace;
 
 /// Arguments of `haptic chart trace`.
 #[derive(Debug, Args)]
@@ -38,12 +39,12 @@ pub struct Arguments {
 
 /// Draws the run and writes the picture; no, where it cannot show all of it.
 pub fn run(arguments: &Arguments, files: &Files) -> Result<Answer, CommandError> {
-    let run = load(arguments)?;
+    let run = drawable(load(arguments)?);
     let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });
     match (trace(&run, &arguments.window.window()), left_out) {
         (Err(ChartError::TooFewPoints), Some(left_out)) => Err(left_out),
         (drawn, left_out) => {
-            files.write(Chart { picture: drawn?, data: run.data() })?;
+            files.write(Chart { picture: drawn?, data: data(run) })?;
             left_out.map_or(Ok(Answer::Yes), Err)
         }
     }
