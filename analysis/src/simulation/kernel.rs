@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::Columns;
 use super::closed::ClosedLoop;
 use super::drive::Drive;
 use super::plant::{POSITION, VELOCITY};
 use super::tick::Tick;
+use super::trajectory::Columns;
 
 /// Most states that a loop may have to be run here.
 pub const MOST_STATES: usize = 12;

@@ -6,7 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{Case, STIFFNESS};
+use super::cases::{Case, STIFFNESS};
 use crate::simulation::Stride;
 use crate::simulation::method::{Method, step};
 use crate::simulation::plant::{Input, POSITION};
