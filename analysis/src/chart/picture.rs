@@ -50,11 +50,6 @@ impl Output {
         Ok(Self { path: path.to_owned(), format })
     }
 
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Writes the picture.
     ///
     /// # Errors

@@ -8,9 +8,6 @@ use super::plant::{POSITION, VELOCITY};
 use super::tick::Tick;
 use super::trajectory::Columns;
 
-/// Most states that a loop may have to be run here.
-pub const MOST_STATES: usize = 12;
-
 /// Samples between two looks at whether the motion has died away.
 pub(super) const LOOK: usize = 256;
 

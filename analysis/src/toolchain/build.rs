@@ -140,11 +140,6 @@ impl Toolchain {
         Self { compiler, workspace }
     }
 
-    /// The compiler that builds.
-    pub fn compiler(&self) -> Compiler {
-        self.compiler
-    }
-
     /// Names of the programs, in the alphabet's order.
     ///
     /// # Errors

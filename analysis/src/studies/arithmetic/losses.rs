@@ -3,7 +3,7 @@
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
-use super::{ArithmeticError, Motion, Offset, Rest, at_rest};
+use super::{ArithmeticError, Motion, Rest, at_rest};
 
 /// What a format loses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -24,7 +24,7 @@ impl Losses {
     /// # Errors
     /// Where the scene cannot be had in this format.
     pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, ArithmeticError> {
-        let elsewhere = motion.at(Offset::Rad(1.0));
+        let elsewhere = motion.around(1.0);
         Ok(Self {
             error: motion.error(arithmetic)?,
             error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,

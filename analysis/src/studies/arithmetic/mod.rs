@@ -14,7 +14,7 @@ pub use advice::{Advice, Candidate, Figures};
 pub use cost::{Cost, cost};
 pub use error::ArithmeticError;
 pub use losses::Losses;
-pub use motion::{Motion, Offset};
+pub use motion::Motion;
 pub use rest::{Rest, at_rest};
 pub use units::Units;
 

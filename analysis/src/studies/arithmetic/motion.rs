@@ -17,15 +17,6 @@ pub struct Motion {
     begin: usize,
 }
 
-/// Where a motion is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Offset {
-    /// Around the encoder's zero.
-    None,
-    /// Around the whole count nearest to so many rad, with the wall's face there.
-    Rad(f64),
-}
-
 /// Time in s in which the device is brought to its offset.
 const APPROACH: f64 = 1.0;
 
@@ -51,10 +42,9 @@ impl Motion {
         Self { subject: *subject, counts, begin: 0 }
     }
 
-    /// The same motion elsewhere; `None` where the environment has its rest at zero and nowhere
-    /// else.
-    pub fn at(&self, offset: Offset) -> Option<Self> {
-        let Offset::Rad(angle) = offset else { return Some(self.clone()) };
+    /// The same motion around the whole count nearest to so many rad, with the wall's face there;
+    /// `None` where the environment has its rest at zero and nowhere else.
+    pub fn around(&self, angle: f64) -> Option<Self> {
         let counts_per_radian = self.subject.transducers.counts_per_turn / std::f64::consts::TAU;
         let offset = (angle * counts_per_radian).round();
         let place = offset / counts_per_radian;

@@ -24,8 +24,6 @@ const LONGEST: f64 = 150_000.0;
 /// A wall of one delay.
 #[derive(Clone, Debug)]
 pub struct Wall {
-    /// Delay in samples.
-    pub delay: usize,
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
     /// The hand in which it is worst at 1.01 of that.
@@ -64,7 +62,6 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
     let mut above = held("1.01 of it, in the worst hand", &above, End::Grows);
     above.experiment.friction = 0.0;
     Ok(Wall {
-        delay,
         limit,
         hand,
         below: [

@@ -232,13 +232,6 @@ impl Tradeoff {
         }
         file.flush()
     }
-
-    /// The same with its numbers as they are once it has been written and read again.
-    pub fn rounded(mut self) -> Self {
-        let values = self.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
-        values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
-        self
-    }
 }
 
 /// The shortest time in s that each of some works has taken in so many rounds, in which they take
@@ -344,6 +337,13 @@ mod tests {
         assert!(all.front("another case", 0).is_empty());
     }
 
+    /// A table with its numbers as they are once it has been written and read again.
+    fn rounded(mut all: Tradeoff) -> Tradeoff {
+        let values = all.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
+        values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
+        all
+    }
+
     #[test]
     fn a_table_is_read_as_it_was_written() {
         let mut all = table(&[("one, with a comma", 1.234_567_89e-7, 0.0, f64::INFINITY)]);
@@ -351,7 +351,7 @@ mod tests {
         let mut file = Vec::new();
         all.write(&mut file).unwrap();
         let table = Table::new("kept.csv", &*file).unwrap();
-        assert_eq!(Tradeoff::read(&SUBJECT, table).unwrap(), all.rounded());
+        assert_eq!(Tradeoff::read(&SUBJECT, table).unwrap(), rounded(all));
     }
 
     #[test]

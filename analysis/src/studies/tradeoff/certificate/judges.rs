@@ -58,13 +58,11 @@ pub enum Judge {
 /// Points on the upper half of the circle, with `z / (z - 1)` there.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// Whether the angles are as far apart in their logarithms.
-    pub is_logarithmic: bool,
     points: Vec<(Complex<f64>, Complex<f64>)>,
 }
 
 impl Grid {
-    /// So many points, the last at -1.
+    /// So many points, the last at -1, as far apart in their angles or in the logarithms of these.
     pub fn new(count: usize, is_logarithmic: bool) -> Self {
         let angle = |i: usize| {
             let part = (i + 1) as f64 / count as f64;
@@ -74,7 +72,7 @@ impl Grid {
             let kernel = Complex::new(0.5, -0.5 / (0.5 * angle).tan());
             (Complex::from_polar(1.0, angle), kernel)
         };
-        Self { is_logarithmic, points: (0..count).map(angle).map(point).collect() }
+        Self { points: (0..count).map(angle).map(point).collect() }
     }
 
     /// Number of points.
