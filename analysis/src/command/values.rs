@@ -16,9 +16,9 @@ pub fn positive(text: &str) -> Result<f64, String> {
     bounded(text, "a number greater than 0", |value| value > 0.0)
 }
 
-/// A number of seconds, 0 or more.
+/// A number, 0 or more.
 pub fn not_negative(text: &str) -> Result<f64, String> {
-    bounded(text, "a number of seconds, 0 or more", |value| value >= 0.0)
+    bounded(text, "a number, 0 or more", |value| value >= 0.0)
 }
 
 /// A time on the command line.
