@@ -5,11 +5,11 @@ use firmware::number::{Arithmetic, Format};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
+use super::case::{FailureError, Study};
 use super::claim::Claim;
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, trial, wall_of};
 use super::trial::Trial;
-use super::{FailureError, Study};
 use crate::simulation::drive::Drive;
 use crate::simulation::{Experiment, Stride};
 

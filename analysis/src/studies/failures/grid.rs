@@ -6,10 +6,10 @@ use firmware::certificate::Loop;
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::Scene;
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial};
-use super::{FailureError, Study};
 use crate::device::Hand;
 use crate::response::Response;
 use crate::simulation::{Experiment, SimulationError, Stride};

@@ -2,10 +2,10 @@
 
 use firmware::servo::Transducers;
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{KNOB, KNOBS, coupled, rigid, trial, wall_of};
-use super::{FailureError, Study};
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Stride};

@@ -2,10 +2,10 @@
 
 use firmware::scene::{Scene, Timing};
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{KNOB, KNOBS, PERIOD, rigid, trial, wall_of};
-use super::{FailureError, Study};
 use crate::missed::Missed;
 
 /// 0.95 of the limit of the nominal period, and of that of the worst one.

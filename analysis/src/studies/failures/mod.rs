@@ -5,6 +5,7 @@
 //! and something that does not err on it; the loop is then run, in simulation and with the emulated
 //! board as its servo.
 
+mod case;
 pub mod claim;
 pub mod converters;
 pub mod fate;
@@ -22,68 +23,7 @@ pub mod trial;
 pub mod walls;
 pub mod zigzag;
 
-use thiserror::Error;
-
-use claim::Claim;
-use trial::{Trial, TrialError};
-
-use crate::chain::ChainError;
-use crate::simulation::SimulationError;
-
-/// Why a case has no answers.
-#[derive(Debug, Error)]
-pub enum FailureError {
-    /// A loop cannot be simulated.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// A loop cannot be run.
-    #[error(transparent)]
-    Trial(#[from] TrialError),
-    /// There is no such device.
-    #[error(transparent)]
-    Chain(#[from] ChainError),
-    /// A wall has no largest stiffness.
-    #[error("the certificate knows no largest stiffness of this wall")]
-    NoLimit,
-}
-
-/// A question about one loop.
-#[derive(Clone, Copy, Debug)]
-pub struct Case {
-    /// Its name on the command line.
-    pub name: &'static str,
-    /// What is asked, in a few words.
-    pub question: &'static str,
-    study: fn() -> Result<Study, FailureError>,
-}
-
-/// What was said, and what is so.
-#[derive(Clone, Debug)]
-pub struct Study {
-    /// The methods that others use.
-    pub claims: Vec<Claim>,
-    /// The certificate.
-    pub certificate: Claim,
-    /// What does not err on this loop.
-    pub truth: Claim,
-    /// Loops that show it: the one in question, then one that the certificate allows.
-    pub trials: Vec<Trial>,
-}
-
-impl Case {
-    /// Asks everybody.
-    ///
-    /// # Errors
-    /// Where the loop cannot be had.
-    pub fn study(&self) -> Result<Study, FailureError> {
-        (self.study)()
-    }
-
-    /// The case of that name.
-    pub fn find(name: &str) -> Option<&'static Self> {
-        ALL.iter().find(|case| case.name == name)
-    }
-}
+pub use case::{Case, FailureError, Study};
 
 macro_rules! cases {
     ($($name:literal, $question:literal, $study:path;)*) => {
@@ -108,4 +48,11 @@ cases! {
     "encoder", "the paper's wall behind an encoder", converters::encoder;
     "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
     "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
+}
+
+impl Case {
+    /// The case of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|case| case.name == name)
+    }
 }

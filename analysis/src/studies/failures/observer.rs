@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial, wall_of};
 use super::trial::Trial;
-use super::{FailureError, Study};
 use crate::simulation::SimulationError;
 use crate::simulation::drive::Drive;
 use crate::simulation::rendering::Rendering;

@@ -1,6 +1,6 @@
 //! Up to which stiffness a method calls a spring stable, over the steps that it takes in a tick.
 
-use super::FailureError;
+use super::case::FailureError;
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::method::Method;
 use crate::simulation::{Experiment, Stride};

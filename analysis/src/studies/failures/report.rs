@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
+use super::case::{Case, FailureError};
 use super::claim::{Claim, Failure};
 use super::fate::{End, Fate};
 use super::trial::{Played, Trial};
 use super::walls::{DELAYS, wall};
-use super::{Case, FailureError};
 use crate::emulator::Player;
 use crate::worst_hand::Held;
 

@@ -4,9 +4,9 @@ use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::Scene;
 use nalgebra::{Complex, DMatrix};
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::setting::{PADDLE, rigid};
-use super::{FailureError, Study};
 use crate::stability::{eigenvalues, radius};
 
 /// Distance of the pole from the circle: 2^-20, so that every coefficient is a double.

@@ -6,13 +6,13 @@ use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::{Device, Scene};
 use nalgebra::Complex;
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{
     KNOB, KNOBS, PADDLE, PADDLES, PERIOD, coupled, friction_for_rest, rigid, trial, wall_of,
 };
 use super::trial::Trial;
-use super::{FailureError, Study};
 use crate::limits::{Limit, largest_stiffness};
 use crate::response::Response;
 use crate::simulation::closed::transfers;

@@ -5,7 +5,7 @@
 
 use firmware::scene::Scene;
 
-use super::FailureError;
+use super::case::FailureError;
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, rigid, trial, wall_of};
 use super::trial::Trial;

@@ -8,10 +8,10 @@ use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
 
+use super::case::{FailureError, Study};
 use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, encoder_friction, rigid, trial, wall_of};
-use super::{FailureError, Study};
 use crate::simulation::SimulationError;
 use crate::simulation::rendering::Rendering;
 
