@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::served::Served;
 
 /// Samples at the instants of the ticks, all of them finite: a motion that grows beyond the range
-/// of numbers ends before it does ([`Experiment::completed`]).
+/// of numbers ends before it does ([`Experiment::completed`](super::Experiment::completed)).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trajectory {
     /// Position of the encoder's mass in rad.
