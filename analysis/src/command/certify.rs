@@ -4,8 +4,8 @@ use std::io;
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::{Arithmetic, ForWhom, SceneArgument};
-use super::{Answer, CommandError};
 use crate::batch;
 use crate::quantity::significant;
 use crate::terminal;

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument};
-use super::{Answer, CommandError};
 use crate::quantity::significant;
 use crate::worst_hand::{Search, search};
 

@@ -3,8 +3,9 @@
 use nalgebra::{Complex, Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::error::IdentifyError;
 use super::response::{Response, images};
-use super::{IdentifyError, LeftOut};
+use super::step::LeftOut;
 use crate::quantity::significant;
 
 /// Passes between the fit and the images: each gains the square of what the images do.

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use analysis::arithmetic::{Motion, cost};
-use analysis::bench::live::live_set;
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
+use analysis::studies::arithmetic::{Motion, cost};
+use analysis::studies::bench::live::live_set;
+use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
-use analysis::tradeoff::{servo, sine};
 use firmware::board::question::{Ends, Reply};
 use firmware::board::trial::Trial;
 use firmware::certificate::{Certified, Parameter, assess};

@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
+use super::values::{bounded, not_negative, positive};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::link::Address;
 use crate::quantity::significant;
@@ -300,19 +301,6 @@ fn points(found: &Identification) -> String {
     format!("{table}\n")
 }
 
-fn number(text: &str, bound: &str, admits: impl Fn(f64) -> bool) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|&value: &f64| value.is_finite() && admits(value));
-    value.ok_or_else(|| format!("it must be {bound}"))
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    number(text, "a number greater than 0", |value| value > 0.0)
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    number(text, "a number, 0 or more", |value| value >= 0.0)
-}
-
 fn part(text: &str) -> Result<f64, String> {
-    number(text, "a number from 0 to 0.9", |value| (0.0..=0.9).contains(&value))
+    bounded(text, "a number from 0 to 0.9", |value| (0.0..=0.9).contains(&value))
 }

@@ -1,8 +1,8 @@
 //! Ticks of the scenes that have a program, in every number format.
 
-use analysis::arithmetic::{Motion, Subject, Units};
 use analysis::emulator::Trials;
-use analysis::tradeoff::servo;
+use analysis::studies::arithmetic::{Motion, Subject, Units};
+use analysis::studies::tradeoff::servo;
 use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
 use rand::SeedableRng;
