@@ -8,13 +8,8 @@
 
 pub mod input_filter;
 pub mod period;
-pub mod play;
-pub mod question;
 pub mod report;
 pub mod shown;
-#[cfg(feature = "sines")]
-pub mod trial;
-pub mod words;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]

@@ -37,8 +37,6 @@ mod error;
 mod exciter;
 mod guard;
 pub mod sine;
-#[cfg(feature = "sines")]
-pub mod sines;
 
 use core::fmt;
 

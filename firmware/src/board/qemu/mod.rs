@@ -8,8 +8,6 @@
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
 
-#[cfg(feature = "log")]
-pub mod judge;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -19,8 +17,6 @@ pub mod meter;
 pub mod pace;
 #[cfg(feature = "log")]
 mod parts;
-#[cfg(feature = "log")]
-pub mod player;
 pub mod registers;
 pub mod serial;
 #[cfg(feature = "log")]
@@ -29,8 +25,6 @@ mod start;
 pub(super) mod stop;
 mod sweep;
 pub mod tick;
-#[cfg(feature = "log")]
-pub mod trial;
 
 pub use start::{Places, run};
 pub use sweep::{SweepPlace, measure};
@@ -39,9 +33,9 @@ pub use sweep::{SweepPlace, measure};
 pub type Mode = crate::servo::Simultaneous;
 
 /// Exit status of a run that the host ended.
-const EXIT_DONE: i32 = 0;
+pub const EXIT_DONE: i32 = 0;
 /// Exit status of a program that could not start; the log says why.
-const EXIT_REFUSED: i32 = 1;
+pub const EXIT_REFUSED: i32 = 1;
 
 /// The host has ended the run; where there is a log, that is finished first.
 fn ended() {

@@ -3,8 +3,8 @@
 use analysis::arithmetic::{Motion, Subject, Units};
 use analysis::emulator::Trials;
 use analysis::tradeoff::servo;
-use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
+use firmware_harness::trial::Trial;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
