@@ -42,6 +42,7 @@ pub mod scope;
 pub mod twin;
 
 // What scenes would do, certified or not, and how far one may go.
+pub mod closed_form;
 pub mod design;
 pub mod failures;
 pub mod limits;

@@ -5,11 +5,11 @@
 //! positive real in `s` exactly if its image is in `z`, with the conditions on boundary poles
 //! carried over; so the discrete test answers the continuous question, with the same enclosure.
 
-use super::discrete::{RealPart, input_passivity};
-use super::interval::Interval;
-use super::poles::{Doubt, Obstacle};
-use super::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
-use super::transfer::Transfer;
+use firmware::passivity::discrete::{RealPart, input_passivity};
+use firmware::passivity::interval::Interval;
+use firmware::passivity::poles::{Doubt, Obstacle};
+use firmware::passivity::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
+use firmware::passivity::transfer::Transfer;
 
 /// `G(s) = s^zeros numerator(s) / denominator(s)`; coefficients in descending powers of `s`.
 ///
