@@ -4,12 +4,12 @@
 
 use core::hint::black_box;
 
-use crate::board::period;
 use crate::cycle::{Arming, Cycle, Hardware, Options, Reason, Requests};
 use crate::dac::DacCode;
 use crate::environment::Renderable;
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
+use crate::period;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{

@@ -11,9 +11,9 @@
 //! and that gain is known before the servo starts. The environment is always asked for the value
 //! at `x`, never for an intercept: near the state where it rests no large numbers cancel.
 
+use crate::build_error::BuildError;
 use crate::number::{Number, Rounding};
 use crate::scene::Coupling;
-use crate::servo::BuildError;
 
 /// What an environment offers to the coupling in one tick.
 #[derive(Clone, Copy, Debug)]

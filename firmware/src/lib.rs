@@ -35,7 +35,10 @@ pub mod passivity;
 pub mod scene;
 pub mod servo;
 
+// What the modules above share.
+pub mod build_error;
 pub mod number;
+pub mod period;
 pub mod text;
 
 // What a board says to its host, and what it hears.

@@ -7,7 +7,6 @@
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
 pub mod input_filter;
-pub mod period;
 pub mod report;
 pub mod shown;
 

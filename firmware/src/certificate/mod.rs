@@ -47,11 +47,13 @@ pub use assumption::{Assumption, Assumptions, Standing};
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
-pub use rejection::{Rejection, Sentence};
+pub use rejection::Rejection;
 pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
 pub use rules::{Answer, Assessment, Rule, assess, assess_in, gamma};
 pub use timed::{Timed, TimingError};
+
+pub use crate::text::Sentence;
 
 use crate::environment::*;
 use crate::number::Format;

@@ -6,9 +6,9 @@ use super::law::{Law, Renderable, Setting};
 use super::rational::{Rational, RationalLaw};
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
+use crate::build_error::BuildError;
 use crate::coupling::{Offer, Slopes};
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// A spring with an optional damper, as data.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! What every environment is to the servo: an affine law, whose state advances once a tick.
 
+use crate::build_error::BuildError;
 use crate::coupling::{Offer, Slopes};
 use crate::number::Number;
 use crate::scene::{Coupling, Scene};
-use crate::servo::BuildError;
 
 /// The difference equation of an environment, at rest at zero to begin with.
 pub trait Law<N: Number> {

@@ -1,13 +1,12 @@
 //! One tick: encoder count in, converter code out.
 
-mod build_error;
 mod clamp;
 mod mode;
 mod render_error;
 mod rendering;
 mod transducers;
 
-pub use build_error::BuildError;
+pub use crate::build_error::BuildError;
 pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
 pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};

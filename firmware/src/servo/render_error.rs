@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::BuildError;
+use crate::build_error::BuildError;
 use crate::certificate::{Rejection, TimingError};
 use crate::tuning::TuningError;
 

@@ -3,7 +3,8 @@
 use core::hint::cold_path;
 use core::marker::PhantomData;
 
-use super::{BuildError, Output, OutputMode, Renders, Servo, Transducers};
+use super::{Output, OutputMode, Renders, Servo, Transducers};
+use crate::build_error::BuildError;
 use crate::certificate::Timed;
 use crate::cycle::READ_WITHIN;
 use crate::encoder::RawCount;

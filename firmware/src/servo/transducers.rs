@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::BuildError;
+use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
 use crate::number::Number;
