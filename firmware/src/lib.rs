@@ -20,6 +20,9 @@ pub mod torque;
 
 pub mod dac;
 
+// Sensor and motor, as a servo is told of them.
+pub mod transducers;
+
 // What a device is measured with, before anything is certified for it.
 pub mod excitation;
 
@@ -38,6 +41,7 @@ pub mod servo;
 // What the modules above share.
 pub mod build_error;
 pub mod number;
+pub mod output_timing;
 pub mod period;
 pub mod text;
 

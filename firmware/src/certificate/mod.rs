@@ -57,8 +57,9 @@ pub use crate::text::Sentence;
 
 use crate::environment::*;
 use crate::number::Format;
+use crate::output_timing::OutputMode;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders, Step};
+use crate::servo::Step;
 use rules::{Extent, assessed};
 
 /// A scene that was proved passive.

@@ -23,8 +23,8 @@ use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
-use crate::servo::Transducers;
 use crate::text::{AtMost, Written};
+use crate::transducers::Transducers;
 
 /// What a device is besides the numbers of a scene, as far as it was stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

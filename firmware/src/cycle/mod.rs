@@ -22,19 +22,22 @@ mod trouble;
 
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
-pub use hardware::{BEGAN_LATE, Hardware, READ_WITHIN};
+pub use hardware::{BEGAN_LATE, Hardware};
 pub use in_time::{InTime, Lines};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use state::{Notice, State, Status};
 pub use swap::longest_gap;
 
+pub use crate::output_timing::READ_WITHIN;
+
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
 use crate::environment::Renderable;
 use crate::fault::Fault;
 use crate::number::Number;
-use crate::servo::{OutputMode, Pace, Rendering};
+use crate::output_timing::OutputMode;
+use crate::servo::{Pace, Rendering};
 use crate::torque::LimitReason;
 use trouble::Late;
 

@@ -5,7 +5,7 @@ use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
-use crate::servo::OutputTiming;
+use crate::output_timing::OutputTiming;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;

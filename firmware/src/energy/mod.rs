@@ -14,7 +14,7 @@ use crate::build_error::BuildError;
 use crate::coupling::Offer;
 use crate::dac::DacCode;
 use crate::number::Number;
-use crate::servo::{OutputMode, OutputTiming};
+use crate::output_timing::{OutputMode, OutputTiming};
 
 /// Observes passivity, one tick at a time.
 #[derive(Clone, Copy, Debug, Default)]

@@ -46,7 +46,7 @@ pub use exciter::{Excitation, Exciter};
 pub use guard::{Guard, MotionLimits};
 
 use crate::dac::DacCode;
-use crate::servo::Transducers;
+use crate::transducers::Transducers;
 
 /// Fewest periods that are measured of a tone.
 pub const LEAST_PERIODS: u32 = 4;

@@ -1,16 +1,16 @@
 //! One tick: encoder count in, converter code out.
 
 mod clamp;
-mod mode;
 mod render_error;
 mod rendering;
-mod transducers;
 
-pub use crate::build_error::BuildError;
-pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
 pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};
-pub use transducers::Transducers;
+
+pub use crate::build_error::BuildError;
+pub use crate::environment::{Delayed, Renders};
+pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
+pub use crate::transducers::Transducers;
 
 use crate::certificate::Certified;
 use crate::coupling::{Offer, Solver};

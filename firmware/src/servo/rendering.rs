@@ -3,15 +3,16 @@
 use core::hint::cold_path;
 use core::marker::PhantomData;
 
-use super::{Output, OutputMode, Renders, Servo, Transducers};
+use super::{Output, Servo};
 use crate::build_error::BuildError;
 use crate::certificate::Timed;
-use crate::cycle::READ_WITHIN;
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
-use crate::environment::Renderable;
+use crate::environment::{Renderable, Renders};
 use crate::number::Number;
+use crate::output_timing::{OutputMode, READ_WITHIN};
 use crate::scene::{Scene, Timing};
+use crate::transducers::Transducers;
 use crate::tuning::Tunable;
 
 /// What is not of the scene, but of how it is rendered.

@@ -14,12 +14,12 @@ pub use values::Values;
 use core::fmt;
 
 use crate::certificate::Parameter;
-use crate::environment::Renderable;
+use crate::environment::{Renderable, Renders};
 use crate::number::Number;
+use crate::output_timing::OutputMode;
 use crate::scene::{Coupling, Scene};
-use crate::servo::{
-    OutputMode, RenderError, Rendering, RenderingOptions, Renders, Step, Transducers,
-};
+use crate::servo::{RenderError, Rendering, RenderingOptions, Step};
+use crate::transducers::Transducers;
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///

@@ -5,8 +5,9 @@ use super::Values;
 use crate::certificate::{Certified, Rejection, Timed, TimingError};
 use crate::environment::*;
 use crate::number::Number;
+use crate::output_timing::OutputMode;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders, Step};
+use crate::servo::Step;
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
 pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {

@@ -11,11 +11,11 @@ use super::model::{Missed, Numbers, largest_solved, nonlinear_bound};
 use super::parameter::first_invalid;
 use super::rules::paper_limit;
 use super::rules::{Assessment, Rule};
-use crate::cycle::READ_WITHIN;
 use crate::number::Format;
+use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, OutputTiming, Simultaneous, Step};
+use crate::servo::Step;
 use crate::text::Sentence;
 
 /// A certified scene that agrees with the mode `M` in which a board puts its torques out.

@@ -64,7 +64,7 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/wire/description.rs", "Description"),
         ("firmware/src/scene.rs", "Scene"),
         ("firmware/src/environment/any.rs", "Wall"),
-        ("firmware/src/servo/transducers.rs", "Transducers"),
+        ("firmware/src/transducers.rs", "Transducers"),
         ("firmware/src/servo/rendering.rs", "RenderingOptions"),
         ("firmware/src/wire/telemetry.rs", "Packed"),
     ] {
@@ -91,7 +91,7 @@ fn every_variant_is_there_with_its_number() {
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
         ("firmware/src/servo/render_error.rs", "Step", "### Step", None),
         ("firmware/src/number/mod.rs", "Format", "### Format", None),
-        ("firmware/src/servo/mode.rs", "OutputTiming", "### OutputTiming", None),
+        ("firmware/src/output_timing.rs", "OutputTiming", "### OutputTiming", None),
         ("firmware/src/cycle/state.rs", "State", "### State", None),
         ("firmware/src/reset.rs", "ResetCause", "### ResetCause", None),
         ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),
