@@ -14,7 +14,8 @@ use crate::output_timing::OutputMode;
 use crate::period;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
-use crate::servo::{Rendering, RenderingOptions, Step};
+use crate::servo::{Rendering, RenderingOptions};
+use crate::step::Step;
 use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
 

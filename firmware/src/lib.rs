@@ -43,6 +43,7 @@ pub mod build_error;
 pub mod number;
 pub mod output_timing;
 pub mod period;
+pub mod step;
 pub mod text;
 
 // What a board says to its host, and what it hears.

@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 use firmware::boot::{self, Program};
 use firmware::cycle::{FrameQueue, InTime, Mailbox};
 use firmware::number::Number;
-use firmware::servo::{OutputMode, RenderError, Renders, Step};
-use firmware::tuning::{self, Tunable};
+use firmware::servo::{OutputMode, Renders, Step};
+use firmware::tuning::{self, RenderError, Tunable};
 use firmware::wire::{Facts, Session};
 
 use self::board::Board;

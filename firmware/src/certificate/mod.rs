@@ -30,6 +30,7 @@
 
 mod assumption;
 mod between;
+mod certify_scene;
 mod digits;
 mod margin;
 mod model;
@@ -44,6 +45,7 @@ mod timed;
 mod varied;
 
 pub use assumption::{Assumption, Assumptions, Standing};
+pub use certify_scene::CertifyScene;
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
@@ -59,7 +61,7 @@ use crate::environment::*;
 use crate::number::Format;
 use crate::output_timing::OutputMode;
 use crate::scene::Scene;
-use crate::servo::Step;
+use crate::step::Step;
 use rules::{Extent, assessed};
 
 /// A scene that was proved passive.

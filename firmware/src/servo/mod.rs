@@ -1,18 +1,17 @@
 //! One tick: encoder count in, converter code out.
 
 mod clamp;
-mod render_error;
 mod rendering;
 
-pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};
 
 pub use crate::build_error::BuildError;
 pub use crate::environment::{Delayed, Renders};
 pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
+pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
-use crate::certificate::Certified;
+use crate::certificate::{Certified, CertifyScene};
 use crate::coupling::{Offer, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
@@ -21,7 +20,6 @@ use crate::environment::{Law, Renderable, Setting};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
-use crate::tuning::Tunable;
 
 /// What a tick gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +68,7 @@ pub struct Servo<E: Renderable<N>, N: Number> {
     radians_per_count: f64,
 }
 
-impl<E: Tunable<N>, N: Number> Servo<E, N> {
+impl<E: CertifyScene<N>, N: Number> Servo<E, N> {
     /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
     /// this number format's, such as the scene's as it was written, is taken again.
     ///

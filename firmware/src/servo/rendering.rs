@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 
 use super::{Output, Servo};
 use crate::build_error::BuildError;
-use crate::certificate::Timed;
+use crate::certificate::{CertifyScene, Timed};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::{Renderable, Renders};
@@ -13,7 +13,6 @@ use crate::number::Number;
 use crate::output_timing::{OutputMode, READ_WITHIN};
 use crate::scene::{Scene, Timing};
 use crate::transducers::Transducers;
-use crate::tuning::Tunable;
 
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +81,7 @@ pub struct Pace {
     span: u32,
 }
 
-impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
+impl<E: CertifyScene<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
     /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
     /// coefficients than this number format's, such as the scene's as it was written, is taken
     /// again.

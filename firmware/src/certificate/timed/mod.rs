@@ -15,7 +15,7 @@ use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
-use crate::servo::Step;
+use crate::step::Step;
 use crate::text::Sentence;
 
 /// A certified scene that agrees with the mode `M` in which a board puts its torques out.

@@ -89,7 +89,7 @@ fn every_variant_is_there_with_its_number() {
         (MESSAGES, "ToHost", "## To the host", Some(2)),
         (MESSAGES, "Outcome", "### Outcome", None),
         (MESSAGES, "Refusal", "### Refusal", Some(2)),
-        ("firmware/src/servo/render_error.rs", "Step", "### Step", None),
+        ("firmware/src/step.rs", "Step", "### Step", None),
         ("firmware/src/number/mod.rs", "Format", "### Format", None),
         ("firmware/src/output_timing.rs", "OutputTiming", "### OutputTiming", None),
         ("firmware/src/cycle/state.rs", "State", "### State", None),
