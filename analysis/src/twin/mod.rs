@@ -14,8 +14,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use firmware::board::in_time::InTime;
 use firmware::boot::{self, Program};
-use firmware::cycle::{FrameQueue, InTime, Mailbox};
+use firmware::cycle::{FrameQueue, Mailbox};
 use firmware::number::Number;
 use firmware::servo::{OutputMode, Renders, Step};
 use firmware::tuning::{self, RenderError, Tunable};

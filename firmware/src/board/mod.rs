@@ -6,6 +6,7 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod in_time;
 pub mod input_filter;
 pub mod report;
 pub mod shown;

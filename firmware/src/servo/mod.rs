@@ -16,7 +16,7 @@ use crate::coupling::{Offer, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Law, Renderable, Setting};
+use crate::environment::{Law, Renderable};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -88,7 +88,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let law = scene.environment.law(&Setting::of(scene)?)?;
+        let law = scene.environment.law(&scene.setting()?)?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)
