@@ -8,6 +8,7 @@
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
 
+mod exit;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -26,16 +27,12 @@ pub(super) mod stop;
 mod sweep;
 pub mod tick;
 
+pub use exit::{EXIT_DONE, EXIT_REFUSED};
 pub use start::{Places, run};
 pub use sweep::{SweepPlace, measure};
 
 /// When a torque reaches the motor: at the instant of its count, as the simulation has it.
 pub type Mode = crate::servo::Simultaneous;
-
-/// Exit status of a run that the host ended.
-pub const EXIT_DONE: i32 = 0;
-/// Exit status of a program that could not start; the log says why.
-pub const EXIT_REFUSED: i32 = 1;
 
 /// The host has ended the run; where there is a log, that is finished first.
 fn ended() {
