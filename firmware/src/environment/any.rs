@@ -58,6 +58,16 @@ pub enum Environment {
 }
 
 impl Environment {
+    /// The wall, if it has one.
+    pub(crate) const fn wall(&self) -> Option<&Wall> {
+        match self {
+            Self::DelayedSpring(wall)
+            | Self::DamperWall(wall)
+            | Self::FreeModeWall { wall, .. } => Some(wall),
+            Self::FreeMode { .. } | Self::Rational(_) => None,
+        }
+    }
+
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
     /// only such an environment can be rendered where a torque is latched by the next count.
     pub const fn is_late(&self) -> bool {

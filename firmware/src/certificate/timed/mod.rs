@@ -6,11 +6,11 @@ use core::marker::PhantomData;
 
 #[cfg(doc)]
 use super::Certified;
+use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{Missed, Numbers, largest_solved, nonlinear_bound};
 use super::parameter::first_invalid;
-use super::rules::paper_limit;
-use super::rules::{Assessment, Rule};
+use super::rules::{Rule, paper_limit};
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
 use crate::passivity::interval::Interval;
