@@ -36,14 +36,16 @@ pub enum BadName {
 const LONGEST: usize = 32;
 
 /// What else a scene's module or program could be mistaken for: words of the language, crates that a
-/// scene's file uses, the programs and tests of the firmware, and cargo's own folders.
-const TAKEN: [&str; 59] = [
+/// scene's file uses, the programs and tests of the workspace, and cargo's own folders.
+const TAKEN: &[&str] = &[
     "abstract",
+    "adversary",
     "analysis",
     "as",
     "async",
     "await",
     "become",
+    "board",
     "box",
     "break",
     "build",
@@ -68,6 +70,8 @@ const TAKEN: [&str; 59] = [
     "fn",
     "for",
     "gen",
+    "haptic",
+    "harness",
     "if",
     "impl",
     "in",
@@ -83,15 +87,32 @@ const TAKEN: [&str; 59] = [
     "mut",
     "on_target",
     "override",
+    "paddle",
     "player",
+    "priv",
     "program",
+    "pub",
+    "raw",
     "ref",
+    "refusals",
+    "return",
+    "safe",
+    "self",
+    "static",
     "std",
+    "struct",
+    "super",
     "survey",
     "test",
+    "tests",
+    "trait",
     "trial",
     "try",
     "type",
+    "typeof",
+    "union",
+    "unsafe",
+    "unsized",
     "use",
     "virtual",
     "where",
@@ -169,6 +190,7 @@ impl Sources {
         let head = format!("//! The scene {name}, begun as a copy of {from}.");
         let text: String =
             std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
+        let text = on_own_device(&text);
         // Never over a file that is there, however it got there meanwhile.
         match File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())) {
             Ok(()) => Ok(path),
@@ -178,6 +200,12 @@ impl Sources {
             Err(source) => Err(failed(&path, source)),
         }
     }
+}
+
+/// The text of a scene that came with the project, with the device of whoever goes on with it: that is
+/// what the new scene is to be certified against.
+fn on_own_device(text: &str) -> String {
+    text.replace("mod paddle;", "mod device;").replace("paddle::", "device::")
 }
 
 /// Whether a scene may be called that.

@@ -1,5 +1,5 @@
-//! What the host is still to be told. Of each kind there is a fixed number: asking faster than the
-//! wire can answer costs answers, not memory.
+//! Replies to the host that are not sent yet. Of each kind there is a fixed number: a host that asks
+//! faster than the wire can carry loses replies, and no memory is taken.
 
 use heapless::Deque;
 
@@ -7,20 +7,20 @@ use crate::cycle::Status;
 use crate::fault::Fault;
 use crate::wire::message::{Id, Outcome, Refusal};
 
-/// Answers that wait.
+/// Most answers that are kept; the oldest goes first.
 const ANSWERS: usize = 4;
 
-/// What the host is still to be told.
+/// Replies to the host that are not sent yet.
 #[derive(Default)]
-pub(super) struct Owed {
+pub(super) struct PendingReplies {
     greeting: Option<Greeting>,
-    /// Which numbers run.
-    pub running: bool,
-    /// What exactly runs.
+    /// The values of the active parameters were requested.
+    pub parameters: bool,
+    /// The description of the active scene was requested.
     pub description: bool,
-    /// How it is going.
+    /// The servo's status, which was requested.
     pub status: Option<Status>,
-    /// Who asked for the amplifier to be switched on or off, where the servo has not said yet.
+    /// The request to switch the amplifier on (`true`) or off that the servo has not confirmed yet.
     switching: Option<(Id, bool)>,
     answers: Deque<(Id, Outcome), ANSWERS>,
 }
@@ -33,8 +33,8 @@ pub(super) enum Greeting {
     Board,
 }
 
-impl Owed {
-    /// Owes a greeting, from its beginning.
+impl PendingReplies {
+    /// Starts the greeting from its beginning.
     pub(super) const fn greet(&mut self) {
         self.greeting = Some(Greeting::Welcome);
     }
@@ -50,8 +50,8 @@ impl Owed {
         Some(part)
     }
 
-    /// Somebody asked for the amplifier to be switched on. Gives whether the servo may be asked:
-    /// not while it is to be switched off.
+    /// Records a request to switch the amplifier on. Returns whether the servo may be asked: not while a
+    /// request to switch it off is pending.
     pub(super) fn arm(&mut self, id: Id) -> bool {
         if let Some((_, false)) = self.switching {
             self.refuse(id, Refusal::Disarming);
@@ -61,7 +61,7 @@ impl Owed {
         true
     }
 
-    /// Somebody asked for the amplifier to be switched off, which is never refused.
+    /// Records a request to switch the amplifier off, which is never refused.
     pub(super) fn disarm(&mut self, id: Id) {
         if let Some((before, true)) = self.switching.replace((id, false)) {
             self.refuse(before, Refusal::Disarming);
@@ -101,7 +101,7 @@ impl Owed {
 
     fn answer(&mut self, id: Id, outcome: Outcome) {
         if self.answers.is_full() {
-            // Whoever asked so long ago has stopped waiting.
+            // The oldest request has timed out at the host.
             let _ = self.answers.pop_front();
         }
         let _ = self.answers.push_back((id, outcome));
