@@ -37,7 +37,6 @@ use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::servo::{Pace, Rendering};
 use crate::torque::LimitReason;
-use trouble::Late;
 
 /// What becomes of the servo once its clamp is shut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +47,13 @@ enum Goal {
     Release,
     /// The amplifier goes off because of this.
     Stop(Fault),
+}
+
+/// The last tick that began late, and by what part of a period.
+#[derive(Clone, Copy, Debug, Default)]
+struct Late {
+    tick: u32,
+    part: f32,
 }
 
 /// The servo on a board: its rendering, what it is doing, and what it watches.

@@ -28,19 +28,8 @@ mod sweep;
 pub mod tick;
 
 pub use exit::{EXIT_DONE, EXIT_REFUSED};
-pub use start::{Places, run};
+pub use start::{Mode, Places, run};
 pub use sweep::{SweepPlace, measure};
-
-/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
-pub type Mode = crate::servo::Simultaneous;
-
-/// The host has ended the run; where there is a log, that is finished first.
-fn ended() {
-    #[cfg(feature = "log")]
-    log::end();
-    #[cfg(not(feature = "log"))]
-    semihosting::process::exit(EXIT_DONE)
-}
 
 /// All interrupts but SysTick's arrive here, since the program brings no table of the chip's names.
 #[cortex_m_rt::exception]

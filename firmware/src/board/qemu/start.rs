@@ -4,10 +4,10 @@ use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
 
 use super::exit::refuse;
+use super::lockstep;
 use super::pace::{self, Period};
 use super::registers::Registers;
 use super::serial::{self, Serial};
-use super::{Mode, lockstep};
 use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
@@ -28,6 +28,9 @@ use super::{
     meter::{self, Scale},
     parts::CycleParts,
 };
+
+/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
+pub type Mode = crate::servo::Simultaneous;
 
 /// A program's places in memory, which have its scene's types.
 pub struct Places<E: Tunable<N>, N: Number> {
