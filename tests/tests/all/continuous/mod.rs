@@ -173,7 +173,7 @@ fn the_free_mode_needs_what_it_cancels() {
             Interval::exact(cancelled),
             Interval::exact(period),
         );
-        let found = input_passivity_of(e.from_velocity()).expect("its pole is stable").minimum;
+        let found = input_passivity_of(e.of_velocity()).expect("its pole is stable").minimum;
         assert!(found.contains(-cancelled), "{found:?} for {cancelled}");
     }
 }

@@ -49,7 +49,7 @@ impl ContinuousTransfer {
     }
 
     /// `G(s) / s`: from velocity instead of position.
-    pub const fn from_velocity(self) -> Self {
+    pub const fn of_velocity(self) -> Self {
         Self { zeros: self.zeros - 1, ..self }
     }
 
@@ -182,7 +182,7 @@ mod tests {
     fn free_mode_needs_what_it_cancels() {
         let (b, be) = (Interval::exact(1.0), Interval::decimal(0.95));
         let e = ContinuousTransfer::free_mode(b, be, Interval::decimal(0.001));
-        let found = input_passivity_of(e.from_velocity()).unwrap();
+        let found = input_passivity_of(e.of_velocity()).unwrap();
         assert!(found.minimum.contains(-0.95));
     }
 
