@@ -36,6 +36,7 @@ pub mod scope;
 // What scenes are worth and would do, and how far one may go.
 pub mod batch;
 pub mod circle;
+pub mod closed_form;
 pub mod design;
 pub mod limits;
 pub mod map;

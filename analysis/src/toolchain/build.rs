@@ -118,8 +118,10 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
-/// Which build of a program: with which features, and what is added to its name for the file.
+/// Which build of a program: of which package, with which features, and what is added to its name for the
+/// file.
 struct Variant {
+    package: &'static str,
     features: String,
     suffix: String,
 }
@@ -131,7 +133,7 @@ impl Variant {
             NumberFormat::F32 => features.to_owned(),
             NumberFormat::Fixed => format!("{features},fixed-point"),
         };
-        Self { features, suffix: format!("-{format}{suffix}") }
+        Self { package: "firmware", features, suffix: format!("-{format}{suffix}") }
     }
 }
 
@@ -292,7 +294,8 @@ impl Toolchain {
 
     /// Builds a program without a scene for the emulated board.
     fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
-        let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };
+        let (package, features) = ("firmware-harness", "emulated".into());
+        let variant = Variant { package, features, suffix: String::new() };
         Ok(self.build(&[name], &variant)?.swap_remove(0))
     }
 
@@ -313,9 +316,9 @@ impl Toolchain {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
         let _alone = self.workspace.lock("build")?;
-        let flash = ["--release", "--config", FLASH, "--package", "firmware", "--target", TARGET];
+        let flash = ["--release", "--config", FLASH, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
-        let with = ["--features", &variant.features];
+        let with = ["--package", variant.package, "--features", &variant.features];
         self.compile(
             &names.join(", "),
             &flash.into_iter().chain(programs).chain(with).collect::<Vec<_>>(),

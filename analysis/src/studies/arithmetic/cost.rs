@@ -1,7 +1,7 @@
 //! What a tick takes on the emulated board in a format.
 
-use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
+use firmware_harness::trial::Trial;
 
 use super::{ArithmeticError, Motion};
 use crate::emulator::Trials;

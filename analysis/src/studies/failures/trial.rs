@@ -1,11 +1,11 @@
 //! A loop that is run: simulated without converters, and on the emulated board with them.
 
-use firmware::board::play::{Curtain, Play};
 use firmware::certificate::{Certified, Rejection};
 use firmware::environment::Environment;
 use firmware::number::{Arithmetic, InEach, Number, OutOfRange};
 use firmware::scene::{Device, Scene};
 use firmware::servo::{BuildError, Transducers};
+use firmware_harness::play::{Curtain, Play};
 use serde::Serialize;
 use thiserror::Error;
 

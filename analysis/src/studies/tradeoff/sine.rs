@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use firmware::board::trial::{Output, Trial};
-use firmware::excitation::sines::Sine;
+use firmware_harness::sines::Sine;
+use firmware_harness::trial::{Output, Trial};
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
 use crate::table::Column;

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use firmware::passivity::closed_form;
 use firmware::passivity::discrete::{RealPart, index_near, index_within};
 use firmware::passivity::interval::Interval;
 use firmware::passivity::poles::Obstacle;
@@ -12,6 +11,7 @@ use nalgebra::Complex;
 
 use super::environments::{Environment, PERIOD};
 use super::polynomials::{monomials, real_part, roots, squared};
+use crate::closed_form;
 
 /// Coarsest angle of a logarithmic grid in rad.
 const NEAREST: f64 = 1e-6;

@@ -2,10 +2,10 @@
 //! are none.
 
 use analysis::emulator::Judge;
-use firmware::board::question::{Ends, Reply};
 use firmware::certificate::assess;
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware_harness::question::{Ends, Reply};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::{floats, scenes, vectors};

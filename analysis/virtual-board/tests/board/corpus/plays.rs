@@ -3,10 +3,10 @@
 use analysis::controller::{Controller, controller};
 use analysis::emulator::Player;
 use analysis::rig::Twin;
-use firmware::board::play::{Curtain, Play};
 use firmware::encoder::CounterWidth;
 use firmware::number::{Arithmetic, InEach, Number};
 use firmware::servo::Transducers;
+use firmware_harness::play::{Curtain, Play};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes;

@@ -1,8 +1,8 @@
 //! Sines of any number at all: conversions that saturate, subnormals, infinities, long reductions.
 
 use analysis::emulator::Trials;
-use firmware::board::trial::Trial;
-use firmware::excitation::sines::Sine;
+use firmware_harness::sines::Sine;
+use firmware_harness::trial::Trial;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -3,8 +3,8 @@
 use analysis::emulator::Trials;
 use analysis::studies::arithmetic::{Motion, Subject, Units};
 use analysis::studies::tradeoff::servo;
-use firmware::board::trial::Trial;
 use firmware::number::Arithmetic;
+use firmware_harness::trial::Trial;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -4,9 +4,6 @@
 //! A wrong image of the axis, a pole at infinity taken for a zero, a residue that is not carried
 //! over: each turns a mass into a non-passive element or a negative spring into a passive one.
 
-use firmware::passivity::continuous::{
-    ContinuousTransfer, input_passivity_of, output_passivity_of,
-};
 use firmware::passivity::interval::Interval;
 use firmware::passivity::poles::Obstacle;
 use rand::{Rng, SeedableRng};
@@ -16,6 +13,9 @@ use tests::exact::of_f64;
 use tests::index::Index;
 use tests::poly::Poly;
 use tests::scenes::{log_uniform, short};
+use transfer::{ContinuousTransfer, input_passivity_of, output_passivity_of};
+
+mod transfer;
 
 /// Descending coefficients.
 type Fraction = (Vec<f64>, Vec<f64>);
@@ -173,7 +173,7 @@ fn the_free_mode_needs_what_it_cancels() {
             Interval::exact(cancelled),
             Interval::exact(period),
         );
-        let found = input_passivity_of(e.from_velocity()).expect("its pole is stable").minimum;
+        let found = input_passivity_of(e.of_velocity()).expect("its pole is stable").minimum;
         assert!(found.contains(-cancelled), "{found:?} for {cancelled}");
     }
 }

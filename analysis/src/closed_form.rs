@@ -4,7 +4,7 @@
 //! are what that test is checked against. Arguments: stiffness `k` in N m/rad, damping `b` in
 //! N m s/rad, period `t` in s, delay `n` in samples.
 
-use super::interval::Interval;
+use firmware::passivity::interval::Interval;
 
 const TWO: Interval = Interval::exact(2.0);
 const EIGHT: Interval = Interval::exact(8.0);
@@ -105,12 +105,12 @@ pub const fn free_mode_delayed_wall(
 
 #[cfg(test)]
 mod tests {
+    use firmware::passivity::discrete::index;
+    use firmware::passivity::polynomial::Polynomial;
+    use firmware::passivity::transfer::Transfer;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::passivity::discrete::index;
-    use crate::passivity::polynomial::Polynomial;
-    use crate::passivity::transfer::Transfer;
 
     const T: Interval = Interval::exact(0.0009765625);
 

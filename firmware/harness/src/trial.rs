@@ -4,12 +4,13 @@
 //! A [`Trial`] goes to the board as [`Words`], which are answered by one byte: whether it can be
 //! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
 
-use super::question::{self, Question, ask};
-use super::words::{self, MachineWords};
-use crate::excitation::sines::Sine;
-use crate::number::Arithmetic;
-use crate::scene::Scene;
-use crate::servo::Transducers;
+use firmware::number::Arithmetic;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use crate::question::{self, Question, ask};
+use crate::sines::Sine;
+use crate::words::{self, MachineWords};
 
 /// What is to be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,15 +1,15 @@
 //! The way of every environment's scene from numbers to a timed certificate, for code that is
 //! generic over the environment.
 
-use super::Values;
-use crate::certificate::{Certified, Rejection, Timed, TimingError};
+use super::{Certified, Rejection, Timed, TimingError};
 use crate::environment::*;
 use crate::number::Number;
+use crate::output_timing::OutputMode;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders, Step};
+use crate::step::Step;
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
-pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
+pub trait CertifyScene<N: Number>: Renderable<N> + Copy + 'static {
     /// The scene timed, if the coefficients as rounded to the number format and the mode allow it.
     /// Does not look for reasons and remedies, so that a board has nothing of what it takes to find
     /// them.
@@ -40,9 +40,9 @@ pub trait Tunable<N: Number>: Values + Renderable<N> + Copy + 'static {
     fn as_data(scene: &Scene<Self>) -> Scene;
 }
 
-macro_rules! tunable {
+macro_rules! certify_scene {
     ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
-        impl<F: Number, $($generics)*> Tunable<F> for $environment {
+        impl<F: Number, $($generics)*> CertifyScene<F> for $environment {
             fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
             where
                 Self: Renders<M>,
@@ -70,4 +70,4 @@ macro_rules! tunable {
     )*};
 }
 
-for_every_environment!(tunable);
+for_every_environment!(certify_scene);

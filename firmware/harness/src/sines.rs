@@ -2,7 +2,7 @@
 
 use core::f32::consts::TAU;
 
-use super::sine::{QUINTIC, sine};
+use firmware::excitation::sine::{QUINTIC, sine};
 
 /// A means of computing the sine of a part of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

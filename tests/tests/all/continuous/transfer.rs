@@ -5,11 +5,11 @@
 //! positive real in `s` exactly if its image is in `z`, with the conditions on boundary poles
 //! carried over; so the discrete test answers the continuous question, with the same enclosure.
 
-use super::discrete::{RealPart, input_passivity};
-use super::interval::Interval;
-use super::poles::{Doubt, Obstacle};
-use super::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
-use super::transfer::Transfer;
+use firmware::passivity::discrete::{RealPart, input_passivity};
+use firmware::passivity::interval::Interval;
+use firmware::passivity::poles::{Doubt, Obstacle};
+use firmware::passivity::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
+use firmware::passivity::transfer::Transfer;
 
 /// `G(s) = s^zeros numerator(s) / denominator(s)`; coefficients in descending powers of `s`.
 ///
@@ -49,7 +49,7 @@ impl ContinuousTransfer {
     }
 
     /// `G(s) / s`: from velocity instead of position.
-    pub const fn from_velocity(self) -> Self {
+    pub const fn of_velocity(self) -> Self {
         Self { zeros: self.zeros - 1, ..self }
     }
 
@@ -182,7 +182,7 @@ mod tests {
     fn free_mode_needs_what_it_cancels() {
         let (b, be) = (Interval::exact(1.0), Interval::decimal(0.95));
         let e = ContinuousTransfer::free_mode(b, be, Interval::decimal(0.001));
-        let found = input_passivity_of(e.from_velocity()).unwrap();
+        let found = input_passivity_of(e.of_velocity()).unwrap();
         assert!(found.minimum.contains(-0.95));
     }
 

@@ -3,10 +3,10 @@
 //! The certificate is judged by the compiler, by the host and by the board; this is how a test asks
 //! a board, so that the three can be compared bit for bit. It is not how a scene gets to a servo.
 
-use crate::certificate::{Answer, Assessment, assess};
-use crate::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
-use crate::passivity::interval::Interval;
-use crate::scene::{Coupling, Device, Scene, Timing};
+use firmware::certificate::{Answer, Assessment, assess};
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use firmware::passivity::interval::Interval;
+use firmware::scene::{Coupling, Device, Scene, Timing};
 
 /// Numbers in a polynomial.
 const TERMS: usize = MAX_DEGREE + 1;

@@ -1,8 +1,9 @@
 //! The types of the scenes that have a program.
 
+use firmware::environment::{DamperWall, DelayedSpring, Environment, FreeMode, OneSided, Wall};
+use firmware::number::Number;
+
 use super::{Gone, Job, Kinds};
-use crate::environment::{DamperWall, DelayedSpring, Environment, FreeMode, OneSided, Wall};
-use crate::number::Number;
 
 /// The types of the scenes that have a program, and a wall that also pulls.
 #[derive(Debug)]

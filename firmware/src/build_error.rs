@@ -2,9 +2,8 @@
 
 use core::fmt;
 
-use crate::board::period;
-use crate::certificate::Sentence;
 use crate::number::{Format, Number, OutOfRange};
+use crate::text::Sentence;
 
 /// Why a certified scene cannot run with these transducers in this number format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +74,10 @@ pub enum BuildError {
     Period {
         /// Its period in s.
         period: f64,
+        /// The shortest that every board can pace.
+        shortest: f64,
+        /// The longest.
+        longest: f64,
     },
 }
 
@@ -177,13 +180,13 @@ impl BuildError {
                 t.push_number(*half);
                 t.push(": a shorter worst period or a wider counter tells them all");
             }
-            Self::Period { period } => {
+            Self::Period { period, shortest, longest } => {
                 t.push("the period of ");
                 t.push_number(*period);
                 t.push(" s is not between ");
-                t.push_number(period::SHORTEST);
+                t.push_number(*shortest);
                 t.push(" and ");
-                t.push_number(period::LONGEST);
+                t.push_number(*longest);
                 t.push(" s, what a board can pace");
             }
         }

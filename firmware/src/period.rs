@@ -1,6 +1,6 @@
 //! Periods that every board can pace.
 
-use crate::servo::BuildError;
+use crate::build_error::BuildError;
 
 /// Periods without a tick after which the watchdog resets the board. Its clock is an RC oscillator:
 /// on the F405, the worst, eight periods by its nominal 32 kHz are between five and fifteen.
@@ -25,6 +25,6 @@ pub const fn check(period: f64) -> Result<(), BuildError> {
     if period >= SHORTEST && period <= LONGEST {
         Ok(())
     } else {
-        Err(BuildError::Period { period })
+        Err(BuildError::Period { period, shortest: SHORTEST, longest: LONGEST })
     }
 }

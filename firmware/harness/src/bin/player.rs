@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware::board::qemu::player::run()
+    firmware_harness::server::player::run()
 }
 
 #[cfg(not(target_os = "none"))]

@@ -1,7 +1,7 @@
 //! Boards that are simulated: whatever their program does, it is in time.
 
-use super::Hardware;
 use crate::boot::Startup;
+use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;

@@ -1,4 +1,4 @@
-//! Does [trials](crate::board::trial) on the emulated board: inputs come by the pipe `counts`,
+//! Does [trials](crate::trial) on the emulated board: inputs come by the pipe `counts`,
 //! outputs go by `codes`.
 
 mod every;
@@ -10,18 +10,17 @@ pub use programs::OfPrograms;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, pace};
+use firmware::encoder::RawCount;
+use firmware::environment::Renderable;
+use firmware::number::{InEach, Number};
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-use super::meter::{Scale, measure};
-use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use crate::board::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial};
-use crate::encoder::RawCount;
-use crate::environment::Renderable;
-use crate::excitation::sines::Sine;
-use crate::number::{InEach, Number};
-use crate::scene::Scene;
-use crate::servo::{Servo, Transducers};
+use crate::sines::Sine;
+use crate::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial};
 
 /// The types of environments of which a program has servos. A servo of data would have instructions
 /// of its own to find out what it is.
@@ -35,8 +34,8 @@ pub trait Kinds {
 
 /// Does trials of these types until the host closes its end.
 pub fn run<K: Kinds>() -> ! {
-    super::pace::start_clock();
-    let scale = Scale::calibrate();
+    pace::start_clock();
+    let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);
     };
@@ -55,7 +54,7 @@ pub struct Gone;
 struct Host {
     counts: File,
     codes: File,
-    scale: Scale,
+    scale: meter::Scale,
 }
 
 impl Host {
@@ -111,7 +110,7 @@ impl Host {
         scene: Scene<E>,
         transducers: &Transducers,
     ) -> Result<(), Gone> {
-        let Ok(mut servo) = Servo::<E, N>::build(&scene, transducers) else {
+        let Ok(mut servo) = meter::judged_elsewhere::<E, N>(&scene, transducers) else {
             return self.answer(&[REFUSED]);
         };
         self.answer(&[READY])?;
@@ -119,7 +118,7 @@ impl Host {
             let mut outputs = [Output::default(); BLOCK];
             for (count, output) in counts.into_iter().zip(&mut outputs) {
                 let (servo, mut code) = (black_box(&mut servo), 0);
-                let time = measure(count, |count| {
+                let time = meter::measure(count, |count| {
                     let output = servo.tick(RawCount::from(count));
                     code = output.code.get();
                     (code.into(), output.limit as u32)
@@ -156,7 +155,7 @@ fn timed(sine: Sine, turn: u32) -> (f32, u32) {
             match sine {
                 $(Sine::$kind => {
                     let mut bits = 0;
-                    let time = measure(turn, |turn| {
+                    let time = meter::measure(turn, |turn| {
                         bits = Sine::$kind.of_turn(f32::from_bits(turn)).to_bits();
                         (bits, bits)
                     });

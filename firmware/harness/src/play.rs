@@ -4,11 +4,12 @@
 //! The programs for the board have one scene each, with a delay that is a type; this is how a test
 //! has a board play many scenes in one run, whatever their delays.
 
-use super::question::{Question, ask, read};
-use super::words::{self, MachineWords};
-use crate::number::Arithmetic;
-use crate::scene::Scene;
-use crate::servo::Transducers;
+use firmware::number::Arithmetic;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use crate::question::{Question, ask, read};
+use crate::words::{self, MachineWords};
 
 /// What a board is to play.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,9 +76,9 @@ impl Play {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::encoder::CounterWidth;
-    use crate::environment::{Environment, Wall};
-    use crate::scene::{Coupling, Device, Timing};
+    use firmware::encoder::CounterWidth;
+    use firmware::environment::{Environment, Wall};
+    use firmware::scene::{Coupling, Device, Timing};
 
     #[test]
     fn plays_survive_their_words() {

@@ -1,8 +1,8 @@
 //! What the emulated board's programs are asked in: words of 64 bits, little-endian.
 
-use crate::encoder::CounterWidth;
-use crate::number::Arithmetic;
-use crate::servo::Transducers;
+use firmware::encoder::CounterWidth;
+use firmware::number::Arithmetic;
+use firmware::servo::Transducers;
 
 /// Words of a sensor and a motor with the format to compute in.
 pub type MachineWords = [u64; 5];

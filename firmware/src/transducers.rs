@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::BuildError;
+use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::CounterWidth;
 use crate::number::Number;
@@ -52,7 +52,7 @@ impl Transducers {
         }
     }
 
-    pub(super) const fn radians_per_count(&self) -> Result<f64, BuildError> {
+    pub(crate) const fn radians_per_count(&self) -> Result<f64, BuildError> {
         let counts = self.counts_per_turn;
         match BuildError::unless_positive("counts per turn", counts) {
             Ok(()) => Ok(TAU / counts),
@@ -60,7 +60,7 @@ impl Transducers {
         }
     }
 
-    pub(super) const fn codes_per_torque(&self) -> Result<f64, BuildError> {
+    pub(crate) const fn codes_per_torque(&self) -> Result<f64, BuildError> {
         let full_scale = self.full_scale_torque;
         match BuildError::unless_positive("full-scale torque", full_scale) {
             Ok(()) => Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale),
@@ -113,7 +113,7 @@ impl Transducers {
     }
 
     /// The limiter of a scene's torque limit, or else of the converter's range.
-    pub(super) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
+    pub(crate) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
         let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::Converter };
         let bound = N::bound_from_f64(self.bound(limit)?)
             .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;

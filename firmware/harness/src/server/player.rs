@@ -1,15 +1,15 @@
 //! Plays scenes that the host sends: a play and counts in by the pipe `counts`, codes out by
 //! `codes`.
 
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep};
+use firmware::encoder::RawCount;
+use firmware::number::{Arithmetic, Number};
+use firmware::servo::Servo;
 use fixed::types::I16F16;
 use semihosting::fs::File;
 use semihosting::io::{Error, Read, Write};
 
-use super::{EXIT_DONE, EXIT_REFUSED, lockstep};
-use crate::board::play::{Curtain, Play};
-use crate::encoder::RawCount;
-use crate::number::{Arithmetic, Number};
-use crate::servo::Servo;
+use crate::play::{Curtain, Play};
 
 /// Plays until the host closes its end.
 pub fn run() -> ! {

@@ -1,54 +1,12 @@
-//! When a torque reaches the motor: how the board puts a code out, and what a scene must be to
-//! stand that.
-//!
-//! A force takes time from count to motor. A scene says by how many whole samples its environment
-//! is late; a board says when its codes appear; both have to agree, which the compiler sees to.
+//! What an environment must be to stand the time that a torque takes to the motor.
 
-use crate::environment::{
+use super::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, OneSided, Placed, Rational,
 };
+use crate::output_timing::{Latched, OutputMode, Simultaneous};
 
 mod sealed {
     pub trait Sealed {}
-}
-
-/// When a code reaches the motor, by type.
-pub trait OutputMode: sealed::Sealed + Copy + Send + core::fmt::Debug + 'static {
-    /// The same as data.
-    const TIMING: OutputTiming;
-}
-
-/// When a code reaches the motor, as data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum OutputTiming {
-    /// At the instant of its count.
-    Simultaneous,
-    /// At the next count, by the timer.
-    Latched,
-}
-
-/// The timer that begins a period latches the code of the tick before: a torque appears exactly
-/// one sample after the count that it was computed from, without jitter, so that equation 35 has no
-/// part of a sample in it. The servo computes each
-/// torque one tick early, so that what the scene calls one sample late *is* that sample.
-#[derive(Clone, Copy, Debug)]
-pub struct Latched;
-
-/// Count and torque belong to the same instant: a simulation, or an emulated board in lockstep
-/// with one. No converter can do this.
-#[derive(Clone, Copy, Debug)]
-pub struct Simultaneous;
-
-impl sealed::Sealed for Latched {}
-impl sealed::Sealed for Simultaneous {}
-
-impl OutputMode for Latched {
-    const TIMING: OutputTiming = OutputTiming::Latched;
-}
-
-impl OutputMode for Simultaneous {
-    const TIMING: OutputTiming = OutputTiming::Simultaneous;
 }
 
 /// An environment that is late by at least one sample, so that its torque is known one tick early.

@@ -5,7 +5,7 @@
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware::board::qemu::trial::run::<firmware::board::qemu::trial::Every>()
+    firmware_harness::server::trial::run::<firmware_harness::server::trial::Every>()
 }
 
 #[cfg(not(target_os = "none"))]

@@ -1,10 +1,11 @@
-//! What can go wrong between a scene and its rendering.
+//! Why a changed scene cannot be rendered.
 
 use core::fmt;
 
-use super::BuildError;
+use super::TuningError;
+use crate::build_error::BuildError;
 use crate::certificate::{Rejection, TimingError};
-use crate::tuning::TuningError;
+use crate::step::Step;
 
 /// Why a scene cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,29 +18,6 @@ pub enum RenderError {
     Timing(TimingError),
     /// Not with these transducers in this number format.
     Build(BuildError),
-}
-
-/// The step from a scene to its servo that failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum Step {
-    /// To change the numbers.
-    Change,
-    /// The certificate, with what a board does to a torque: its delay and its limits.
-    Certificate,
-    /// The servo in its number format, with its transducers.
-    Servo,
-}
-
-impl Step {
-    /// As a word.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Change => "change",
-            Self::Certificate => "certificate",
-            Self::Servo => "servo",
-        }
-    }
 }
 
 impl RenderError {

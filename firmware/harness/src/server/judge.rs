@@ -1,14 +1,14 @@
 //! Answers scenes by their bits: questions in by the pipe `counts`, replies out by `codes`.
 
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, pace};
 use semihosting::fs::File;
 use semihosting::io::Write;
 
-use super::{EXIT_DONE, EXIT_REFUSED, lockstep, meter};
-use crate::board::question::answer;
+use crate::question::answer;
 
 /// Answers until the host closes its end.
 pub fn run() -> ! {
-    super::pace::start_clock();
+    pace::start_clock();
     let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);

@@ -1,11 +1,12 @@
 //! The types of all scenes that a file can name.
 
-use super::{Gone, Job, Kinds};
-use crate::environment::{
+use firmware::environment::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, MAX_DELAY,
     OneSided, Placed, Renderable, Spring, Wall,
 };
-use crate::number::Number;
+use firmware::number::Number;
+
+use super::{Gone, Job, Kinds};
 
 /// All scenes: those without a delay, with one sample of it and with the most in types of their own,
 /// others as data.
