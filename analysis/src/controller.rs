@@ -2,7 +2,7 @@
 
 use firmware::certificate::Certified;
 use firmware::encoder::RawCount;
-use firmware::environment::Renderable;
+use firmware::environment::Discretize;
 use firmware::number::{Number, OutOfRange};
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Servo, Transducers};
@@ -36,7 +36,7 @@ pub trait Controller {
     fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange>;
 }
 
-impl<E: Renderable<N>, N: Number> Controller for Servo<E, N> {
+impl<E: Discretize<N>, N: Number> Controller for Servo<E, N> {
     fn tick(&mut self, raw: i32) -> Tick {
         let output = Servo::tick(self, RawCount::from(raw));
         Tick {

@@ -1,6 +1,6 @@
 //! The stiffest wall that is certified, and what an encoder's step does to its torque.
 
-use firmware::certificate::Posed;
+use firmware::certificate::PassivityProblem;
 use firmware::environment::{Environment, Wall};
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::{Coupling, Scene, Timing};
@@ -14,7 +14,7 @@ pub enum Limit {
     /// No stiffness is certified.
     Nothing,
     /// Up to this one in N m/rad.
-    AtMost(f64),
+    RoundUp3(f64),
     /// However stiff: what the hand feels is the coupling.
     Any,
 }
@@ -76,7 +76,8 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
 /// The largest stiffness of the scene's wall that is certified, everything else as it is.
 pub fn largest_stiffness(scene: &Scene) -> Limit {
     let passes = |stiffness: f64| {
-        Posed::of(&with_wall(scene, stiffness, None)).is_ok_and(|posed| posed.is_certified())
+        PassivityProblem::of(&with_wall(scene, stiffness, None))
+            .is_ok_and(|posed| posed.is_certified())
     };
     let standard = standard_coupling(scene);
     let (softest, stiffest) = ((SOFT * standard).ln(), (RIGID * standard).ln());
@@ -94,7 +95,7 @@ pub fn largest_stiffness(scene: &Scene) -> Limit {
         let middle = 0.5 * (low + high);
         if passes(middle.exp()) { low = middle } else { high = middle }
     }
-    Limit::AtMost(low.exp())
+    Limit::RoundUp3(low.exp())
 }
 
 /// Largest change of torque in N m for each rad of position error: the sum of the absolute values
@@ -160,7 +161,7 @@ impl Curves {
         let half_a_count = std::f64::consts::PI / self.counts_per_turn;
         let (stiffness, used) = match largest_stiffness(&timed) {
             Limit::Nothing => return None,
-            Limit::AtMost(stiffness) => (stiffness, self.used * stiffness),
+            Limit::RoundUp3(stiffness) => (stiffness, self.used * stiffness),
             Limit::Any => match timed.coupling {
                 Coupling::Spring { stiffness } => (stiffness, RIGID * stiffness),
                 Coupling::Rigid => return None,
@@ -202,17 +203,21 @@ mod tests {
     #[test]
     fn the_largest_stiffness_is_the_formulas() {
         for delay in 1..=4 {
-            let Limit::AtMost(k) = largest_stiffness(&wall(0.0, delay, STANDARD)) else { panic!() };
+            let Limit::RoundUp3(k) = largest_stiffness(&wall(0.0, delay, STANDARD)) else {
+                panic!()
+            };
             near(k, 0.022 / (0.001 * (delay as f64 - 0.5)), 1e-9);
         }
-        let Limit::AtMost(k) = largest_stiffness(&wall(0.01, 1, STANDARD)) else { panic!() };
+        let Limit::RoundUp3(k) = largest_stiffness(&wall(0.01, 1, STANDARD)) else { panic!() };
         near(k, 24.0, 1e-9);
         assert_eq!(largest_stiffness(&wall(0.0, 0, STANDARD)), Limit::Any);
         assert_eq!(largest_stiffness(&wall(0.03, 1, STANDARD)), Limit::Nothing);
         // Undelayed it needs 0.03 - K T / 2: only the stiff ones pass, and all of them.
         assert_eq!(largest_stiffness(&wall(-0.03, 0, STANDARD)), Limit::Any);
         // A rigid coupling costs a sample: K < b / (T (n + 1/2)).
-        let Limit::AtMost(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else { panic!() };
+        let Limit::RoundUp3(k) = largest_stiffness(&wall(0.0, 0, Coupling::Rigid)) else {
+            panic!()
+        };
         near(k, 44.0, 1e-9);
     }
 

@@ -64,8 +64,8 @@ impl OpenLoop {
     pub fn of(experiment: &Experiment) -> Result<Self, SimulationError> {
         let scene = &experiment.scene;
         let plant = SampledPlant::new(&experiment.tick(Stride::default())?);
-        let is_stable = plant.is_stable_under(scene).map_err(SimulationError::Loop)?;
-        let product = Self::product(&plant, scene).map_err(SimulationError::Loop)?;
+        let is_stable = plant.is_stable_under(scene).map_err(SimulationError::LoopTransfers)?;
+        let product = Self::product(&plant, scene).map_err(SimulationError::LoopTransfers)?;
         let half = 0.5 / scene.timing.period;
         let hertz = |i: usize| half * 10_f64.powf(DECADES * (i as f64 / (POINTS - 1) as f64 - 1.0));
         let mut phase = None;

@@ -18,7 +18,7 @@ pub mod supervised_spring;
 use std::io;
 use std::sync::OnceLock;
 
-use firmware::environment::Renderable;
+use firmware::environment::Discretize;
 use firmware::number::Number;
 use firmware::scene::Scene;
 use firmware::servo::{BuildError, Servo, Transducers};
@@ -62,7 +62,7 @@ pub struct State {
 
 impl State {
     /// What the servo of an environment keeps in the format `N`.
-    pub fn of<E: Renderable<N>, N: Number>() -> Self {
+    pub fn of<E: Discretize<N>, N: Number>() -> Self {
         Self { servo: size_of::<Servo<E, N>>(), environment: size_of::<E::Law>() }
     }
 }

@@ -106,7 +106,7 @@ impl Filter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware::certificate::Loop;
+    use firmware::certificate::LoopTransfers;
     use firmware::environment::{Environment, Wall};
     use firmware::scene::{Coupling, Device, Scene, Timing};
 
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn value_and_difference_equation_of_a_wall() {
-        let environment = Response::new(Loop::of(&wall(1)).unwrap().environment);
+        let environment = Response::new(LoopTransfers::of(&wall(1)).unwrap().environment);
         // z^-1 (K + B (z - 1) / (T z)) at z = -1
         let at = environment.at_angle(std::f64::consts::PI);
         assert!((at.re + 22.0 + 2.0 * 10.0).abs() < 1e-12 && at.im.abs() < 1e-12);
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn controller_is_environment_behind_the_coupling() {
         for delay in 0..4 {
-            let found = Loop::of(&wall(delay)).unwrap();
+            let found = LoopTransfers::of(&wall(delay)).unwrap();
             let [e, c] = [found.environment, found.controller].map(Response::new);
             for theta in [0.1, 1.0, 3.0] {
                 let one = Complex::new(1.0, 0.0);

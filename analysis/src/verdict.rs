@@ -3,7 +3,8 @@
 use std::fmt;
 
 use firmware::certificate::{
-    Answer, Assessment, Assumptions, Loop, Rest, Rule, Standing, Steps, assess_in, certify_in,
+    Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound,
+    Resolution, Rule, assess_in, certify_in,
 };
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
@@ -89,8 +90,8 @@ pub struct AtRest {
 
 impl AtRest {
     /// Of the certificate's bound.
-    pub fn of(rest: &Rest) -> Self {
-        let Rest { encoder, numbers, converter, friction, in_any_motion } = *rest;
+    pub fn of(rest: &QuantizationBound) -> Self {
+        let QuantizationBound { encoder, numbers, converter, friction, in_any_motion } = *rest;
         let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
         Self { encoder, numbers, converter, hum, friction, comes_to_rest, in_any_motion }
     }
@@ -148,12 +149,12 @@ pub struct Report {
 
 /// Judges a scene as it was written, of a machine of which nothing more is known.
 pub fn judge(name: &str, scene: &Scene) -> Report {
-    judge_in(name, scene, Format::F64, &Steps::default())
+    judge_in(name, scene, Format::F64, &Resolution::default())
 }
 
 /// Judges the coefficients of a scene as a number format rounds them, and its assumptions by what
 /// is known of the machine.
-pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Report {
+pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> Report {
     let (assessment, rejection) = match certify_in(scene, format) {
         Ok(assessment) => (assessment, None),
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
@@ -168,7 +169,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
     let remedies = rejection.map(|rejection| rejection.remedies());
     let assumptions = Assumptions::of(scene, &assessment, steps);
-    let failing = assumptions.iter().filter(|one| one.standing() == Standing::Fails);
+    let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
     let message = match rejection {
         None => passed(margin, assumptions.rest()),
         Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
@@ -202,7 +203,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Steps) -> Rep
     }
 }
 
-fn passed(margin: Option<f64>, rest: Option<&Rest>) -> String {
+fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
         format!("; the device may lose {margin} N m s/rad of its damping with all else as it runs")
@@ -227,7 +228,7 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
 /// certificate has enclosed. None where the real part is the same all around.
 fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let cosine = assessment.cos_theta?;
-    let transfers = Loop::in_format(scene, assessment.format).ok()?;
+    let transfers = LoopTransfers::in_format(scene, assessment.format).ok()?;
     let judged = match assessment.rule {
         Rule::Exact => transfers.equivalent,
         Rule::Nonlinear => transfers.environment,

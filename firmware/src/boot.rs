@@ -5,16 +5,16 @@
 use core::hint::black_box;
 
 use crate::build_error::BuildError;
-use crate::cycle::{Arming, Cycle, Hardware, Options, Reason, Requests};
 use crate::dac::DacCode;
-use crate::environment::{Renderable, Renders};
-use crate::fault::{Fault, Retained};
+use crate::environment::{Discretize, SupportsTiming};
+use crate::fault::{Fault, FaultRecord};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::period;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
-use crate::servo::{Rendering, RenderingOptions};
+use crate::servo::{PreparedServo, RenderingOptions};
+use crate::servo_loop::{Arming, Hardware, Options, Reason, Requests, ServoLoop};
 use crate::step::Step;
 use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
@@ -25,8 +25,8 @@ pub trait Startup: Hardware {
     fn zero(&mut self);
     /// Starts the watchdog. From here on only the servo feeds it.
     fn guard(&mut self);
-    /// The words that outlived the reset; see [`Retained`].
-    fn kept(&mut self) -> [u32; Retained::WORDS];
+    /// The words that outlived the reset; see [`FaultRecord`].
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS];
     /// Why the board was last reset. To be asked once: the chip forgets it then.
     fn reset_cause(&mut self) -> ResetCause;
     /// Timer counts in the servo's period.
@@ -81,15 +81,15 @@ impl<E: Copy> Program<E> {
 
 /// A board whose servo may run.
 #[derive(Clone, Debug)]
-pub struct Booted<E: Renderable<N>, N: Number, M> {
+pub struct Booted<E: Discretize<N>, N: Number, M> {
     /// What its interrupt runs.
-    pub cycle: Cycle<E, N, M>,
+    pub cycle: ServoLoop<E, N, M>,
     /// Damping in N m s/rad that the device may lose with this scene running.
     pub margin: Option<f64>,
     /// Why the board was reset.
     pub reset: ResetCause,
     /// What was left from before the reset.
-    pub left: Option<Retained>,
+    pub left: Option<FaultRecord>,
     /// Why the servo arms itself in its first tick, if it does.
     pub arms_because: Option<Reason>,
 }
@@ -103,10 +103,10 @@ pub struct Booted<E: Renderable<N>, N: Number, M> {
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,
-    requests: &Requests<'_, Rendering<E, N, M>>,
+    requests: &Requests<'_, PreparedServo<E, N, M>>,
 ) -> Result<Booted<E, N, M>, Step>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
@@ -120,7 +120,7 @@ where
     let reset = hardware.reset_cause();
     let left = left(hardware, reset);
     let fault = left.map(|left| left.fault);
-    let cycle = Cycle::new(rendering, &program.options, hardware.period(), fault);
+    let cycle = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
     hardware.guard();
     let arms_because = reason_to_arm(&program.options, reset, left);
     if arms_because.is_some() {
@@ -131,7 +131,11 @@ where
 
 /// Why a servo may arm itself: only where its program says so, and only where the supply was switched
 /// on. Any other reset may come while a hand is on the device.
-fn reason_to_arm(options: &Options, reset: ResetCause, left: Option<Retained>) -> Option<Reason> {
+fn reason_to_arm(
+    options: &Options,
+    reset: ResetCause,
+    left: Option<FaultRecord>,
+) -> Option<Reason> {
     match options.arming {
         Arming::AtPowerOn(reason) if reset == ResetCause::PowerOn && left.is_none() => Some(reason),
         Arming::AtPowerOn(_) | Arming::WhenAsked => None,
@@ -139,10 +143,10 @@ fn reason_to_arm(options: &Options, reset: ResetCause, left: Option<Retained>) -
 }
 
 /// What was left from before the reset.
-fn left(hardware: &mut impl Startup, reset: ResetCause) -> Option<Retained> {
+fn left(hardware: &mut impl Startup, reset: ResetCause) -> Option<FaultRecord> {
     let by_watchdog = reset == ResetCause::IndependentWatchdog;
     // A panic or a hard fault lets the watchdog reset the board: what it wrote says more.
-    Retained::decode(&hardware.kept()).or(by_watchdog.then_some(Retained {
+    FaultRecord::decode(&hardware.kept()).or(by_watchdog.then_some(FaultRecord {
         fault: Fault::Watchdog,
         tick: 0,
         count: 0,

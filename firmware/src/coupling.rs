@@ -29,7 +29,7 @@ pub enum Coupling {
 
 /// What an environment offers to the coupling in one tick.
 #[derive(Clone, Copy, Debug)]
-pub enum Offer<N> {
+pub enum Response<N> {
     /// A torque that does not depend on this tick's position, in N m.
     Held(N),
     /// A line; its torque in N m at `x_E = x`.
@@ -40,7 +40,7 @@ pub enum Offer<N> {
     LineAndWall(N, Contact<N>),
 }
 
-impl<N: Number> Offer<N> {
+impl<N: Number> Response<N> {
     /// The same with a torque (N m) added that does not depend on this tick's position.
     #[inline(always)]
     pub(crate) fn plus(self, torque: N) -> Self {
@@ -127,12 +127,12 @@ impl<N: Number> Solver<N> {
 
     /// The torque in N m that satisfies coupling and environment at once.
     #[inline(always)]
-    pub fn torque(&self, offer: Offer<N>) -> N {
+    pub fn torque(&self, offer: Response<N>) -> N {
         match offer {
-            Offer::Held(torque) => torque,
-            Offer::Line(line) => line.times(self.line_gain),
-            Offer::Wall(wall) => self.pushing(N::ZERO, wall.torque, wall.depth),
-            Offer::LineAndWall(line, wall) => {
+            Response::Held(torque) => torque,
+            Response::Line(line) => line.times(self.line_gain),
+            Response::Wall(wall) => self.pushing(N::ZERO, wall.torque, wall.depth),
+            Response::LineAndWall(line, wall) => {
                 self.pushing(line.times(self.line_gain), line.plus(wall.torque), wall.depth)
             }
         }
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_rigid_coupling_puts_the_environment_where_the_device_is() {
         let solver = Solver::<f32>::new(Coupling::Rigid, Slopes { line: 5.0, wall: 0.0 }).unwrap();
-        assert_eq!(solver.torque(Offer::Line(3.0)), 3.0);
+        assert_eq!(solver.torque(Response::Line(3.0)), 3.0);
         assert_eq!(solver.environment_position(0.5, 3.0), 0.5);
     }
 
@@ -197,12 +197,15 @@ mod tests {
             let solver = Solver::<f32>::new(coupling, Slopes { line: 0.0, wall: 5.0 }).unwrap();
             for (torque, depth) in [(NAN, NAN), (NAN, 0.5)] {
                 let contact = Contact { torque, depth };
-                assert!(solver.torque(Offer::Wall(contact)).is_nan(), "{coupling:?}, {contact:?}");
-                let both = Offer::LineAndWall(1.0, contact);
+                assert!(
+                    solver.torque(Response::Wall(contact)).is_nan(),
+                    "{coupling:?}, {contact:?}"
+                );
+                let both = Response::LineAndWall(1.0, contact);
                 assert!(solver.torque(both).is_nan(), "{coupling:?}, {both:?}");
             }
             let outside = Contact { torque: -1.0, depth: -0.5 };
-            assert!(solver.torque(Offer::LineAndWall(NAN, outside)).is_nan(), "{coupling:?}");
+            assert!(solver.torque(Response::LineAndWall(NAN, outside)).is_nan(), "{coupling:?}");
         }
     }
 
@@ -212,7 +215,7 @@ mod tests {
                          x in -1.0..1.0_f64) {
             let slope = slope * k;
             let solver = Solver::<f64>::new(spring(k), Slopes { line: slope, wall: 0.0 }).unwrap();
-            let torque = solver.torque(Offer::Line(slope * x + carry));
+            let torque = solver.torque(Response::Line(slope * x + carry));
             let residual = torque - (slope * solver.environment_position(x, torque) + carry);
             prop_assert!(residual.abs() <= 1e-13 * (1.0 + slope.abs()) * (1.0 + torque.abs()));
         }
@@ -227,7 +230,7 @@ mod tests {
             let (line, wall) = (line * k, wall * k);
             let solver = Solver::<f64>::new(spring(k), Slopes { line, wall }).unwrap();
             let contact = Contact { torque: wall * (x - face) + wall_carry, depth: x - face };
-            let torque = solver.torque(Offer::LineAndWall(line * x + carry, contact));
+            let torque = solver.torque(Response::LineAndWall(line * x + carry, contact));
             let error = |torque: f64| {
                 let p = x - torque / k - face;
                 let pushed = if p > 0.0 { (wall * p + wall_carry).max(0.0) } else { 0.0 };

@@ -28,9 +28,9 @@ pub mod excitation;
 
 // What carries the servo on a board: one interrupt a period, from reset to fault.
 pub mod boot;
-pub mod cycle;
 pub mod fault;
 pub mod reset;
+pub mod servo_loop;
 pub mod tuning;
 
 pub mod certificate;

@@ -2,7 +2,7 @@
 //!
 //! A force takes time from count to motor. A scene says by how many whole samples its environment
 //! is late; a board says when its codes appear; both have to agree, which the compiler sees to by
-//! [`Renders`](crate::environment::Renders).
+//! [`SupportsTiming`](crate::environment::SupportsTiming).
 
 mod sealed {
     pub trait Sealed {}
@@ -50,5 +50,5 @@ impl OutputMode for Simultaneous {
 /// Time in s after the beginning of its period in which a tick reads its count, where torques are
 /// latched: the interrupt's own latency, and what other instructions add. The certificate of a board
 /// covers counts that are read as late as this, and later ones are told by
-/// [`BEGAN_LATE`](crate::cycle::BEGAN_LATE).
+/// [`BEGAN_LATE`](crate::servo_loop::BEGAN_LATE).
 pub const READ_WITHIN: f64 = 1e-6;

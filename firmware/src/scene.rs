@@ -4,7 +4,7 @@
 //! and only that can become a servo.
 
 use crate::build_error::BuildError;
-use crate::environment::{Environment, Setting};
+use crate::environment::{Environment, LawContext};
 
 pub use crate::coupling::Coupling;
 
@@ -54,12 +54,12 @@ pub struct Timing {
 
 impl<E> Scene<E> {
     /// What the environment's coefficients depend on.
-    pub(crate) fn setting(&self) -> Result<Setting, BuildError> {
+    pub(crate) fn setting(&self) -> Result<LawContext, BuildError> {
         let (period, coupling) = (self.timing.period, self.coupling);
         BuildError::unless_positive("period", period)?;
         if let Coupling::Spring { stiffness } = coupling {
             BuildError::unless_positive("coupling stiffness", stiffness)?;
         }
-        Ok(Setting { period, damping: self.device.damping, coupling })
+        Ok(LawContext { period, damping: self.device.damping, coupling })
     }
 }

@@ -138,9 +138,9 @@ impl Number {
 /// A number as [`Text`] writes it. On a board it takes the place of the library's own way, which is
 /// exact to the last digit and 13 kB long.
 #[derive(Clone, Copy, Debug)]
-pub struct Written(pub f64);
+pub struct ShortF64(pub f64);
 
-impl fmt::Display for Written {
+impl fmt::Display for ShortF64 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut number = Number::new();
         number.number(self.0);
@@ -150,13 +150,13 @@ impl fmt::Display for Written {
 
 /// A figure for a person, to three digits and not below what it is, to a part in 10^12.
 #[derive(Clone, Copy, Debug)]
-pub struct AtMost(pub f64);
+pub struct RoundUp3(pub f64);
 
-impl fmt::Display for AtMost {
+impl fmt::Display for RoundUp3 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (mut unit, value) = (1.0, self.0);
         if !value.is_finite() || value <= 0.0 {
-            return Written(value).fmt(f);
+            return ShortF64(value).fmt(f);
         }
         while value / unit >= 1000.0 {
             unit *= 10.0;
@@ -166,7 +166,7 @@ impl fmt::Display for AtMost {
         }
         let whole = value / unit * (1.0 - 1e-12);
         let steps = whole as u64 + u64::from(whole > (whole as u64) as f64);
-        Written(steps as f64 * unit).fmt(f)
+        ShortF64(steps as f64 * unit).fmt(f)
     }
 }
 
@@ -222,7 +222,7 @@ const fn decimal(value: f64) -> ([u8; DIGITS], i32) {
 
 #[cfg(test)]
 mod tests {
-    use super::{AtMost, Text};
+    use super::{RoundUp3, Text};
 
     #[test]
     fn figures_are_rounded_up() {
@@ -233,11 +233,11 @@ mod tests {
             (12345.0, "12400"),
             (0.0, "0"),
         ] {
-            assert_eq!(AtMost(value).to_string(), wanted);
+            assert_eq!(RoundUp3(value).to_string(), wanted);
         }
         // What has no digits to round to is an answer as well.
         for value in [f64::MAX, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 5e-324, -1.0] {
-            assert!(!AtMost(value).to_string().is_empty());
+            assert!(!RoundUp3(value).to_string().is_empty());
         }
     }
 

@@ -54,7 +54,7 @@ impl fmt::Display for LimitReason {
 ///
 /// The level is the scene's bound, except while the servo fades in or out: then it moves by a
 /// fixed step a tick. A scene is faded only if it passes with a torque limit at any level
-/// ([`Timed`](crate::certificate::Timed) asks for that, of linear scenes too): many that are certified
+/// ([`TimingChecked`](crate::certificate::TimingChecked) asks for that, of linear scenes too): many that are certified
 /// without a limit oscillate with one. What is ramped is the clamp and never the stiffness, since a
 /// changing stiffness is outside of the certificate.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +108,7 @@ impl<N: Number> Limiter<N> {
     }
 
     /// Closes as far as `torque` (N m) needs, so that closing further acts at once.
-    pub(crate) fn meet(&mut self, torque: N) {
+    pub(crate) fn clamp_to_held_torque(&mut self, torque: N) {
         let magnitude = torque.larger(torque.negated());
         self.set(self.level.smaller(magnitude));
     }
@@ -152,7 +152,7 @@ mod tests {
     fn opens_and_closes_by_steps() {
         let mut limiter = Limiter::new(2.0_f32, LimitReason::Torque).stepping(0.75);
         assert!(!limiter.is_shut());
-        limiter.meet(-1.0);
+        limiter.clamp_to_held_torque(-1.0);
         assert_eq!(limiter.limit(1.5, LimitReason::None), (1.0, LimitReason::Ramp));
         assert!(!limiter.close());
         assert_eq!(limiter.limit(-1.5, LimitReason::Angle), (-0.25, LimitReason::Ramp));
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(limiter.limit(2.5, LimitReason::None), (2.0, LimitReason::Torque));
         // What holds more than the level lets through does not open it.
         limiter.shut();
-        limiter.meet(1.0);
+        limiter.clamp_to_held_torque(1.0);
         assert!(limiter.is_shut());
     }
 

@@ -1,12 +1,14 @@
 //! The board's cycle on this machine, which has to do in every tick what the emulated board does.
 
-use firmware::board::in_time::{InTime, Lines};
+use firmware::board::sim_hardware::{SimHardware, SimIo};
 use firmware::boot::{Booted, Program, boot};
 use firmware::certificate::Parameter;
-use firmware::cycle::{Cycle, FrameQueue, Frames, Inbox, Mailbox, Notice, Requests, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
-use firmware::servo::{OutputMode, Rendering, Renders};
+use firmware::servo::{OutputMode, PreparedServo, SupportsTiming};
+use firmware::servo_loop::{
+    FrameQueue, Frames, Inbox, Mailbox, Notice, Requests, ServoLoop, State,
+};
 use firmware::tuning::{self, Tunable};
 
 /// Timer counts in a period.
@@ -20,7 +22,7 @@ struct Board {
     code: DacCode,
 }
 
-impl Lines for Board {
+impl SimIo for Board {
     fn count(&mut self) -> RawCount {
         RawCount::from(self.count)
     }
@@ -32,19 +34,19 @@ impl Lines for Board {
 
 /// A cycle in f32 on a board that is in time, in the mode `M`.
 pub struct Replica<E: Tunable<f32>, M: 'static> {
-    board: InTime<Board>,
-    cycle: Cycle<E, f32, M>,
-    requests: Requests<'static, Rendering<E, f32, M>>,
-    inbox: Inbox<'static, Rendering<E, f32, M>>,
+    board: SimHardware<Board>,
+    cycle: ServoLoop<E, f32, M>,
+    requests: Requests<'static, PreparedServo<E, f32, M>>,
+    inbox: Inbox<'static, PreparedServo<E, f32, M>>,
     frames: Frames<'static, FRAMES>,
     program: Program<E>,
 }
 
-impl<E: Tunable<f32> + Renders<M>, M: OutputMode> Replica<E, M> {
+impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
     /// Boots a program, whose scene is certified; it is off until it is armed.
     pub fn boot(program: Program<E>) -> Self {
         let lines = Board { count: 0, code: DacCode::MID_SCALE };
-        let mut board = InTime::new(lines, PERIOD);
+        let mut board = SimHardware::new(lines, PERIOD);
         // A replica for a test: its memory lives as long as the test.
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, _) = Box::leak(Box::new(FrameQueue::new())).split();

@@ -8,7 +8,7 @@
 mod edge;
 mod quantity;
 
-use firmware::certificate::Posed;
+use firmware::certificate::PassivityProblem;
 use firmware::environment::MAX_DELAY;
 use firmware::scene::{Coupling, Scene};
 
@@ -71,7 +71,7 @@ pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
 }
 
 fn passes(scene: &Scene) -> bool {
-    Posed::of(scene).is_ok_and(|posed| posed.is_certified())
+    PassivityProblem::of(scene).is_ok_and(|posed| posed.is_certified())
 }
 
 /// The most of a quantity that may be rendered, everything else as in the scene.

@@ -21,7 +21,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use firmware::board::shown::{Moved, Shown};
-use firmware::cycle::State;
+use firmware::servo_loop::State;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{encode, largest_frame};
 use tempfile::TempDir;

@@ -1,6 +1,6 @@
 //! A scene file's tables turned into a [`Scene`].
 
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall};
 use firmware::scene::{Coupling, Scene, Timing};
 
@@ -38,9 +38,9 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// What the file says of the machine, for the certificate's assumptions.
-    pub fn steps(&self) -> Steps {
+    pub fn steps(&self) -> Resolution {
         let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
-        Steps { encoder, full_scale, friction }
+        Resolution { encoder, full_scale, friction }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where the formulas of theory, section 5, put the border of what is certified.
 
-use firmware::certificate::Posed;
+use firmware::certificate::PassivityProblem;
 use firmware::environment::{Environment, Wall};
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Scene};
@@ -40,7 +40,7 @@ impl Formula {
     /// compliance, two indices count, and a coupling that is stiffer than the standard one leaves
     /// the paper's rule nothing.
     fn of(scene: &Scene) -> Option<Self> {
-        let posed = Posed::of(scene).ok()?;
+        let posed = PassivityProblem::of(scene).ok()?;
         let misses = scene.timing.worst_period.is_some_and(|worst| worst != scene.timing.period);
         match (scene.coupling, is_linear(scene)) {
             (Coupling::Rigid, true) if !misses => Some(Self::SampleLater),
@@ -60,7 +60,7 @@ impl Formula {
 
     /// What the limit has over the index; `None` where one of them does not exist.
     fn spare(self, scene: &Scene) -> Option<f64> {
-        let posed = Posed::of(scene).ok()?;
+        let posed = PassivityProblem::of(scene).ok()?;
         let (limit, index) = match self {
             Self::Paper => (posed.paper_limit(), index_of(scene, 0)),
             Self::Bound => (posed.limit(), posed.bound()),

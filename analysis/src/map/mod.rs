@@ -7,7 +7,7 @@ pub mod schur_cohn;
 
 use std::ops::Range;
 
-use firmware::certificate::{Answer, Posed, assess};
+use firmware::certificate::{Answer, PassivityProblem, assess};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::Scene;
 use rayon::prelude::*;
@@ -163,7 +163,7 @@ impl Family {
     pub fn usual_ranges(&self) -> (Range<f64>, Range<f64>) {
         let delta = assess(&self.scene).delta.midpoint();
         let stiffest = match largest_stiffness(&self.member(0.0, 0.0)) {
-            Limit::AtMost(stiffness) => stiffness,
+            Limit::RoundUp3(stiffness) => stiffness,
             Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
         };
         (0.0..1.8 * stiffest, -0.6 * delta..1.25 * delta)
@@ -177,7 +177,7 @@ fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
 
 /// What the certificate says of a scene.
 fn verdict(scene: &Scene) -> Region {
-    let posed = match Posed::of(scene) {
+    let posed = match PassivityProblem::of(scene) {
         Ok(posed) => posed,
         Err(rejection) if rejection.is_undecided() => return Region::Undecided,
         Err(_) => return Region::Rejected,

@@ -8,7 +8,7 @@ use std::sync::mpsc::{self, Receiver, SendError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use firmware::cycle::Frame;
+use firmware::servo_loop::Frame;
 use firmware::wire::Discarded;
 use firmware::wire::message::{Board, Id, Remembered, Running, Status, ToBoard, ToHost};
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use firmware::cycle::{Frame, State};
 use firmware::dac::DacCode;
+use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::message::Board;
 use serde::Serialize;

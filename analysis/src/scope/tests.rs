@@ -1,8 +1,8 @@
 use firmware::certificate::Parameter;
-use firmware::cycle::{Frame, State};
 use firmware::dac::DacCode;
 use firmware::fault::Fault;
 use firmware::reset::ResetCause;
+use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::Discarded;
 use firmware::wire::message::{Board, Changes, Remembered, Running, Status};

@@ -1,7 +1,7 @@
 //! Plant and controller as one matrix: where neither limit nor face nor converter acts, the loop
 //! is linear, and everything about it is in there.
 
-use firmware::certificate::Loop;
+use firmware::certificate::LoopTransfers;
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::Scene;
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -16,14 +16,14 @@ use crate::response::Response;
 /// # Errors
 /// Where the environment is not causal, the loop of coupling and environment has no solution, or
 /// a number is out of range.
-pub fn transfers(scene: &Scene) -> Result<Loop, Unbuildable> {
+pub fn transfers(scene: &Scene) -> Result<LoopTransfers, Unbuildable> {
     /// So large that the standard coupling, which the equivalent environment stands behind, is as
     /// good as rigid: whatever has a controller then has an equivalent. Below 0, since no device
     /// has more passivity than damping.
     const ANY: f64 = -1e200;
     let mut scene = *scene;
     scene.device.passivity = Some(ANY);
-    Loop::of(&scene)
+    LoopTransfers::of(&scene)
 }
 
 /// `z(k+1) = matrix z(k) + inputs`, with the coupling torque `F = torque z`.

@@ -21,7 +21,7 @@ pub enum SimulationError {
     Servo(#[from] BuildError),
     /// The scene has no linear loop.
     #[error("the scene has no closed loop: {}", unbuildable(*.0))]
-    Loop(Unbuildable),
+    LoopTransfers(Unbuildable),
     /// The torque file cannot be read.
     #[error("cannot read the torque file {file}: {error}")]
     TorqueFile {
@@ -73,7 +73,7 @@ pub enum SimulationError {
 
 impl From<Unbuildable> for SimulationError {
     fn from(error: Unbuildable) -> Self {
-        Self::Loop(error)
+        Self::LoopTransfers(error)
     }
 }
 

@@ -9,7 +9,7 @@ use super::experiment::{Experiment, Stride};
 use super::friction::Rubbing;
 use super::kernel::{DEAD, LOOK};
 use super::plant::{POSITION, VELOCITY};
-use super::rendering::Rendering;
+use super::rendering::PreparedServo;
 use super::served::Served;
 use super::tick::Tick;
 use super::trajectory::Columns;
@@ -18,7 +18,7 @@ use crate::missed::Missed;
 /// A loop in motion.
 #[derive(Debug)]
 pub struct General {
-    rendering: Rendering,
+    rendering: PreparedServo,
     machine: Machine,
     encoder_step: Option<f64>,
     missed: Box<dyn Ticks>,
@@ -55,7 +55,7 @@ impl General {
     /// Where the scene has no law that could run.
     pub fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
         Ok(Self {
-            rendering: Rendering::new(&experiment.scene)?,
+            rendering: PreparedServo::new(&experiment.scene)?,
             machine: Machine::new(experiment, stride),
             encoder_step: experiment.encoder_step,
             missed: ticks(experiment.missed),

@@ -3,27 +3,27 @@
 //! Nothing here is certified: what a scene would do is asked before it is safe.
 
 use firmware::coupling::Solver;
-use firmware::environment::{EnvironmentLaw, Law, Renderable, Setting};
+use firmware::environment::{Discretize, EnvironmentLaw, Law, LawContext};
 use firmware::scene::Scene;
 use firmware::servo::BuildError;
 use firmware::torque::{LimitReason, Limiter};
 
 /// Environment and coupling of a scene, at rest at zero to begin with.
 #[derive(Clone, Debug)]
-pub struct Rendering {
+pub struct PreparedServo {
     law: EnvironmentLaw<f64>,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
 }
 
-impl Rendering {
+impl PreparedServo {
     /// The servo of a scene.
     ///
     /// # Errors
     /// Where coupling and environment have no unique solution, or the environment needs samples
     /// from the future.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
-        let setting = Setting {
+        let setting = LawContext {
             period: scene.timing.period,
             damping: scene.device.damping,
             coupling: scene.coupling,
@@ -39,9 +39,9 @@ impl Rendering {
     /// coupling is solved, and why it is not the one asked for; `otherwise` where it is. The motor
     /// applies `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
-        let wanted = self.solver.torque(self.law.offer(x));
+        let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);
-        self.law.advance(self.solver.environment_position(x, torque));
+        self.law.update(self.solver.environment_position(x, torque));
         (torque, limit)
     }
 }

@@ -1,4 +1,4 @@
-use firmware::certificate::{Assumption, Assumptions, Rest, Steps, assess};
+use firmware::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -163,8 +163,8 @@ fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
             Experiment { friction, encoder_step: Some(step), ..moving(&scene, 3000, 0.02) };
         simulate(&experiment, Stride::default()).unwrap()
     };
-    let steps = Steps { encoder: Some(step), ..Steps::default() };
-    let hum = Rest::of(&scene, Format::F64, &steps).unwrap().hum();
+    let steps = Resolution { encoder: Some(step), ..Resolution::default() };
+    let hum = QuantizationBound::of(&scene, Format::F64, &steps).unwrap().hum();
     // K x / (1 - r) adds up to 924 N m/rad (theory, section 6).
     assert!((hum / (0.5 * step * 924.0) - 1.0).abs() < 1e-9, "{hum}");
 
@@ -192,7 +192,7 @@ fn friction_alone_quiets_what_is_slower_than_the_certificate_says() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     for (stiffness, friction) in [(1400.0, 0.05), (1200.0, 0.02)] {
         let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
-        let steps = Steps { friction: Some(friction), ..Steps::default() };
+        let steps = Resolution { friction: Some(friction), ..Resolution::default() };
         let assumptions = Assumptions::of(&scene, &assess(&scene), &steps);
         let speed = assumptions.iter().find_map(|one| match one {
             Assumption::FrictionOnly { speed, .. } => Some(*speed),

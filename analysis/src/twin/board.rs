@@ -1,6 +1,6 @@
 //! The simulated hardware of a board.
 
-use firmware::board::in_time::Lines;
+use firmware::board::sim_hardware::SimIo;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::servo::OutputTiming;
@@ -26,7 +26,7 @@ impl Board {
     }
 }
 
-impl Lines for Board {
+impl SimIo for Board {
     fn count(&mut self) -> RawCount {
         if let Some(held) = self.held.replace(self.next) {
             self.plant.hold(if self.is_on { held } else { DacCode::MID_SCALE }.get());

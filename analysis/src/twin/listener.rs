@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use firmware::number::Number;
-use firmware::servo::{OutputMode, Renders};
+use firmware::servo::{OutputMode, SupportsTiming};
 use firmware::tuning::Tunable;
 use firmware::wire::Session;
 
@@ -70,7 +70,7 @@ impl Listener {
         session: &mut Session<'_, E, N, M, LENGTH>,
     ) -> bool
     where
-        E: Tunable<N> + Renders<M>,
+        E: Tunable<N> + SupportsTiming<M>,
         N: Number,
         M: OutputMode,
     {
@@ -146,7 +146,7 @@ fn carry<E, N, M, const LENGTH: usize>(
     session: &mut Session<'_, E, N, M, LENGTH>,
 ) -> io::Result<bool>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {

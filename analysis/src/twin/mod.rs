@@ -14,13 +14,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use firmware::board::in_time::InTime;
+use firmware::board::sim_hardware::SimHardware;
 use firmware::boot::{self, Program};
-use firmware::cycle::{FrameQueue, Mailbox};
 use firmware::number::Number;
-use firmware::servo::{OutputMode, Renders, Step};
+use firmware::servo::{OutputMode, Step, SupportsTiming};
+use firmware::servo_loop::{FrameQueue, Mailbox};
 use firmware::tuning::{self, RenderError, Tunable};
-use firmware::wire::{Facts, Session};
+use firmware::wire::{BoardInfo, Session};
 
 use self::board::Board;
 use self::listener::Listener;
@@ -84,7 +84,7 @@ impl Twin {
         clock: Clock,
     ) -> io::Result<Self>
     where
-        E: Tunable<N> + Renders<M> + Send + 'static,
+        E: Tunable<N> + SupportsTiming<M> + Send + 'static,
         N: Number,
         M: OutputMode,
     {
@@ -92,7 +92,7 @@ impl Twin {
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
         let thread = thread::spawn(move || {
-            let board = InTime::new(Board::new(plant, M::TIMING), TIMER_COUNTS);
+            let board = SimHardware::new(Board::new(plant, M::TIMING), TIMER_COUNTS);
             serve::<E, N, M>(name, program, board, listener, clock, &over)
         });
         Ok(Self { address, ended, thread: Some(thread) })
@@ -154,7 +154,7 @@ impl Drop for Twin {
 /// Why a program did not start.
 fn not_started<E, N, M>(program: &Program<E>, step: Step) -> TwinError
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
@@ -169,13 +169,13 @@ where
 fn serve<E, N, M>(
     name: &'static str,
     program: Program<E>,
-    mut board: InTime<Board>,
+    mut board: SimHardware<Board>,
     mut listener: Listener,
     clock: Clock,
     over: &AtomicBool,
 ) -> Result<(), TwinError>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
@@ -186,7 +186,7 @@ where
         .map_err(|step| not_started::<E, N, M>(&program, step))?;
     let (mut cycle, margin) = (booted.cycle, booted.margin);
     let (reset, left) = (booted.reset, booted.left);
-    let facts = Facts { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };
+    let facts = BoardInfo { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };
     let mut session = Session::new(program, margin, facts, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();

@@ -10,7 +10,7 @@ mod grip;
 
 use std::f64::consts::PI;
 
-use firmware::certificate::Loop;
+use firmware::certificate::LoopTransfers;
 use firmware::scene::Scene;
 use nalgebra::Complex;
 use serde::Serialize;
@@ -152,7 +152,9 @@ impl<'d> Trial<'d> {
     /// The middle of the circle where there is no such angle.
     fn angle(&self) -> f64 {
         let scene = &self.experiment.scene;
-        let Ok(Loop { equivalent, .. }) = Loop::of(scene) else { return 0.5 * PI };
+        let Ok(LoopTransfers { equivalent, .. }) = LoopTransfers::of(scene) else {
+            return 0.5 * PI;
+        };
         let velocity = Response::new(equivalent).from_velocity(scene.timing.period);
         least(|theta| velocity.at_angle(theta).re, 0.0, PI).unwrap_or(0.5 * PI)
     }

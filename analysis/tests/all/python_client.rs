@@ -6,7 +6,6 @@ use std::process::{Command, Output, Stdio};
 
 use crate::common::{answer, program, root, tool};
 use firmware::certificate::Parameter;
-use firmware::cycle::{Frame, State};
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
@@ -14,6 +13,7 @@ use firmware::fault::Fault;
 use firmware::number::Format;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::{OutputTiming, RenderingOptions, Step, Transducers};
+use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::description::Description;
 use firmware::wire::message::{

@@ -16,10 +16,10 @@ use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
 use firmware::board::shown::Moved;
-use firmware::cycle::State;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
 use firmware::scene::Scene;
+use firmware::servo_loop::State;
 use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, Status, ToBoard, ToHost};
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 

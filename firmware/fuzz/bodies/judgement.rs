@@ -2,21 +2,21 @@
 
 use std::sync::OnceLock;
 
-use firmware::board::in_time::{InTime, Lines};
+use firmware::board::sim_hardware::{SimHardware, SimIo};
 use firmware::boot::Program;
 use firmware::certificate::Parameter;
-use firmware::cycle::{Cycle, FrameQueue, Frames, Inbox, Mailbox, Options};
 use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
 use firmware::reset::ResetCause;
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Latched, Rendering, RenderingOptions, Renders, Transducers};
+use firmware::servo::{Latched, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
+use firmware::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Options, ServoLoop};
 use firmware::tuning::{self, Tunable};
 use firmware::wire::message::{
     Changes, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, ToBoard, ToHost,
 };
-use firmware::wire::{CHECKSUM, Decoder, Facts, Session, encode, largest_frame};
+use firmware::wire::{BoardInfo, CHECKSUM, Decoder, Session, encode, largest_frame};
 
 /// Sets of one input.
 const SETS: usize = 2;
@@ -26,7 +26,7 @@ const TICKS: usize = 40;
 const FRAMES: usize = 16;
 
 /// The servo of a scene before anything is changed, judged once.
-type First<E> = OnceLock<Rendering<E, f32, Latched>>;
+type First<E> = OnceLock<PreparedServo<E, f32, Latched>>;
 
 macro_rules! scene {
     ($environment:ty: $value:expr, $limit:expr, $data:expr) => {{
@@ -129,7 +129,7 @@ struct Still {
     code: DacCode,
 }
 
-impl Lines for Still {
+impl SimIo for Still {
     fn count(&mut self) -> RawCount {
         RawCount::from(self.count)
     }
@@ -141,9 +141,9 @@ impl Lines for Still {
 
 /// A servo with what belongs to its interrupt.
 struct Running<'a, E: Tunable<f32>> {
-    cycle: Cycle<E, f32, Latched>,
-    device: InTime<Still>,
-    inbox: Inbox<'a, Rendering<E, f32, Latched>>,
+    cycle: ServoLoop<E, f32, Latched>,
+    device: SimHardware<Still>,
+    inbox: Inbox<'a, PreparedServo<E, f32, Latched>>,
     frames: Frames<'a, FRAMES>,
 }
 
@@ -157,7 +157,7 @@ impl<E: Tunable<f32>> Running<'_, E> {
 
 fn drive<E>(first: &First<E>, program: Program<E>, data: &[u8])
 where
-    E: Tunable<f32> + Renders<Latched>,
+    E: Tunable<f32> + SupportsTiming<Latched>,
 {
     let Program { scene, transducers, rendering, options } = &program;
     let judged = || {
@@ -168,11 +168,11 @@ where
     let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::new());
     let ((requests, inbox), (frames, reader)) = (mailbox.split(), queue.split());
     requests.arm();
-    let device = InTime::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
-    let cycle = Cycle::new(first, options, PERIOD, None);
+    let device = SimHardware::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
+    let cycle = ServoLoop::new(first, options, PERIOD, None);
     let mut servo = Running { cycle, device, inbox, frames };
     let (reset, stack_left) = (ResetCause::PowerOn, || None);
-    let facts = Facts { name: "any", timer_counts: 1000, reset, left: None, stack_left };
+    let facts = BoardInfo { name: "any", timer_counts: 1000, reset, left: None, stack_left };
     let mut session = Session::new(program, None, facts, requests, reader);
     let mut limit = scene.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
     let (mut bytes, mut count) = (Reader(data), 0_i16);

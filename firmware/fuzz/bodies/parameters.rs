@@ -8,7 +8,7 @@ use firmware::environment::{
     Wall,
 };
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::tuning::{self, TUNABLE, TuningError, Values};
+use firmware::tuning::{self, NamedParameters, TUNABLE, TuningError};
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 
@@ -44,7 +44,7 @@ pub fn run(data: &[u8]) {
 }
 
 /// All of the changes or none, and nothing else.
-fn change<E: Values + Copy + PartialEq>(environment: E, changes: &[(Parameter, f64)]) {
+fn change<E: NamedParameters + Copy + PartialEq>(environment: E, changes: &[(Parameter, f64)]) {
     let scene = Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },

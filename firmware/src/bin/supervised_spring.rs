@@ -5,10 +5,10 @@
 mod paddle;
 
 use firmware::certificate::Certified;
-use firmware::cycle::{LinkPolicy, Options};
 use firmware::environment::DelayedSpring;
 use firmware::scene::{Coupling, Scene, Timing};
 use firmware::servo::RenderingOptions;
+use firmware::servo_loop::{LinkPolicy, Options};
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.

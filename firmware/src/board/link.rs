@@ -1,9 +1,9 @@
 //! A board's serial port with the board's end of the wire at it.
 
-use super::seat::FRAMES;
-use crate::environment::Renderable;
+use super::servo_isr::FRAMES;
+use crate::environment::Discretize;
 use crate::number::Number;
-use crate::servo::{OutputMode, Renders};
+use crate::servo::{OutputMode, SupportsTiming};
 use crate::tuning::Tunable;
 use crate::wire::Session;
 
@@ -16,7 +16,7 @@ pub trait Port {
 }
 
 /// A port with a session at it.
-pub struct Link<P, E: Renderable<N> + 'static, N: Number, M: 'static> {
+pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The port.
     pub port: P,
     /// What is said there.
@@ -28,7 +28,7 @@ const PIECE: usize = 64;
 
 impl<P: Port, E, N, M> Link<P, E, N, M>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {

@@ -6,10 +6,10 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
-pub mod in_time;
 pub mod input_filter;
 pub mod report;
 pub mod shown;
+pub mod sim_hardware;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]
@@ -24,18 +24,18 @@ pub mod critical;
 #[allow(unsafe_code)]
 mod fatal;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
+#[allow(unsafe_code)]
+pub mod isr_cell;
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 pub mod link;
 #[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
-pub mod place;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-#[allow(unsafe_code)]
 pub mod retained;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-pub mod seat;
+pub mod servo_isr;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod stack;
@@ -62,7 +62,7 @@ pub const BAUD: u32 = 460_800;
 ///   whether it comes to rest;
 /// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
 ///   injected: `RenderingOptions { injection: Some(0.004), ..RenderingOptions::DEFAULT }`;
-/// - `options`: [`Options`](crate::cycle::Options), such as what to do when the host falls silent:
+/// - `options`: [`Options`](crate::servo_loop::Options), such as what to do when the host falls silent:
 ///   `Options { link: LinkPolicy::Release, ..Options::DEFAULT }`. A servo stays off until the host arms
 ///   it, after every reset; with `Options::DEFAULT.armed_at_power_on("reason")` it also arms itself when
 ///   the supply is switched on, and after no other reset. Without words in the reason, which the board
@@ -88,7 +88,7 @@ macro_rules! scene_program {
             scene: *$certified.scene(),
             transducers: $transducers,
             rendering: $crate::or_default!($crate::servo::RenderingOptions $(, $rendering)?),
-            options: $crate::or_default!($crate::cycle::Options $(, $options)?),
+            options: $crate::or_default!($crate::servo_loop::Options $(, $options)?),
         };
 
         // Apart from the constant itself, which others use: then the compiler says it once.
@@ -96,7 +96,7 @@ macro_rules! scene_program {
 
         // Where a board refuses the scene itself, it says so at more length.
         const _: () = match CERTIFIED_AS_IT_RUNS.time::<$crate::servo::Simultaneous>() {
-            Ok(timed) => PROGRAM.rendering.checked_beside(timed.room()),
+            Ok(timed) => PROGRAM.rendering.checked_beside(timed.injectable_damping()),
             Err(_) => (),
         };
 
@@ -122,13 +122,13 @@ macro_rules! scene_program {
             #[allow(unused_mut, unused_assignments)]
             let mut friction = None;
             $(friction = Some($friction);)?
-            let steps = $crate::certificate::Steps::of(&PROGRAM.transducers, friction);
+            let steps = $crate::certificate::Resolution::of(&PROGRAM.transducers, friction);
             let injection = PROGRAM.rendering.injection;
             print!(
                 "{}",
                 $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps, injection)
             );
-            if let $crate::cycle::Arming::AtPowerOn(reason) = PROGRAM.options.arming {
+            if let $crate::servo_loop::Arming::AtPowerOn(reason) = PROGRAM.options.arming {
                 println!("armed at power-on: {}", reason.as_str());
             }
         }

@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-use crate::certificate::{Answer, Assessment, Assumptions, Certified, Rule, Standing, Steps};
+use crate::certificate::{
+    Answer, Assessment, AssumptionStatus, Assumptions, Certified, Resolution, Rule,
+};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -21,7 +23,7 @@ impl Report {
     pub fn new<E>(
         certified: &Certified<Scene<E>>,
         data: &Scene,
-        steps: &Steps,
+        steps: &Resolution,
         injection: Option<f64>,
     ) -> Self {
         let assessment = *certified.assessment();
@@ -59,7 +61,7 @@ impl fmt::Display for Report {
         }
         writeln!(f, "provided that")?;
         for assumption in self.assumptions.iter() {
-            let failed = assumption.standing() == Standing::Fails;
+            let failed = assumption.standing() == AssumptionStatus::Fails;
             writeln!(f, "  - {}{assumption}", if failed { "WARNING: " } else { "" })?;
         }
         Ok(())

@@ -4,10 +4,10 @@
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
-use crate::fault::{Fault, Retained};
+use crate::fault::{Fault, FaultRecord};
 
 /// Words which start-up leaves as they are. After power was off they are noise, which
-/// [`Retained::decode`] tells from a record.
+/// [`FaultRecord::decode`] tells from a record.
 struct Memory<const N: usize>(UnsafeCell<MaybeUninit<[u32; N]>>);
 
 // SAFETY: its words are read and written one by one and volatile. Who writes them holds off or is
@@ -16,7 +16,7 @@ struct Memory<const N: usize>(UnsafeCell<MaybeUninit<[u32; N]>>);
 unsafe impl<const N: usize> Sync for Memory<N> {}
 
 #[unsafe(link_section = ".uninit.retained")]
-static MEMORY: Memory<{ Retained::WORDS }> = Memory::noise();
+static MEMORY: Memory<{ FaultRecord::WORDS }> = Memory::noise();
 
 #[unsafe(link_section = ".uninit.retained")]
 static MARK: Memory<2> = Memory::noise();
@@ -50,18 +50,18 @@ impl<const N: usize> Memory<N> {
 }
 
 /// Keeps these words through resets.
-pub fn keep(words: &[u32; Retained::WORDS]) {
+pub fn keep(words: &[u32; FaultRecord::WORDS]) {
     MEMORY.write(words);
 }
 
 /// The words that were kept, or noise.
-pub fn kept() -> [u32; Retained::WORDS] {
+pub fn kept() -> [u32; FaultRecord::WORDS] {
     MEMORY.read()
 }
 
 /// Keeps a fault that is met outside of the servo, where nobody knows the tick.
 pub fn keep_fault(fault: Fault) {
-    keep(&Retained { fault, tick: 0, count: 0 }.encode());
+    keep(&FaultRecord { fault, tick: 0, count: 0 }.encode());
 }
 
 /// Whether the supply has stayed on since this was last asked, as far as RAM can tell: it forgets once

@@ -4,7 +4,7 @@
 //! Each tick has a number, which the board repeats: one that faults may show what it does twice
 //! rather than not at all.
 
-use crate::cycle::State;
+use crate::servo_loop::State;
 
 /// What has become of the world since the last tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,16 +1,16 @@
 //! What both rules say of a scene, with the numbers behind the answers.
 
-use super::model::Numbers;
+use super::model::LoopIntervals;
 use super::parameter::first_invalid;
-use super::posed::Posed;
+use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, exact_limit, is_nonlinear, paper_limit};
 use crate::number::Format;
-use crate::passivity::bernstein::Closeness;
+use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle};
+use crate::passivity::poles::{IndexError, UndecidedReason};
 use crate::scene::Scene;
 
 /// Everything that is known about a scene after judging it. Indices in N m s/rad.
@@ -88,19 +88,23 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
         out.outcome = Err(Rejection::Invalid(invalid));
         return out;
     }
-    let numbers = Numbers::of(scene, format);
+    let numbers = LoopIntervals::of(scene, format);
     out.delta = numbers.delta;
     // By reference: moved out of the result, the scene would be on a small board's stack twice.
-    out.outcome = match &Posed::with(scene, numbers) {
+    out.outcome = match &PassivityProblem::with(scene, numbers) {
         Ok(posed) => judge(posed, extent, &mut out),
         Err(rejection) => Err(*rejection),
     };
     out
 }
 
-const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<(), Rejection> {
+const fn judge(
+    posed: &PassivityProblem,
+    extent: Extent,
+    out: &mut Assessment,
+) -> Result<(), Rejection> {
     let n = &posed.numbers;
-    let alone = posed.alone(&Closeness::TIGHT);
+    let alone = posed.alone(&Precision::TIGHT);
     if let Ok(found) = alone {
         out.alpha = Some(found.minimum);
         out.cos_theta = Some(found.cos_theta);
@@ -111,7 +115,7 @@ const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<()
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
-    let coupled = posed.coupled(Some(alone), &Closeness::TIGHT);
+    let coupled = posed.coupled(Some(alone), &Precision::TIGHT);
     if let Ok(found) = coupled {
         out.alpha_coupled = Some(found.minimum);
         if matches!(out.rule, Rule::Exact) {
@@ -126,9 +130,9 @@ const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<()
 }
 
 const fn exact_outcome(
-    n: &Numbers,
-    alone: &Result<RealPart, Obstacle>,
-    coupled: &Result<RealPart, Obstacle>,
+    n: &LoopIntervals,
+    alone: &Result<RealPart, IndexError>,
+    coupled: &Result<RealPart, IndexError>,
     out: &Assessment,
 ) -> Result<(), Rejection> {
     let limit = exact_limit(n);
@@ -141,7 +145,7 @@ const fn exact_outcome(
         (Ok(found), _) => match out.exact {
             Answer::Pass => Ok(()),
             Answer::Undecided => Err(Rejection::Undecided {
-                doubt: Doubt::TooClose,
+                doubt: UndecidedReason::TooClose,
                 index: Some(found.minimum),
                 limit: Some(limit),
                 remedies: Remedies::NONE,
@@ -157,14 +161,14 @@ const fn exact_outcome(
                 remedies: Remedies::NONE,
             }),
         },
-        (Err(Obstacle::Undecided(doubt)), _) => Err(from_obstacle(Obstacle::Undecided(*doubt))),
+        (Err(IndexError::Undecided(doubt)), _) => Err(from_obstacle(IndexError::Undecided(*doubt))),
         (Err(_), Ok(_)) if blames_coupling => Err(coupling_rejection(n, out)),
         (Err(obstacle), Ok(_)) => Err(of_coupling(*obstacle)),
         (Err(_), Err(obstacle)) => Err(from_obstacle(*obstacle)),
     }
 }
 
-const fn coupling_rejection(n: &Numbers, out: &Assessment) -> Rejection {
+const fn coupling_rejection(n: &LoopIntervals, out: &Assessment) -> Rejection {
     let (alpha, alpha_coupled) = match out.rule {
         Rule::Exact => (out.alpha, out.alpha_coupled),
         Rule::Nonlinear => (out.bound, None),
@@ -184,8 +188,8 @@ const fn missed_rejection(alpha: Interval, limit: Interval) -> Rejection {
 }
 
 const fn nonlinear_outcome(
-    n: &Numbers,
-    alone: &Result<RealPart, Obstacle>,
+    n: &LoopIntervals,
+    alone: &Result<RealPart, IndexError>,
     out: &Assessment,
 ) -> Result<(), Rejection> {
     let found = match alone {
@@ -194,7 +198,7 @@ const fn nonlinear_outcome(
     };
     let Some(bound) = out.bound else {
         return Err(Rejection::Undecided {
-            doubt: Doubt::NoNonlinearBound,
+            doubt: UndecidedReason::NoNonlinearBound,
             index: Some(found.minimum),
             limit: Some(n.delta),
             remedies: Remedies::NONE,
@@ -203,7 +207,7 @@ const fn nonlinear_outcome(
     match out.paper {
         Answer::Pass => Ok(()),
         Answer::Undecided => Err(Rejection::Undecided {
-            doubt: Doubt::TooClose,
+            doubt: UndecidedReason::TooClose,
             index: Some(bound),
             limit: Some(n.delta),
             remedies: Remedies::NONE,
@@ -222,7 +226,7 @@ const fn nonlinear_outcome(
 }
 
 /// The rejection of an environment that has no such obstacle without its coupling.
-const fn of_coupling(obstacle: Obstacle) -> Rejection {
+const fn of_coupling(obstacle: IndexError) -> Rejection {
     let mut out = from_obstacle(obstacle);
     if let Rejection::UnstablePole { of_coupling, .. } = &mut out {
         *of_coupling = true;
@@ -230,18 +234,18 @@ const fn of_coupling(obstacle: Obstacle) -> Rejection {
     out
 }
 
-const fn from_obstacle(obstacle: Obstacle) -> Rejection {
+const fn from_obstacle(obstacle: IndexError) -> Rejection {
     match obstacle {
-        Obstacle::UnstablePole { reflection } => Rejection::UnstablePole {
+        IndexError::UnstablePole { reflection } => Rejection::UnstablePole {
             reflection,
             of_coupling: false,
             remedies: Remedies::NONE,
             behind_standard: None,
         },
-        Obstacle::RepeatedUnitPole { cos_theta } => Rejection::RepeatedUnitPole { cos_theta },
-        Obstacle::ResidueAngle { cos_theta } => Rejection::ResidueAngle { cos_theta },
-        Obstacle::NegativeResidue { residue } => Rejection::NegativeResidue { residue },
-        Obstacle::Undecided(doubt) => {
+        IndexError::RepeatedUnitPole { cos_theta } => Rejection::RepeatedUnitPole { cos_theta },
+        IndexError::ResidueAngle { cos_theta } => Rejection::ResidueAngle { cos_theta },
+        IndexError::NegativeResidue { residue } => Rejection::NegativeResidue { residue },
+        IndexError::Undecided(doubt) => {
             Rejection::Undecided { doubt, index: None, limit: None, remedies: Remedies::NONE }
         }
     }

@@ -6,8 +6,8 @@ use core::fmt;
 
 use super::assessment::Assessment;
 use super::margin::Limited;
-use super::model::{Loop, Numbers};
-use super::rest::{Rest, Steps};
+use super::model::{LoopIntervals, LoopTransfers};
+use super::quantization::{QuantizationBound, Resolution};
 use super::rules::is_nonlinear;
 use super::timed::limited_bound;
 use crate::environment::Environment;
@@ -15,7 +15,7 @@ use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
-use crate::text::{AtMost, Written};
+use crate::text::{RoundUp3, ShortF64};
 
 /// One thing that a verdict takes for granted, or a condition of it that was checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub enum Assumption {
         damping: f64,
     },
     /// Steps of encoder, numbers and converter are outside the linear verdict.
-    Quantisation(Rest),
+    Quantisation(QuantizationBound),
     /// The same where nothing is known of encoder and converter.
     StepsNotStated,
     /// The same where the controller's response does not end.
@@ -85,9 +85,9 @@ pub enum Assumption {
 
 /// Whether an assumption holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum AssumptionStatus {
     /// It is about the machine: nothing in the scene can tell.
-    TakenForGranted,
+    Assumed,
     /// Its condition was checked and holds.
     Holds,
     /// Its condition could be checked, if more were stated.
@@ -98,7 +98,7 @@ pub enum Standing {
 
 impl Assumption {
     /// Whether it holds.
-    pub fn standing(&self) -> Standing {
+    pub fn standing(&self) -> AssumptionStatus {
         match self {
             Self::DevicePassivity { .. }
             | Self::Hold { .. }
@@ -106,22 +106,24 @@ impl Assumption {
             | Self::CancelledDamping { .. }
             | Self::StepsUnbounded
             | Self::WorstPeriod { passes: false, .. }
-            | Self::Saturates { bound: None, .. } => Standing::TakenForGranted,
+            | Self::Saturates { bound: None, .. } => AssumptionStatus::Assumed,
             Self::WorstPeriod { passes: true, .. } | Self::Saturates { bound: Some(_), .. } => {
-                Standing::Holds
+                AssumptionStatus::Holds
             }
-            Self::OneSided { bound } if bound.is_some() => Standing::Holds,
-            Self::Limited { full_scale: None, .. } | Self::StepsNotStated => Standing::NotStated,
+            Self::OneSided { bound } if bound.is_some() => AssumptionStatus::Holds,
+            Self::Limited { full_scale: None, .. } | Self::StepsNotStated => {
+                AssumptionStatus::NotStated
+            }
             Self::Limited { torque, full_scale: Some(full_scale) } if torque <= full_scale => {
-                Standing::Holds
+                AssumptionStatus::Holds
             }
             Self::OneSided { .. } | Self::Limited { .. } | Self::FrictionOnly { .. } => {
-                Standing::Fails
+                AssumptionStatus::Fails
             }
             Self::Quantisation(rest) => match rest.comes_to_rest() {
-                None => Standing::NotStated,
-                Some(true) => Standing::Holds,
-                Some(false) => Standing::Fails,
+                None => AssumptionStatus::NotStated,
+                Some(true) => AssumptionStatus::Holds,
+                Some(false) => AssumptionStatus::Fails,
             },
         }
     }
@@ -150,7 +152,7 @@ impl fmt::Display for Assumption {
                 "no two counts are more than {longest} s apart, which the servo sees to; judged with \
                  what that leaves of delta, {} N m s/rad, for torques that begin with their count and \
                  for those that are latched",
-                Written(*delta)
+                ShortF64(*delta)
             ),
             Self::Delay { samples } => {
                 write!(f, "the environment is late by exactly {samples} whole sample(s)")
@@ -165,8 +167,8 @@ impl fmt::Display for Assumption {
                 "the torque may reach the converter's full scale, and be faded in and out: with a \
                  torque limit it passes too, by the nonlinear bound of {} N m s/rad, and the device \
                  may lose {} N m s/rad of its damping",
-                Written(*bound),
-                Written(*margin)
+                ShortF64(*bound),
+                ShortF64(*margin)
             ),
             Self::Saturates { bound: None, .. } => f.write_str(
                 "the torque is never limited: with a torque limit it would not pass, so that no board \
@@ -189,8 +191,8 @@ impl fmt::Display for Assumption {
                 f,
                 "its friction of {} N m alone takes more than the controller puts in, but only \
                  below {} rad/s: it is quiet until something moves it faster",
-                Written(*friction),
-                Written(*speed)
+                ShortF64(*friction),
+                ShortF64(*speed)
             ),
         }
     }
@@ -198,7 +200,7 @@ impl fmt::Display for Assumption {
 
 fn write_bound(f: &mut fmt::Formatter<'_>, bound: Option<f64>) -> fmt::Result {
     match bound {
-        Some(bound) => write!(f, " of {} N m s/rad", Written(bound)),
+        Some(bound) => write!(f, " of {} N m s/rad", ShortF64(bound)),
         None => f.write_str(", of which none is known for this environment"),
     }
 }
@@ -223,13 +225,13 @@ fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>)
 }
 
 /// What moves the torque at rest, what is not stated of it, and whether friction is enough.
-fn write_rest(f: &mut fmt::Formatter<'_>, rest: &Rest) -> fmt::Result {
+fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Result {
     f.write_str("at rest the torque is off by at most")?;
     let parts = rest.parts();
     let mut between = " ";
     for (name, part) in parts {
         if let Some(part) = part {
-            write!(f, "{between}{} N m ({name})", AtMost(part))?;
+            write!(f, "{between}{} N m ({name})", RoundUp3(part))?;
             between = ", ";
         }
     }
@@ -249,7 +251,7 @@ pub struct Assumptions {
 
 impl Assumptions {
     /// Lists what a verdict on `scene` rests on, given what is known of the machine.
-    pub fn of(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Self {
+    pub fn of(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Self {
         let mut list = Self { all: [None; MOST] };
         let delta = scene.device.passivity.unwrap_or(scene.device.damping);
         list.push(Some(Assumption::DevicePassivity { delta }));
@@ -290,7 +292,7 @@ impl Assumptions {
 
     /// What the steps of encoder, numbers and converter do at rest, where the scene is certified
     /// and they were stated.
-    pub fn rest(&self) -> Option<&Rest> {
+    pub fn rest(&self) -> Option<&QuantizationBound> {
         self.iter().find_map(|assumption| match assumption {
             Assumption::Quantisation(rest) => Some(rest),
             _ => None,
@@ -305,7 +307,7 @@ fn delay(environment: &Environment) -> Option<Assumption> {
 
 /// A limit that the scene has, or the converter's: the servo limits there in the same place, so
 /// that a linear scene goes on to be passive if the nonlinear bound passes too.
-fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<Assumption> {
+fn saturation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     if let Some(torque) = scene.torque_limit {
         return Some(Assumption::Limited { torque, full_scale: steps.full_scale });
     }
@@ -322,17 +324,17 @@ fn saturation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<A
 fn passes_limited(scene: &Scene, assessment: &Assessment) -> Option<(Interval, f64)> {
     // Without one its numbers may be out of range.
     assessment.alpha?;
-    let numbers = Numbers::of(scene, assessment.format);
+    let numbers = LoopIntervals::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment.rule, assessment.bound, &numbers)?;
     let limited = Limited::of(scene, &numbers, bound)?;
     Some((bound, limited.margin(0.0)))
 }
 
-fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assumption {
+fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Assumption {
     if steps.encoder.or(steps.full_scale).is_none() {
         return Assumption::StepsNotStated;
     }
-    match Rest::of(scene, assessment.format, steps) {
+    match QuantizationBound::of(scene, assessment.format, steps) {
         Some(rest) => Assumption::Quantisation(rest),
         None => Assumption::StepsUnbounded,
     }
@@ -342,12 +344,12 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Assump
 /// needs `alpha` of damping where there is `delta` puts in `pi (alpha - delta) omega A^2` a cycle
 /// of amplitude `A`, of which friction takes `4 f_c A` (equation 33). The index is that of the whole
 /// controller one sample later, which is the condition without a coupling (theory, section 5).
-fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Steps) -> Option<Assumption> {
+fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     let friction = steps.friction.filter(|&friction| friction > 0.0)?;
     if assessment.outcome.is_ok() {
         return None;
     }
-    let controller = Loop::in_format(scene, assessment.format).ok()?.controller;
+    let controller = LoopTransfers::in_format(scene, assessment.format).ok()?.controller;
     let later = Transfer { shift: controller.shift - 1, ..controller };
     let needed = index(later, Interval::decimal(scene.timing.period), false).ok()?.minimum;
     let shortage = needed.midpoint() - assessment.delta.midpoint();

@@ -31,7 +31,7 @@
 //! there as well. That is so of a wall that is late, where the gain that solves a tick does not
 //! change with it. Anywhere else coefficients that are rounded each by itself can leave a hole.
 
-use super::model::Numbers;
+use super::model::LoopIntervals;
 use super::parameter::Parameter;
 use super::rules::is_nonlinear;
 use crate::environment::Environment;
@@ -58,7 +58,7 @@ pub(super) const fn between(
     parameter: Parameter,
     value: f64,
 ) -> Between {
-    let n = Numbers::of(scene, format);
+    let n = LoopIntervals::of(scene, format);
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
@@ -68,14 +68,14 @@ pub(super) const fn between(
     if passes { Between::Passes } else { Between::Unknown }
 }
 
-const fn is_affine_in_wall(scene: &Scene, n: &Numbers) -> bool {
+const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
     let is_late = matches!(scene.environment.wall(), Some(wall) if wall.delay > 0);
     let is_soft = n.missed.is_some() || !n.is_standard && n.excess_compliance().hi() > 0.0;
     (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
 }
 
 /// An undelayed free mode alone has `T C = -be (z - 1) / z` whatever its coupling.
-const fn is_affine_in_residual(scene: &Scene, n: &Numbers) -> bool {
+const fn is_affine_in_residual(scene: &Scene, n: &LoopIntervals) -> bool {
     let is_undelayed_alone = matches!(scene.environment, Environment::FreeMode { delay: 0, .. });
     let is_affine = n.missed.is_none() && (n.coupling.is_none() || is_undelayed_alone);
     matches!(n.format, Format::F64) && (is_nonlinear(scene) || is_affine)
@@ -86,7 +86,7 @@ const fn is_affine_in_residual(scene: &Scene, n: &Numbers) -> bool {
 /// - Behind a rigid coupling `T C` is affine in `T`, and at 0 that of the same scene without
 ///   stiffness.
 /// - In the nonlinear rule, an undelayed damper without a filter adds nothing to the bound.
-const fn between_periods(scene: &Scene, n: &Numbers, longest: f64) -> Between {
+const fn between_periods(scene: &Scene, n: &LoopIntervals, longest: f64) -> Between {
     let wall = scene.environment.wall();
     let cancels = !n.cancelled.is_zero();
     let damping = match wall {
@@ -123,7 +123,7 @@ const fn between_periods(scene: &Scene, n: &Numbers, longest: f64) -> Between {
 
 /// Whether the coupling, rounded, is stiffer than the standard one up to this period. At the
 /// standard one it is judged as if it were exactly that, which costs a little of what it passes.
-const fn is_never_standard(n: &Numbers, longest: f64) -> bool {
+const fn is_never_standard(n: &LoopIntervals, longest: f64) -> bool {
     match n.coupling {
         None => true,
         Some(stiffness) => longest * stiffness.hi() < 1.99 * n.delta.lo(),
@@ -132,7 +132,7 @@ const fn is_never_standard(n: &Numbers, longest: f64) -> bool {
 
 /// Whether every passivity from this one on passes if it does. With coefficients that are rounded
 /// the exact rule is a little stricter at the standard coupling than beside it.
-pub(super) const fn passes_upwards(scene: &Scene, n: &Numbers, passivity: f64) -> bool {
+pub(super) const fn passes_upwards(scene: &Scene, n: &LoopIntervals, passivity: f64) -> bool {
     if n.missed.is_some() && !is_nonlinear(scene) {
         return false;
     }

@@ -1,7 +1,7 @@
 //! The way of every environment's scene from numbers to a timed certificate, for code that is
 //! generic over the environment.
 
-use super::{Certified, Rejection, Timed, TimingError};
+use super::{Certified, Rejection, TimingChecked, TimingError};
 use crate::environment::*;
 use crate::number::Number;
 use crate::output_timing::OutputMode;
@@ -9,16 +9,18 @@ use crate::scene::Scene;
 use crate::step::Step;
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`.
-pub trait CertifyScene<N: Number>: Renderable<N> + Copy + 'static {
+pub trait CertifyScene<N: Number>: Discretize<N> + Copy + 'static {
     /// The scene timed, if the coefficients as rounded to the number format and the mode allow it.
     /// Does not look for reasons and remedies, so that a board has nothing of what it takes to find
     /// them.
     ///
     /// # Errors
     /// What does not allow it.
-    fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+    fn timing_checked<M: OutputMode>(
+        scene: Scene<Self>,
+    ) -> Result<TimingChecked<Scene<Self>, M>, Step>
     where
-        Self: Renders<M>;
+        Self: SupportsTiming<M>;
 
     /// The certificate of the coefficients as rounded to the number format.
     ///
@@ -32,9 +34,9 @@ pub trait CertifyScene<N: Number>: Renderable<N> + Copy + 'static {
     /// Where scene and mode do not agree.
     fn time<M: OutputMode>(
         certified: Certified<Scene<Self>>,
-    ) -> Result<Timed<Scene<Self>, M>, TimingError>
+    ) -> Result<TimingChecked<Scene<Self>, M>, TimingError>
     where
-        Self: Renders<M>;
+        Self: SupportsTiming<M>;
 
     /// [`Scene::as_data`].
     fn as_data(scene: &Scene<Self>) -> Scene;
@@ -43,11 +45,11 @@ pub trait CertifyScene<N: Number>: Renderable<N> + Copy + 'static {
 macro_rules! certify_scene {
     ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
         impl<F: Number, $($generics)*> CertifyScene<F> for $environment {
-            fn timed<M: OutputMode>(scene: Scene<Self>) -> Result<Timed<Scene<Self>, M>, Step>
+            fn timing_checked<M: OutputMode>(scene: Scene<Self>) -> Result<TimingChecked<Scene<Self>, M>, Step>
             where
-                Self: Renders<M>,
+                Self: SupportsTiming<M>,
             {
-                scene.timed_in(F::FORMAT)
+                scene.timing_checked_in(F::FORMAT)
             }
 
             fn certify(scene: Scene<Self>) -> Result<Certified<Scene<Self>>, Rejection> {
@@ -56,9 +58,9 @@ macro_rules! certify_scene {
 
             fn time<M: OutputMode>(
                 certified: Certified<Scene<Self>>,
-            ) -> Result<Timed<Scene<Self>, M>, TimingError>
+            ) -> Result<TimingChecked<Scene<Self>, M>, TimingError>
             where
-                Self: Renders<M>,
+                Self: SupportsTiming<M>,
             {
                 certified.time()
             }

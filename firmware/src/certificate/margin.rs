@@ -5,10 +5,10 @@
 //! index.
 
 use super::assessment::Assessment;
-use super::model::{Missed, Numbers, largest_gain, largest_solved};
-use super::posed::Posed;
+use super::model::{LoopIntervals, Missed, largest_gain, largest_solved};
+use super::problem::PassivityProblem;
 use super::rules::{Answer, Rule, paper_limit};
-use crate::passivity::bernstein::Closeness;
+use crate::passivity::bernstein::Precision;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
 
@@ -24,10 +24,12 @@ impl Assessment {
     pub const fn margin(&self, scene: &Scene) -> Option<f64> {
         match (self.rule, &self.outcome, self.exact) {
             (Rule::Nonlinear, Ok(()), _) => match self.bound {
-                Some(bound) => match Limited::of(scene, &Numbers::of(scene, self.format), bound) {
-                    Some(limited) => Some(limited.margin(0.0)),
-                    None => Some(0.0),
-                },
+                Some(bound) => {
+                    match Limited::of(scene, &LoopIntervals::of(scene, self.format), bound) {
+                        Some(limited) => Some(limited.margin(0.0)),
+                        None => Some(0.0),
+                    }
+                }
                 None => None,
             },
             (Rule::Exact, Ok(()), _) => Some(match self.linear(scene) {
@@ -44,12 +46,12 @@ impl Assessment {
 
     /// Of a linear scene: `delta` less the index at the port.
     const fn linear(&self, scene: &Scene) -> Option<f64> {
-        let n = Numbers::of(scene, self.format);
+        let n = LoopIntervals::of(scene, self.format);
         if n.missed.is_some() {
             return searched(scene, self);
         }
-        let Ok(posed) = Posed::with(scene, n) else { return None };
-        match posed.at_port(&Closeness::TIGHT) {
+        let Ok(posed) = PassivityProblem::with(scene, n) else { return None };
+        match posed.at_port(&Precision::TIGHT) {
             Ok(found) => Some(n.delta.sub(found.minimum).lo()),
             Err(_) => None,
         }
@@ -71,10 +73,11 @@ const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     while i < HALVINGS {
         let loss = 0.5 * (passes + fails);
         let device = Device { passivity: Some(declared - loss), ..scene.device };
-        let certified = match Posed::in_format(&Scene { device, ..*scene }, assessment.format) {
-            Ok(posed) => posed.is_certified(),
-            Err(_) => false,
-        };
+        let certified =
+            match PassivityProblem::in_format(&Scene { device, ..*scene }, assessment.format) {
+                Ok(posed) => posed.is_certified(),
+                Err(_) => false,
+            };
         if certified {
             passes = loss;
         } else {
@@ -103,7 +106,7 @@ pub(super) struct Limited {
 impl Limited {
     /// Of a scene with this bound on its index. `None` where that is not below the limit, or none is
     /// known.
-    pub const fn of(scene: &Scene, n: &Numbers, bound: Interval) -> Option<Self> {
+    pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
         match largest_solved(&scene.environment, None, n) {
             Some(solved) => Self::of_solved::<true>(scene, n, bound, solved),
             None => None,
@@ -113,7 +116,7 @@ impl Limited {
     /// The same where [`largest_solved`] is known.
     pub const fn of_solved<const CANCELS: bool>(
         scene: &Scene,
-        n: &Numbers,
+        n: &LoopIntervals,
         bound: Interval,
         solved: Interval,
     ) -> Option<Self> {
@@ -130,7 +133,7 @@ impl Limited {
     }
 
     /// What the limit leaves over the bound, in N m s/rad.
-    pub const fn room(&self) -> f64 {
+    pub const fn injectable_damping(&self) -> f64 {
         self.limit.sub(self.bound).lo()
     }
 

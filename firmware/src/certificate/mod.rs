@@ -2,7 +2,7 @@
 //!
 //! At compile time and on the host all of it is known: the index, what stands against it, and what would
 //! pass. A board limits every torque, and asks when it starts, and for every change that arrives over the
-//! wire, for the part that decides then ([`Scene::timed_in`]), by the same functions.
+//! wire, for the part that decides then ([`Scene::timing_checked_in`]), by the same functions.
 //!
 //! ```
 //! use firmware::certificate::Certified;
@@ -36,27 +36,27 @@ mod digits;
 mod margin;
 mod model;
 mod parameter;
-mod posed;
+mod problem;
+mod quantization;
 mod rejection;
 mod remedy;
 mod remedy_search;
-mod rest;
 mod rules;
 mod secant;
 mod timed;
 mod varied;
 
 pub use assessment::{Assessment, assess, assess_in};
-pub use assumption::{Assumption, Assumptions, Standing};
+pub use assumption::{Assumption, AssumptionStatus, Assumptions};
 pub use certify_scene::CertifyScene;
-pub use model::Loop;
+pub use model::LoopTransfers;
 pub use parameter::{InvalidParameter, Parameter};
-pub use posed::Posed;
+pub use problem::PassivityProblem;
+pub use quantization::{QuantizationBound, Resolution};
 pub use rejection::Rejection;
 pub use remedy::{Remedies, Remedy};
-pub use rest::{Rest, Steps};
 pub use rules::{Answer, Rule, gamma};
-pub use timed::{Timed, TimingError};
+pub use timed::{TimingChecked, TimingError};
 
 pub use crate::text::Sentence;
 
@@ -144,18 +144,18 @@ macro_rules! certify_for {
             ///
             /// # Errors
             /// [`Step::Certificate`] where it may not.
-            pub const fn timed_in<M: OutputMode>(
+            pub const fn timing_checked_in<M: OutputMode>(
                 self,
                 format: Format,
-            ) -> Result<Timed<Self, M>, Step>
+            ) -> Result<TimingChecked<Self, M>, Step>
             where
-                $environment: Renders<M>,
+                $environment: SupportsTiming<M>,
             {
                 let scene = self.as_data();
                 // Asked here, where the type tells.
                 let is_late = scene.environment.is_late();
                 match timed::judged::<$cancels, M>(&scene, is_late, format) {
-                    Ok(limited) => Ok(Timed::new(self, format, limited)),
+                    Ok(limited) => Ok(TimingChecked::new(self, format, limited)),
                     Err(step) => Err(step),
                 }
             }
@@ -194,12 +194,12 @@ macro_rules! certify_for {
             /// Where they do not agree; see [`TimingError`].
             pub const fn time<M: OutputMode>(
                 self,
-            ) -> Result<Timed<Scene<$environment>, M>, TimingError>
+            ) -> Result<TimingChecked<Scene<$environment>, M>, TimingError>
             where
-                $environment: Renders<M>,
+                $environment: SupportsTiming<M>,
             {
                 match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
-                    Ok(limited) => Ok(Timed::new(self.scene, self.assessment.format, limited)),
+                    Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
                     Err(error) => Err(error),
                 }
             }
@@ -210,9 +210,9 @@ macro_rules! certify_for {
             /// # Panics
             /// If scene and mode do not agree; in a constant that is the compile error.
             #[track_caller]
-            pub const fn timed<M: OutputMode>(self) -> Timed<Scene<$environment>, M>
+            pub const fn timing_checked<M: OutputMode>(self) -> TimingChecked<Scene<$environment>, M>
             where
-                $environment: Renders<M>,
+                $environment: SupportsTiming<M>,
             {
                 match self.time() {
                     Ok(timed) => timed,

@@ -15,7 +15,7 @@ use crate::scene::{Coupling, Scene};
 
 /// The numbers of a scene as the intervals that the certificate computes with.
 #[derive(Clone, Copy)]
-pub(super) struct Numbers {
+pub(super) struct LoopIntervals {
     /// Nominal period `T`.
     pub period: Interval,
     /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
@@ -48,7 +48,7 @@ pub(super) struct Missed {
 impl Missed {
     /// The same, with counts that are read up to a part `late` of a period after its beginning: then
     /// the time between two counts may be longer, and that to the latch shorter, by as much.
-    pub const fn read_late(n: &Numbers, late: Interval) -> Self {
+    pub const fn read_late(n: &LoopIntervals, late: Interval) -> Self {
         let slowest = Interval::ONE.add(late).div(Interval::ONE.sub(late));
         match n.missed {
             Some(missed) => Self { stretch: missed.stretch.mul(slowest), ..missed },
@@ -79,7 +79,7 @@ impl Missed {
     }
 }
 
-impl Numbers {
+impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
         Self::of_late(scene, scene.environment.is_late(), format)
     }
@@ -187,7 +187,7 @@ const fn rounded(value: Interval, format: Format, rounding: Rounding) -> Interva
 #[inline(never)]
 pub(super) const fn transfer(
     environment: &Environment,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Result<Transfer, Unbuildable> {
     let built = match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall(w, n)),
@@ -212,7 +212,7 @@ pub(super) const fn transfer(
 }
 
 /// `z^-n (K + B (1 - a)(z - 1) / (T (z - a)))`, `a = 0` without a filter (equation 24).
-const fn wall(w: &Wall, n: &Numbers) -> Transfer {
+const fn wall(w: &Wall, n: &LoopIntervals) -> Transfer {
     let k = n.coefficient(Interval::decimal(w.stiffness));
     let Washout { gain: b, pole: a } = damper(w, n);
     let denominator = Polynomial::ascending(&[a.neg().mul(n.period), n.period]);
@@ -237,7 +237,7 @@ pub(super) struct Washout {
 
 impl Washout {
     /// From the gain over the period and the rate as they were before rounding.
-    const fn rounded(gain: Interval, rate: Interval, n: &Numbers) -> Self {
+    const fn rounded(gain: Interval, rate: Interval, n: &LoopIntervals) -> Self {
         let gain = n.coefficient(gain).mul(n.period);
         Self { gain, pole: Interval::ONE.sub(n.coefficient(rate)) }
     }
@@ -249,7 +249,7 @@ impl Washout {
 }
 
 /// The damper of a wall.
-pub(super) const fn damper(w: &Wall, n: &Numbers) -> Washout {
+pub(super) const fn damper(w: &Wall, n: &LoopIntervals) -> Washout {
     let b = Interval::decimal(w.damping);
     let rate = match w.filter {
         Some(a) if w.damping != 0.0 => Interval::ONE.sub(Interval::decimal(a)),
@@ -266,7 +266,7 @@ pub(super) const fn damper(w: &Wall, n: &Numbers) -> Washout {
 
 /// `-be K (z - 1) / ((K T + be) z - be)`, for a rigid coupling `-be (z - 1) / (T z)` (equation
 /// 23, generalised from `K = 2 b / T` to any coupling spring).
-const fn free_mode(n: &Numbers) -> Transfer {
+const fn free_mode(n: &LoopIntervals) -> Transfer {
     let be = n.cancelled;
     let (gain, denominator) = match (n.format, n.coupling) {
         (Format::F64, Some(k)) => {
@@ -284,7 +284,7 @@ const fn free_mode(n: &Numbers) -> Transfer {
 }
 
 /// The canceller as a servo computes it, with the opposite sign.
-pub(super) const fn canceller(n: &Numbers) -> Washout {
+pub(super) const fn canceller(n: &LoopIntervals) -> Washout {
     let be = n.cancelled;
     match n.coupling {
         Some(k) => {
@@ -296,7 +296,7 @@ pub(super) const fn canceller(n: &Numbers) -> Washout {
     }
 }
 
-const fn rational(written: &Rational, n: &Numbers) -> Option<Transfer> {
+const fn rational(written: &Rational, n: &LoopIntervals) -> Option<Transfer> {
     let r = written.cancelled();
     let numerator = Polynomial::descending(r.numerator.as_slice(), false);
     let denominator = Polynomial::descending(r.denominator.as_slice(), false);
@@ -322,7 +322,7 @@ const fn rational(written: &Rational, n: &Numbers) -> Option<Transfer> {
 }
 
 /// The coefficients that a servo makes of those of a polynomial over `leading`.
-const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
+const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polynomial {
     let mut coefficients = [Interval::ZERO; 2 * MAX_DEGREE + 1];
     let mut i = 0;
     while i < p.len() && i < coefficients.len() {
@@ -347,7 +347,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &Numbers) -> Polynomial {
 pub(super) const fn nonlinear_bound<const CANCELS: bool>(
     environment: &Environment,
     solved: Interval,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Option<Interval> {
     match exactly_solved_bound::<CANCELS>(environment, n) {
         Some(bound) if matches!(n.format, Format::F64) => Some(bound),
@@ -357,14 +357,14 @@ pub(super) const fn nonlinear_bound<const CANCELS: bool>(
 }
 
 /// What the servo's gains make of the torque where the loop is solved in the tick: the larger of
-/// [`Numbers::solved`] out of contact and in contact. Exactly 1 where the environment is late.
+/// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 where the environment is late.
 ///
 /// `contact` is the scale of the environment's own [`transfer`] where that is known already. `None`
 /// where it cannot be had.
 pub(super) const fn largest_solved(
     environment: &Environment,
     contact: Option<Interval>,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Option<Interval> {
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
@@ -382,7 +382,7 @@ pub(super) const fn largest_solved(
     })
 }
 
-const fn scale(environment: &Environment, n: &Numbers) -> Option<Interval> {
+const fn scale(environment: &Environment, n: &LoopIntervals) -> Option<Interval> {
     match transfer(environment, n) {
         Ok(transfer) => Some(transfer.scale),
         Err(_) => None,
@@ -391,7 +391,7 @@ const fn scale(environment: &Environment, n: &Numbers) -> Option<Interval> {
 
 const fn exactly_solved_bound<const CANCELS: bool>(
     environment: &Environment,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Option<Interval> {
     // A spring that pulls away is no monotone law.
     if matches!(environment.wall(), Some(w) if w.stiffness < 0.0) {
@@ -418,7 +418,7 @@ const fn exactly_solved_bound<const CANCELS: bool>(
 pub(super) const fn largest_gain<const CANCELS: bool>(
     environment: &Environment,
     solved: Interval,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Option<Interval> {
     let gain = match environment {
         Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall_gain(w, n),
@@ -436,20 +436,20 @@ pub(super) const fn largest_gain<const CANCELS: bool>(
     Some(gain.mul(solved))
 }
 
-const fn wall_gain(w: &Wall, n: &Numbers) -> Interval {
+const fn wall_gain(w: &Wall, n: &LoopIntervals) -> Interval {
     let k = n.coefficient(Interval::decimal(w.stiffness)).abs();
     k.mul(n.period).add(switched_damping(w, n).double())
 }
 
 /// Sum of the magnitudes of a wall's torques for a unit of velocity.
-const fn switched_damping(w: &Wall, n: &Numbers) -> Interval {
+const fn switched_damping(w: &Wall, n: &LoopIntervals) -> Interval {
     match n.format {
         Format::F64 => Interval::decimal(w.damping).abs(),
         _ => damper(w, n).l1_norm(),
     }
 }
 
-const fn wall_bound(w: &Wall, n: &Numbers) -> Interval {
+const fn wall_bound(w: &Wall, n: &LoopIntervals) -> Interval {
     let damping = switched_damping(w, n);
     if w.delay == 0 {
         let passive = w.filter.is_none() && w.damping >= 0.0;
@@ -460,7 +460,7 @@ const fn wall_bound(w: &Wall, n: &Numbers) -> Interval {
     k.mul(n.period).mul(samples).add(damping)
 }
 
-const fn canceller_bound(n: &Numbers) -> Option<Interval> {
+const fn canceller_bound(n: &LoopIntervals) -> Option<Interval> {
     let be = n.cancelled;
     match (n.format, n.coupling) {
         (Format::F64, Some(k)) if be.lo() < 0.0 => {
@@ -482,11 +482,11 @@ const fn canceller_bound(n: &Numbers) -> Option<Interval> {
 const fn valid_environment(
     scene: &Scene,
     format: Format,
-) -> Result<(Numbers, Transfer), Unbuildable> {
+) -> Result<(LoopIntervals, Transfer), Unbuildable> {
     if first_invalid(scene).is_some() {
         return Err(Unbuildable::OutOfRange);
     }
-    let n = Numbers::of(scene, format);
+    let n = LoopIntervals::of(scene, format);
     match transfer(&scene.environment, &n) {
         Ok(environment) => Ok((n, environment)),
         Err(error) => Err(error),
@@ -496,7 +496,7 @@ const fn valid_environment(
 /// A scene's linear transfer functions from position (rad) to torque (N m), as the certificate
 /// sees them: for pictures, and for simulating what was not certified.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loop {
+pub struct LoopTransfers {
     /// The environment `E` alone.
     pub environment: Transfer,
     /// The total controller `C = E / (1 + V E)` (theory, section 2).
@@ -505,7 +505,7 @@ pub struct Loop {
     pub equivalent: Transfer,
 }
 
-impl Loop {
+impl LoopTransfers {
     /// The transfer functions of a scene as it was written, one-sidedness and torque limit left
     /// out.
     ///
@@ -519,7 +519,7 @@ impl Loop {
     /// The same of the coefficients that a servo in a number format multiplies by.
     ///
     /// # Errors
-    /// As [`Loop::of`].
+    /// As [`LoopTransfers::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Unbuildable> {
         let (n, environment) = match valid_environment(scene, format) {
             Ok(found) => found,
@@ -541,11 +541,11 @@ impl Loop {
     }
 
     /// `E'` where torques are latched and updates may be missed, which is judged beside
-    /// [`Loop::equivalent`]: behind the coupling that is standard for the declared passivity. `None`
+    /// [`LoopTransfers::equivalent`]: behind the coupling that is standard for the declared passivity. `None`
     /// where no update is missed.
     ///
     /// # Errors
-    /// As [`Loop::of`].
+    /// As [`LoopTransfers::of`].
     pub const fn equivalent_where_latched(scene: &Scene) -> Result<Option<Transfer>, Unbuildable> {
         let (n, environment) = match valid_environment(scene, Format::F64) {
             Ok(found) => found,

@@ -6,7 +6,7 @@ use super::parameter::InvalidParameter;
 use super::remedy::{Remedies, Remedy};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::Doubt;
+use crate::passivity::poles::UndecidedReason;
 use crate::text::Sentence;
 
 /// Why a scene was not certified. Indices in N m s/rad.
@@ -98,7 +98,7 @@ pub enum Rejection {
     /// Neither proved nor disproved: never a yes.
     Undecided {
         /// What stood in the way.
-        doubt: Doubt,
+        doubt: UndecidedReason,
         /// The index, where it was enclosed.
         index: Option<Interval>,
         /// What it had to stay below.
@@ -272,19 +272,19 @@ const fn write_coupling(
 
 const fn write_doubt(
     t: &mut Sentence,
-    doubt: Doubt,
+    doubt: UndecidedReason,
     index: Option<Interval>,
     limit: Option<Interval>,
 ) {
     t.push(match doubt {
-        Doubt::PoleNearCircle => "a pole is so near the unit circle that rounding hides its side",
-        Doubt::SeveralPolePairs => "the environment has several pole pairs on the unit circle",
-        Doubt::ResidueSign => {
+        UndecidedReason::PoleNearCircle => "a pole is so near the unit circle that rounding hides its side",
+        UndecidedReason::SeveralPolePairs => "the environment has several pole pairs on the unit circle",
+        UndecidedReason::ResidueSign => {
             "rounding hides the sign of a residue on the unit circle; declare exact zeros at z = 1 as unit_zeros"
         }
-        Doubt::OutOfRange => "numbers or degrees are out of the range of the computation",
-        Doubt::TooClose => "the index is too close to its limit to tell",
-        Doubt::NoNonlinearBound => {
+        UndecidedReason::OutOfRange => "numbers or degrees are out of the range of the computation",
+        UndecidedReason::TooClose => "the index is too close to its limit to tell",
+        UndecidedReason::NoNonlinearBound => {
             "no bound is known for a general rational environment with a torque limit"
         }
     });
@@ -338,7 +338,7 @@ mod tests {
             remedies,
         };
         let shortage = Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies };
-        let doubt = Doubt::ResidueSign;
+        let doubt = UndecidedReason::ResidueSign;
         let (index, limit) = (Some(long), Some(long));
         let undecided = Rejection::Undecided { doubt, index, limit, remedies };
         let last = "device passivity >= 1.23e-22 N m s/rad";

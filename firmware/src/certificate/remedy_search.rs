@@ -2,9 +2,9 @@
 
 use super::between::passes_upwards;
 use super::digits::{Digits, Side};
-use super::model::Numbers;
+use super::model::LoopIntervals;
 use super::parameter::Parameter;
-use super::posed::Posed;
+use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::{CANDIDATES, ORDER, Remedies, Remedy};
 use super::varied::{FARTHEST, Varied};
@@ -54,7 +54,7 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
 /// side, where that coupling alone is not enough. In a frame of its own, for the second scene.
 #[inline(never)]
 const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, Remedy)> {
-    let numbers = Numbers::of(scene, format);
+    let numbers = LoopIntervals::of(scene, format);
     let standard = numbers.standard_stiffness().midpoint();
     let stiffness = Digits::of(standard, Side::Below).value();
     let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
@@ -72,7 +72,7 @@ const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, R
 /// What the scene lacks as it is.
 #[inline(never)]
 const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
+    match PassivityProblem::in_format(scene, format) {
         Ok(posed) => posed.shortage(),
         Err(_) => None,
     }
@@ -81,7 +81,7 @@ const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
 /// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
 /// digits as pass, on the soft side.
 const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
-    let numbers = Numbers::of(varied.scene, varied.format);
+    let numbers = LoopIntervals::of(varied.scene, varied.format);
     if numbers.is_standard {
         return None;
     }
@@ -115,7 +115,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
         None if !cancels => Parameter::DeviceDamping,
         None => return None,
     };
-    let numbers = Numbers::of(scene, format);
+    let numbers = LoopIntervals::of(scene, format);
     let Some(needed) = needed_passivity(scene, format) else { return None };
     // A device gives only so much of its passivity as its longest period leaves.
     let scale = match scene.timing.worst_period {
@@ -138,7 +138,7 @@ const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
 /// In a frame of its own, as what it calls.
 #[inline(never)]
 const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
+    match PassivityProblem::in_format(scene, format) {
         Ok(posed) => posed.needed_passivity(),
         Err(_) => None,
     }

@@ -1,8 +1,8 @@
 //! The two rules: the paper's (equations 17 to 19) and the exact one (theory, section 4.1).
 
+use super::model::LoopIntervals;
 #[cfg(doc)]
 use super::model::Missed;
-use super::model::Numbers;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -50,7 +50,7 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 /// standard coupling, and without compliance, `Q` is not passive (equation 19).
 ///
 /// Where updates may be missed and torques latched, [`Missed::limit`] has to hold as well.
-pub(super) const fn paper_limit(n: &Numbers) -> Option<Interval> {
+pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
     match (n.coupling_damping(), &n.missed) {
         (Some(damping), _) if n.delta.is_below(damping) => None,
         (Some(damping), None) => Some(n.delta.min(damping)),
@@ -71,7 +71,7 @@ pub(super) const fn compare(index: Interval, limit: Interval) -> Answer {
 
 /// What `alpha_coupled` has to stay below: `delta`; at the standard coupling also the `K_vc T / 2`
 /// that equals it to the digits that were written and to the rounding of the compliance.
-pub(super) const fn exact_limit(n: &Numbers) -> Interval {
+pub(super) const fn exact_limit(n: &LoopIntervals) -> Interval {
     match n.coupling_damping() {
         Some(damping) if n.is_standard => n.delta.min(damping),
         _ => n.delta,

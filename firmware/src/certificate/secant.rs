@@ -13,7 +13,7 @@ const NEAR: f64 = 0.03;
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub value: f64,
-    /// [`super::Posed::shortage`]; `None` where the scene cannot be posed, or has none.
+    /// [`super::PassivityProblem::shortage`]; `None` where the scene cannot be posed, or has none.
     pub shortage: Option<f64>,
 }
 

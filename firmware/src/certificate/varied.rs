@@ -3,7 +3,7 @@
 use super::between::{Between, between};
 use super::digits::{Digits, Side};
 use super::parameter::Parameter;
-use super::posed::Posed;
+use super::problem::PassivityProblem;
 use super::remedy::Remedy;
 use super::secant::{Bracket, Look, Search};
 use crate::environment::Environment;
@@ -168,9 +168,9 @@ impl Varied<'_> {
     }
 
     #[inline(never)]
-    const fn posed(&self, value: f64) -> Option<Posed> {
+    const fn posed(&self, value: f64) -> Option<PassivityProblem> {
         let Some(scene) = with(self.scene, self.parameter, value) else { return None };
-        match Posed::in_format(&scene, self.format) {
+        match PassivityProblem::in_format(&scene, self.format) {
             Ok(posed) => Some(posed),
             Err(_) => None,
         }

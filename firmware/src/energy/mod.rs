@@ -11,7 +11,7 @@
 use core::hint::cold_path;
 
 use crate::build_error::BuildError;
-use crate::coupling::Offer;
+use crate::coupling::Response;
 use crate::dac::DacCode;
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming};
@@ -82,9 +82,9 @@ impl EnergyMonitor {
 /// Something that adds a torque beside the environment, within the limit.
 pub(crate) trait Action<N: Number> {
     /// The environment's offer with this tick's torque added.
-    fn add_to(&self, offer: Offer<N>) -> Offer<N>;
+    fn add_to(&self, offer: Response<N>) -> Response<N>;
     /// Ends the tick with the environment at `x_e` (rad).
-    fn advance(&mut self, x_e: N);
+    fn update(&mut self, x_e: N);
 }
 
 /// No action: costs nothing.
@@ -92,12 +92,12 @@ pub(crate) struct NoAction;
 
 impl<N: Number> Action<N> for NoAction {
     #[inline(always)]
-    fn add_to(&self, offer: Offer<N>) -> Offer<N> {
+    fn add_to(&self, offer: Response<N>) -> Response<N> {
         offer
     }
 
     #[inline(always)]
-    fn advance(&mut self, _: N) {}
+    fn update(&mut self, _: N) {}
 }
 
 /// A damper on the environment's velocity of the previous two samples, switched on and off at
@@ -139,12 +139,12 @@ impl<N: Number> Injector<N> {
 
 impl<N: Number> Action<N> for Injector<N> {
     #[inline(always)]
-    fn add_to(&self, offer: Offer<N>) -> Offer<N> {
+    fn add_to(&self, offer: Response<N>) -> Response<N> {
         if self.on { offer.plus(self.movement.times(self.gain)) } else { offer }
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         self.movement = x_e.minus(self.last);
         self.last = x_e;
     }

@@ -7,9 +7,9 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DelayedSpring, Law, Renderable, Setting};
+use crate::environment::{DelayedSpring, Discretize, Law, LawContext};
 use crate::scene::{Coupling, Device, Scene, Timing};
-use crate::servo::{Latched, Rendering, RenderingOptions, Servo, Simultaneous, Transducers};
+use crate::servo::{Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers};
 
 const PERIOD: f64 = 1e-3;
 const TRANSDUCERS: Transducers = Transducers {
@@ -95,20 +95,20 @@ proptest! {
         damping in 0.001..0.05_f64,
         moves in proptest::collection::vec((-1e-3..1e-3_f64, any::<bool>()), 1..300),
     ) {
-        let setting = Setting {
+        let setting = LawContext {
             period: PERIOD,
             damping: 0.022,
             coupling: Coupling::Spring { stiffness: 44.0 },
         };
-        let mut law = Renderable::<f64>::law(&DelayedSpring::<1> { stiffness }, &setting).unwrap();
+        let mut law = Discretize::<f64>::law(&DelayedSpring::<1> { stiffness }, &setting).unwrap();
         let mut injector = Injector::<f64>::new(damping, PERIOD).unwrap();
         let (mut x, mut supplied, mut squares) = (0.0, 0.0, 0.0);
         for (step, on) in moves {
             injector.switch(on);
-            let Offer::Held(torque) = injector.add_to(law.offer(x + step)) else { unreachable!() };
+            let Response::Held(torque) = injector.add_to(law.evaluate(x + step)) else { unreachable!() };
             x += step;
-            law.advance(x);
-            injector.advance(x);
+            law.update(x);
+            injector.update(x);
             supplied += torque * step;
             squares += step * step / PERIOD;
         }
@@ -127,13 +127,13 @@ fn the_unit_is_a_turn_at_full_torque() {
 fn rendering<M: OutputMode>(
     stiffness: f64,
     injection: Option<f64>,
-) -> Rendering<DelayedSpring<1>, f64, M>
+) -> PreparedServo<DelayedSpring<1>, f64, M>
 where
-    DelayedSpring<1>: crate::servo::Renders<M>,
+    DelayedSpring<1>: crate::servo::SupportsTiming<M>,
 {
-    let timed = spring(stiffness).certified().timed::<M>();
+    let timed = spring(stiffness).certified().timing_checked::<M>();
     let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };
-    let mut rendering = Rendering::new(&timed, &TRANSDUCERS, &options).unwrap();
+    let mut rendering = PreparedServo::new(&timed, &TRANSDUCERS, &options).unwrap();
     while !rendering.servo_mut().open() {}
     rendering
 }
@@ -181,9 +181,9 @@ fn the_damper_is_that_of_the_two_samples_before() {
 fn no_more_is_injected_than_the_certificate_has_room_for() {
     // The index is 9 * 1e-3 / 2, of 0.022.
     let inject = |damping| {
-        let timed = spring(9.0).certified().timed::<Latched>();
+        let timed = spring(9.0).certified().timing_checked::<Latched>();
         let options = RenderingOptions { injection: Some(damping), ..RenderingOptions::DEFAULT };
-        Rendering::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).map(|_| ())
+        PreparedServo::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).map(|_| ())
     };
     assert_eq!(inject(0.01749), Ok(()));
     let refused = inject(0.0176).unwrap_err();

@@ -2,12 +2,12 @@
 
 use super::delay_line::VariableDelay;
 use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
-use super::law::{Law, Renderable, Setting};
+use super::law::{Discretize, Law, LawContext};
 use super::rational::{Rational, RationalLaw};
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
 use crate::build_error::BuildError;
-use crate::coupling::{Offer, Slopes};
+use crate::coupling::{Response, Slopes};
 use crate::number::Number;
 
 /// A spring with an optional damper, as data.
@@ -91,10 +91,10 @@ impl Environment {
 /// same torques to the bit.
 type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
 
-impl<N: Number> Renderable<N> for Wall {
+impl<N: Number> Discretize<N> for Wall {
     type Law = AnyWallLaw<N>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         let (damping, period) = (self.damping, setting.period);
         let velocity = match self.filter {
             Some(pole) => AnyVelocity::Filtered(Washout::filtered(damping, period, pole)?),
@@ -121,21 +121,21 @@ pub enum EnvironmentLaw<N: Number> {
 }
 
 impl<N: Number> Law<N> for EnvironmentLaw<N> {
-    fn offer(&self, x: N) -> Offer<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
         match self {
-            Self::Wall(law) => law.offer(x),
-            Self::FreeMode(law) => law.offer(x),
-            Self::FreeModeWall(law) => law.offer(x),
-            Self::Rational(law) => law.offer(x),
+            Self::Wall(law) => law.evaluate(x),
+            Self::FreeMode(law) => law.evaluate(x),
+            Self::FreeModeWall(law) => law.evaluate(x),
+            Self::Rational(law) => law.evaluate(x),
         }
     }
 
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         match self {
-            Self::Wall(law) => law.advance(x_e),
-            Self::FreeMode(law) => law.advance(x_e),
-            Self::FreeModeWall(law) => law.advance(x_e),
-            Self::Rational(law) => law.advance(x_e),
+            Self::Wall(law) => law.update(x_e),
+            Self::FreeMode(law) => law.update(x_e),
+            Self::FreeModeWall(law) => law.update(x_e),
+            Self::Rational(law) => law.update(x_e),
         }
     }
 
@@ -158,10 +158,10 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
     }
 }
 
-impl<N: Number> Renderable<N> for Environment {
+impl<N: Number> Discretize<N> for Environment {
     type Law = EnvironmentLaw<N>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         Ok(match self {
             // A spring has no damper, whatever the field says.
             Self::DelayedSpring(wall) => {

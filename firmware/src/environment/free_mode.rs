@@ -1,10 +1,10 @@
 //! Free mode: the device's own damping cancelled, so that the hand feels almost nothing.
 
 use super::delay_line::{DelayLine, FixedDelay};
-use super::law::{Law, Renderable, Setting};
+use super::law::{Discretize, Law, LawContext};
 use super::velocity::{Velocity, Washout};
 use crate::build_error::BuildError;
-use crate::coupling::{Coupling, Offer, Slopes};
+use crate::coupling::{Coupling, Response, Slopes};
 use crate::number::Number;
 
 /// Free mode: cancels the device's damping down to `residual` (equations 22 and 23).
@@ -31,7 +31,7 @@ pub struct FreeModeWall<W> {
 /// `rho = be / (K_vc T + be)` (equation 23 at `K_vc = 2 b / T`); rigid: `g = be / T`, `rho = 0`.
 pub(crate) fn canceller<N: Number>(
     residual: f64,
-    setting: &Setting,
+    setting: &LawContext,
 ) -> Result<Washout<N>, BuildError> {
     let be = setting.damping - residual;
     match setting.coupling {
@@ -52,19 +52,19 @@ pub struct FreeModeLaw<N: Number, D> {
 
 impl<N: Number, D: DelayLine<N>> Law<N> for FreeModeLaw<N, D> {
     #[inline(always)]
-    fn offer(&self, x: N) -> Offer<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
         match self.delay.due() {
-            Some(torque) => Offer::Held(torque),
-            None => Offer::Line(self.canceller.torque(x)),
+            Some(torque) => Response::Held(torque),
+            None => Response::Line(self.canceller.torque(x)),
         }
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         if self.delay.due().is_some() {
             self.delay.push(self.canceller.torque(x_e));
         }
-        self.canceller.advance(x_e);
+        self.canceller.update(x_e);
     }
 
     fn rest_at(&mut self, x_e: N) {
@@ -80,10 +80,10 @@ impl<N: Number, D: DelayLine<N>> Law<N> for FreeModeLaw<N, D> {
     }
 }
 
-impl<N: Number, const DELAY: usize> Renderable<N> for FreeMode<DELAY> {
+impl<N: Number, const DELAY: usize> Discretize<N> for FreeMode<DELAY> {
     type Law = FreeModeLaw<N, FixedDelay<N, DELAY>>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         let canceller = canceller(self.residual, setting)?;
         Ok(FreeModeLaw { canceller, delay: FixedDelay::at_rest() })
     }
@@ -98,19 +98,19 @@ pub struct FreeModeWallLaw<N: Number, L> {
 
 impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
     #[inline(always)]
-    fn offer(&self, x: N) -> Offer<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
         let free = self.canceller.torque(x);
-        match self.wall.offer(x) {
-            Offer::Held(wall) | Offer::Line(wall) => Offer::Line(free.plus(wall)),
-            Offer::Wall(contact) => Offer::LineAndWall(free, contact),
-            Offer::LineAndWall(line, contact) => Offer::LineAndWall(free.plus(line), contact),
+        match self.wall.evaluate(x) {
+            Response::Held(wall) | Response::Line(wall) => Response::Line(free.plus(wall)),
+            Response::Wall(contact) => Response::LineAndWall(free, contact),
+            Response::LineAndWall(line, contact) => Response::LineAndWall(free.plus(line), contact),
         }
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
-        self.canceller.advance(x_e);
-        self.wall.advance(x_e);
+    fn update(&mut self, x_e: N) {
+        self.canceller.update(x_e);
+        self.wall.update(x_e);
     }
 
     fn rest_at(&mut self, x_e: N) {
@@ -124,10 +124,10 @@ impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
     }
 }
 
-impl<N: Number, W: Renderable<N>> Renderable<N> for FreeModeWall<W> {
+impl<N: Number, W: Discretize<N>> Discretize<N> for FreeModeWall<W> {
     type Law = FreeModeWallLaw<N, W::Law>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         let canceller = canceller(self.residual, setting)?;
         Ok(FreeModeWallLaw { canceller, wall: self.wall.law(setting)? })
     }

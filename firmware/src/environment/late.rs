@@ -12,7 +12,7 @@ mod sealed {
 /// An environment that is late by at least one sample, so that its torque is known one tick early.
 ///
 /// Of [`Environment`] and [`Rational`] only the numbers tell; they are looked at when the scene
-/// is [timed](crate::certificate::Timed).
+/// is [timed](crate::certificate::TimingChecked).
 pub trait Delayed: sealed::Sealed {}
 
 macro_rules! delayed {
@@ -40,7 +40,7 @@ delayed!(@ Environment, Rational,);
             motor has the torque; a `FreeModeWall` cancels without delay, and runs in simulation \
             only"
 )]
-pub trait Renders<M: OutputMode> {}
+pub trait SupportsTiming<M: OutputMode> {}
 
-impl<E> Renders<Simultaneous> for E {}
-impl<E: Delayed> Renders<Latched> for E {}
+impl<E> SupportsTiming<Simultaneous> for E {}
+impl<E: Delayed> SupportsTiming<Latched> for E {}

@@ -5,7 +5,7 @@
 //!
 //! Each environment is a type of its own, so that a program contains only what its scene uses.
 //! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
-//! Each is data first; [`Renderable`] turns it into its [`Law`], which the servo runs.
+//! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs.
 
 /// Gives a macro all environments, each with its generic parameters and with whether it may cancel the
 /// device's damping: the one list of them.
@@ -49,8 +49,8 @@ mod walls;
 pub use any::{Environment, EnvironmentLaw, Wall};
 pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
 pub use free_mode::{FreeMode, FreeModeLaw, FreeModeWall, FreeModeWallLaw};
-pub use late::{Delayed, Renders};
-pub use law::{Law, Renderable, Setting};
+pub use late::{Delayed, SupportsTiming};
+pub use law::{Discretize, Law, LawContext};
 pub use rational::{Coefficients, MAX_DEGREE, Rational, RationalLaw};
 pub use velocity::{AnyVelocity, Difference, NoDamping, Velocity, Washout};
 pub use wall_law::{AnySide, Centred, Displaced, Face, Side, WallLaw};

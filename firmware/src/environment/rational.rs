@@ -2,9 +2,9 @@
 
 use super::MAX_DELAY;
 use super::delay_line::{DelayLine, VariableDelay};
-use super::law::{Law, Renderable, Setting};
+use super::law::{Discretize, Law, LawContext};
 use crate::build_error::BuildError;
-use crate::coupling::{Offer, Slopes};
+use crate::coupling::{Response, Slopes};
 use crate::number::Number;
 
 /// Largest degree of a [`Rational`] numerator or denominator.
@@ -141,14 +141,14 @@ impl<N: Number> RationalLaw<N> {
 }
 
 impl<N: Number> Law<N> for RationalLaw<N> {
-    fn offer(&self, x: N) -> Offer<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
         match self.delay.due() {
-            Some(torque) => Offer::Held(torque),
-            None => Offer::Line(self.torque(x)),
+            Some(torque) => Response::Held(torque),
+            None => Response::Line(self.torque(x)),
         }
     }
 
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         let torque = self.torque(x_e);
         let mut next = N::ZERO;
         for section in self.sections.iter_mut().take(self.degree).rev() {
@@ -177,10 +177,10 @@ impl<N: Number> Law<N> for RationalLaw<N> {
     }
 }
 
-impl<N: Number> Renderable<N> for Rational {
+impl<N: Number> Discretize<N> for Rational {
     type Law = RationalLaw<N>;
 
-    fn law(&self, _: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
         let cancelled = self.cancelled();
         let (numerator, above) = cancelled.multiplied_out();
         let denominator = cancelled.denominator.without_leading_zeros();
@@ -334,7 +334,7 @@ mod tests {
             assert_eq!(kept.cancelled(), kept);
         }
         for environment in [four, mass, declared] {
-            let law = Renderable::<f64>::law(&environment, &setting()).unwrap();
+            let law = Discretize::<f64>::law(&environment, &setting()).unwrap();
             assert!(
                 law.sections[..law.degree]
                     .iter()
@@ -383,13 +383,13 @@ mod tests {
                     ..scene(environment)
                 };
                 assert_eq!(certify(&scene).map(|_| ()), Ok(()), "{coupling}, {delay}");
-                assert!(Renderable::<f32>::law(&environment, &setting()).is_ok());
+                assert!(Discretize::<f32>::law(&environment, &setting()).is_ok());
             }
         }
     }
 
-    fn setting() -> Setting {
-        Setting { period: 1e-3, damping: 0.022, coupling: Coupling::Rigid }
+    fn setting() -> LawContext {
+        LawContext { period: 1e-3, damping: 0.022, coupling: Coupling::Rigid }
     }
 
     #[test]

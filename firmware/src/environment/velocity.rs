@@ -12,7 +12,7 @@ pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
     /// `torque` plus that for the velocity, in N m, with the environment at `x` (rad).
     fn add_to(&self, torque: N, x: N) -> N;
     /// Ends the tick with the environment at `x_e` (rad).
-    fn advance(&mut self, x_e: N);
+    fn update(&mut self, x_e: N);
     /// As if the environment had always been at `x_e` (rad).
     fn rest_at(&mut self, x_e: N);
     /// Torque a position in this tick, in N m/rad.
@@ -30,7 +30,7 @@ impl<N: Number> Velocity<N> for NoDamping {
     }
 
     #[inline(always)]
-    fn advance(&mut self, _: N) {}
+    fn update(&mut self, _: N) {}
 
     fn rest_at(&mut self, _: N) {}
 
@@ -61,7 +61,7 @@ impl<N: Number> Velocity<N> for Difference<N> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         self.previous = x_e;
     }
 
@@ -111,7 +111,7 @@ impl<N: Number> Velocity<N> for Washout<N> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         self.state = self.state.plus(x_e.minus(self.state).times(self.rate));
     }
 
@@ -144,11 +144,11 @@ impl<N: Number> Velocity<N> for AnyVelocity<N> {
         }
     }
 
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         match self {
-            Self::None(velocity) => velocity.advance(x_e),
-            Self::Difference(velocity) => velocity.advance(x_e),
-            Self::Filtered(velocity) => velocity.advance(x_e),
+            Self::None(velocity) => velocity.update(x_e),
+            Self::Difference(velocity) => velocity.update(x_e),
+            Self::Filtered(velocity) => velocity.update(x_e),
         }
     }
 

@@ -4,7 +4,7 @@ use super::delay_line::DelayLine;
 use super::law::Law;
 use super::velocity::Velocity;
 use crate::build_error::BuildError;
-use crate::coupling::{Contact, Offer, Slopes};
+use crate::coupling::{Contact, Response, Slopes};
 use crate::number::Number;
 
 /// Where a wall is, and whether it can pull.
@@ -118,33 +118,33 @@ impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> WallLaw<N, V, S, D>
 
     /// The undelayed offer.
     #[inline(always)]
-    fn immediate(&self, x: N) -> Offer<N> {
+    fn immediate(&self, x: N) -> Response<N> {
         let depth = self.side.depth(x);
         let torque = self.line(x, depth);
         if self.side.one_sided() {
-            Offer::Wall(Contact { torque, depth })
+            Response::Wall(Contact { torque, depth })
         } else {
-            Offer::Line(torque)
+            Response::Line(torque)
         }
     }
 }
 
 impl<N: Number, V: Velocity<N>, S: Side<N>, D: DelayLine<N>> Law<N> for WallLaw<N, V, S, D> {
     #[inline(always)]
-    fn offer(&self, x: N) -> Offer<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
         match self.delay.due() {
-            Some(torque) => Offer::Held(torque),
+            Some(torque) => Response::Held(torque),
             None => self.immediate(x),
         }
     }
 
     #[inline(always)]
-    fn advance(&mut self, x_e: N) {
+    fn update(&mut self, x_e: N) {
         if self.delay.due().is_some() {
             let torque = self.torque(x_e);
             self.delay.push(torque);
         }
-        self.velocity.advance(x_e);
+        self.velocity.update(x_e);
     }
 
     fn rest_at(&mut self, x_e: N) {

@@ -1,7 +1,7 @@
 //! Springs and damper walls: what a person asks for, and the law that it becomes.
 
 use super::delay_line::{DelayLine, FixedDelay};
-use super::law::{Renderable, Setting};
+use super::law::{Discretize, LawContext};
 use super::velocity::{Difference, NoDamping, Velocity, Washout};
 use super::wall_law::{Centred, Displaced, Face, Side, WallLaw};
 use crate::build_error::BuildError;
@@ -65,7 +65,7 @@ pub trait Spring<N: Number> {
     ///
     /// # Errors
     /// Where a coefficient does not fit the number format.
-    fn velocity(&self, setting: &Setting) -> Result<Self::Velocity, BuildError>;
+    fn velocity(&self, setting: &LawContext) -> Result<Self::Velocity, BuildError>;
     /// The stored samples, at rest.
     fn delay(&self) -> Self::Delay;
 }
@@ -80,7 +80,7 @@ macro_rules! springs {
                 self.stiffness
             }
 
-            fn velocity(&$self, $setting: &Setting) -> Result<Self::Velocity, BuildError> {
+            fn velocity(&$self, $setting: &LawContext) -> Result<Self::Velocity, BuildError> {
                 $build
             }
 
@@ -89,10 +89,10 @@ macro_rules! springs {
             }
         }
 
-        impl<N: Number, const DELAY: usize> Renderable<N> for $wall<DELAY> {
+        impl<N: Number, const DELAY: usize> Discretize<N> for $wall<DELAY> {
             type Law = WallLaw<N, $velocity, Centred, FixedDelay<N, DELAY>>;
 
-            fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+            fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
                 wall_law(self, Centred, setting)
             }
         }
@@ -106,18 +106,18 @@ springs! {
         |self, setting| Washout::filtered(self.damping, setting.period, self.filter);
 }
 
-impl<N: Number, W: Spring<N>> Renderable<N> for Placed<W> {
+impl<N: Number, W: Spring<N>> Discretize<N> for Placed<W> {
     type Law = WallLaw<N, W::Velocity, Displaced<N>, W::Delay>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         wall_law(&self.wall, Displaced(BuildError::number("wall face", self.face)?), setting)
     }
 }
 
-impl<N: Number, W: Spring<N>> Renderable<N> for OneSided<W> {
+impl<N: Number, W: Spring<N>> Discretize<N> for OneSided<W> {
     type Law = WallLaw<N, W::Velocity, Face<N>, W::Delay>;
 
-    fn law(&self, setting: &Setting) -> Result<Self::Law, BuildError> {
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         wall_law(&self.wall, Face(BuildError::number("wall face", self.face)?), setting)
     }
 }
@@ -125,7 +125,7 @@ impl<N: Number, W: Spring<N>> Renderable<N> for OneSided<W> {
 fn wall_law<N: Number, W: Spring<N>, S: Side<N>>(
     wall: &W,
     side: S,
-    setting: &Setting,
+    setting: &LawContext,
 ) -> Result<WallLaw<N, W::Velocity, S, W::Delay>, BuildError> {
     WallLaw::new(wall.stiffness(), wall.velocity(setting)?, side, wall.delay())
 }

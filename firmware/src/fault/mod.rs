@@ -5,7 +5,7 @@
 
 mod retained;
 
-pub use retained::Retained;
+pub use retained::FaultRecord;
 
 use core::fmt;
 

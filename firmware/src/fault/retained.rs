@@ -12,7 +12,7 @@ const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// A fault, and when and where it happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Retained {
+pub struct FaultRecord {
     /// What happened.
     pub fault: Fault,
     /// The tick in which it happened; 0 where that is not known.
@@ -21,7 +21,7 @@ pub struct Retained {
     pub count: i32,
 }
 
-impl Retained {
+impl FaultRecord {
     /// Length of a record in words.
     pub const WORDS: usize = 7;
     /// Words that are no record.
@@ -34,7 +34,7 @@ impl Retained {
         sealed(words)
     }
 
-    /// The record in these words; `None` for anything that [`Retained::encode`] did not write.
+    /// The record in these words; `None` for anything that [`FaultRecord::encode`] did not write.
     pub fn decode(words: &[u32; Self::WORDS]) -> Option<Self> {
         let [magic, code, a, b, tick, count, _] = *words;
         if magic != MAGIC || sealed(*words) != *words {
@@ -46,7 +46,7 @@ impl Retained {
 }
 
 /// The words with their check sum in the last place.
-fn sealed(words: [u32; Retained::WORDS]) -> [u32; Retained::WORDS] {
+fn sealed(words: [u32; FaultRecord::WORDS]) -> [u32; FaultRecord::WORDS] {
     let [magic, code, a, b, tick, count, _] = words;
     let mut digest = CRC.digest();
     for word in [magic, code, a, b, tick, count] {

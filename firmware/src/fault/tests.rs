@@ -53,8 +53,8 @@ fn sentences_have_the_value_the_bound_and_the_way_out() {
 
 #[test]
 fn a_check_sum_of_zeros_is_no_record() {
-    assert_eq!(Retained::decode(&Retained::NOTHING), None);
-    assert_eq!(Retained::decode(&[u32::MAX; Retained::WORDS]), None);
+    assert_eq!(FaultRecord::decode(&FaultRecord::NOTHING), None);
+    assert_eq!(FaultRecord::decode(&[u32::MAX; FaultRecord::WORDS]), None);
 }
 
 proptest! {
@@ -63,19 +63,19 @@ proptest! {
         which in 0..ALL.len(),
         tick: u32,
         count: i32,
-        word in 0..Retained::WORDS,
+        word in 0..FaultRecord::WORDS,
         flipped in 1..=u32::MAX,
     ) {
-        let record = Retained { fault: ALL[which], tick, count };
+        let record = FaultRecord { fault: ALL[which], tick, count };
         let mut words = record.encode();
-        prop_assert_eq!(Retained::decode(&words), Some(record));
+        prop_assert_eq!(FaultRecord::decode(&words), Some(record));
         // Up to 32 flipped bits in a row are always noticed.
         words[word] ^= flipped;
-        prop_assert_eq!(Retained::decode(&words), None);
+        prop_assert_eq!(FaultRecord::decode(&words), None);
     }
 
     #[test]
-    fn what_the_memory_held_before_is_no_record(words: [u32; Retained::WORDS]) {
-        prop_assert_eq!(Retained::decode(&words), None);
+    fn what_the_memory_held_before_is_no_record(words: [u32; FaultRecord::WORDS]) {
+        prop_assert_eq!(FaultRecord::decode(&words), None);
     }
 }

@@ -28,7 +28,7 @@ const CLEARANCE: f64 = 1e-9;
 
 /// How closely a minimum is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closeness {
+pub struct Precision {
     /// The enclosure is as tight as it gets around this border, and no tighter than it takes where
     /// the minimum is clearly on one side: with [`Interval::ENTIRE`] it is tight everywhere, with a
     /// limit it is what tells on which side of the limit the minimum is.
@@ -37,7 +37,7 @@ pub struct Closeness {
     pub tolerance: f64,
 }
 
-impl Closeness {
+impl Precision {
     /// As tight as it gets.
     pub const TIGHT: Self = Self { border: Interval::ENTIRE, tolerance: TOLERANCE };
 
@@ -100,7 +100,7 @@ pub const fn minimum(
     p: &Series,
     r: &Series,
     ends: [Interval; 2],
-    closeness: &Closeness,
+    closeness: &Precision,
 ) -> Minimum {
     let border = closeness.border;
     let degree = if p.degree() > r.degree() { p.degree() } else { r.degree() };
@@ -189,8 +189,8 @@ impl Search {
     /// Bounds the minimum on a box: updates the upper bound, returns the lower one.
     const fn look(&mut self, pieces: &Pieces, left: f64, width: f64) -> Bound {
         let n = self.degree;
-        self.offer(upper_bound(pieces.p[0], pieces.r[0]), left, width);
-        self.offer(upper_bound(pieces.p[n], pieces.r[n]), left + width, width);
+        self.evaluate(upper_bound(pieces.p[0], pieces.r[0]), left, width);
+        self.evaluate(upper_bound(pieces.p[n], pieces.r[n]), left + width, width);
         let mut bound = Bound { lower: f64::INFINITY, rounding: 0.0 };
         let mut i = 0;
         while i <= n {
@@ -207,7 +207,7 @@ impl Search {
         bound
     }
 
-    const fn offer(&mut self, value: f64, at: f64, width: f64) {
+    const fn evaluate(&mut self, value: f64, at: f64, width: f64) {
         if value < self.upper {
             self.upper = value;
             self.at = if at.abs() == 1.0 {

@@ -1,10 +1,10 @@
 //! The discrete-time tests of theory, section 1: passive, output strictly, input strictly passive
 //! (equations 1 to 3).
 
-use super::bernstein::{Closeness, Minimum, minimum};
+use super::bernstein::{Minimum, Precision, minimum};
 use super::chebyshev::{Kernel, Series, at_cosine};
 use super::interval::Interval;
-use super::poles::{Doubt, Obstacle, Reduced, reduce};
+use super::poles::{IndexError, Reduced, UndecidedReason, reduce};
 use super::polynomial::UnitRoot;
 use super::transfer::Transfer;
 
@@ -24,16 +24,16 @@ pub struct RealPart {
 /// `G` is passive if the minimum is not negative. For `G = (T z / (z - 1)) E` the minimum is
 /// `-alpha`. With `widen`, single-number coefficients stand for all decimals that round to them.
 #[inline(never)]
-pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
+pub const fn input_passivity(g: Transfer, widen: bool) -> Result<RealPart, IndexError> {
     match reduce(&g, widen) {
-        Ok(reduced) => real_part(&reduced, &Closeness::TIGHT),
+        Ok(reduced) => real_part(&reduced, &Precision::TIGHT),
         Err(obstacle) => Err(obstacle),
     }
 }
 
 /// Output strict passivity: the largest `d` for which `<u, y> >= d ||y||^2` (equation 2), as
 /// `min Re (1/G)`. `G` must be stable; a pole on the circle leaves it an index of at most 0.
-pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, Obstacle> {
+pub const fn output_passivity(g: Transfer, widen: bool) -> Result<RealPart, IndexError> {
     match reduce(&g, widen) {
         Ok(_) => input_passivity(g.inverse(), widen),
         Err(obstacle) => Err(obstacle),
@@ -46,8 +46,8 @@ pub const fn index(
     environment: Transfer,
     period: Interval,
     widen: bool,
-) -> Result<RealPart, Obstacle> {
-    index_looked_at(&environment, period, widen, &Closeness::TIGHT)
+) -> Result<RealPart, IndexError> {
+    index_looked_at(&environment, period, widen, &Precision::TIGHT)
 }
 
 /// [`index`], as tight as it takes to tell on which side of `limit` it is: a sound enclosure at a
@@ -58,8 +58,8 @@ pub const fn index_near(
     period: Interval,
     widen: bool,
     limit: Interval,
-) -> Result<RealPart, Obstacle> {
-    index_looked_at(&environment, period, widen, &Closeness::around(limit.neg()))
+) -> Result<RealPart, IndexError> {
+    index_looked_at(&environment, period, widen, &Precision::around(limit.neg()))
 }
 
 /// [`index`], its enclosure no tighter than `tolerance` times its magnitude: sound as that, and
@@ -69,8 +69,8 @@ pub const fn index_within(
     period: Interval,
     widen: bool,
     tolerance: f64,
-) -> Result<RealPart, Obstacle> {
-    index_looked_at(&environment, period, widen, &Closeness::within(tolerance))
+) -> Result<RealPart, IndexError> {
+    index_looked_at(&environment, period, widen, &Precision::within(tolerance))
 }
 
 /// [`index`], looked at so closely. The border is one of the real part: the negative of a limit.
@@ -80,8 +80,8 @@ pub const fn index_looked_at(
     environment: &Transfer,
     period: Interval,
     widen: bool,
-    closeness: &Closeness,
-) -> Result<RealPart, Obstacle> {
+    closeness: &Precision,
+) -> Result<RealPart, IndexError> {
     match velocity_reduced(environment, period, widen) {
         Ok(reduced) => reduced_index(&reduced, closeness),
         Err(obstacle) => Err(obstacle),
@@ -95,15 +95,15 @@ pub(crate) const fn velocity_reduced(
     environment: &Transfer,
     period: Interval,
     widen: bool,
-) -> Result<Reduced, Obstacle> {
+) -> Result<Reduced, IndexError> {
     reduce(&environment.from_velocity(period), widen)
 }
 
 /// The index of an environment whose `(T z / (z - 1)) E` this is: the second half of [`index_looked_at`].
 pub(crate) const fn reduced_index(
     velocity: &Reduced,
-    closeness: &Closeness,
-) -> Result<RealPart, Obstacle> {
+    closeness: &Precision,
+) -> Result<RealPart, IndexError> {
     match real_part(velocity, closeness) {
         Ok(found) => Ok(RealPart { minimum: found.minimum.neg(), cos_theta: found.cos_theta }),
         Err(obstacle) => Err(obstacle),
@@ -111,13 +111,13 @@ pub(crate) const fn reduced_index(
 }
 
 #[inline(never)]
-const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, IndexError> {
     if let Err(obstacle) = residues_at_real_points(g) {
         return Err(obstacle);
     }
     let (kernel, shift) = kernel_of(g);
     let Some(mut p) = Series::real_part(kernel, shift, &g.numerator, &g.denominator) else {
-        return Err(Obstacle::Undecided(Doubt::OutOfRange));
+        return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     };
     if let Some(sum) = g.pair {
         p = match without_pair(g, p, sum.half()) {
@@ -131,13 +131,13 @@ const fn real_part(g: &Reduced, closeness: &Closeness) -> Result<RealPart, Obsta
     let left = g.denominator.at_unit_root(UnitRoot::Minus);
     let right = g.denominator.at_unit_root(UnitRoot::Plus);
     let ends = [left.mul(left), right.mul(right)];
-    let closeness = Closeness { border: border.double().div(g.scale), ..*closeness };
+    let closeness = Precision { border: border.double().div(g.scale), ..*closeness };
     let Minimum { value, at } = minimum(&p, &r, ends, &closeness);
     let minimum = value.mul(g.scale).half();
     if minimum.is_finite() {
         Ok(RealPart { minimum, cos_theta: at })
     } else {
-        Err(Obstacle::Undecided(Doubt::PoleNearCircle))
+        Err(IndexError::Undecided(UndecidedReason::PoleNearCircle))
     }
 }
 
@@ -154,23 +154,23 @@ const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
 }
 
 /// Residues at `z = 1` and `z = -1`: `k = residue / z_0` must be positive.
-const fn residues_at_real_points(g: &Reduced) -> Result<(), Obstacle> {
+const fn residues_at_real_points(g: &Reduced) -> Result<(), IndexError> {
     if g.at_one {
         let residue = residue_at(g, UnitRoot::Plus);
         if residue.is_negative() {
-            return Err(Obstacle::NegativeResidue { residue });
+            return Err(IndexError::NegativeResidue { residue });
         }
         if !residue.is_positive() {
-            return Err(Obstacle::Undecided(Doubt::ResidueSign));
+            return Err(IndexError::Undecided(UndecidedReason::ResidueSign));
         }
     }
     if g.at_minus_one {
         let k = residue_at(g, UnitRoot::Minus).neg();
         if k.is_negative() {
-            return Err(Obstacle::ResidueAngle { cos_theta: Interval::ONE.neg() });
+            return Err(IndexError::ResidueAngle { cos_theta: Interval::ONE.neg() });
         }
         if !k.is_positive() {
-            return Err(Obstacle::Undecided(Doubt::ResidueSign));
+            return Err(IndexError::Undecided(UndecidedReason::ResidueSign));
         }
     }
     Ok(())
@@ -206,13 +206,13 @@ const fn residue_at(g: &Reduced, root: UnitRoot) -> Interval {
 
 /// Divides the real part by `2 (c - c0)`. The remainder is the imaginary part of the residue over
 /// the pole: it must vanish exactly, and the residue's real part must be positive.
-const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Obstacle> {
+const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, IndexError> {
     let (quotient, remainder) = p.over_linear(c0);
     if !remainder.contains(0.0) {
-        return Err(Obstacle::ResidueAngle { cos_theta: c0 });
+        return Err(IndexError::ResidueAngle { cos_theta: c0 });
     }
     if !remainder.is_zero() {
-        return Err(Obstacle::Undecided(Doubt::ResidueSign));
+        return Err(IndexError::Undecided(UndecidedReason::ResidueSign));
     }
     let (kernel, shift) = kernel_of(g);
     let (real, imaginary) = at_cosine(c0, shift, &g.numerator, &g.denominator);
@@ -225,11 +225,11 @@ const fn without_pair(g: &Reduced, p: Series, c0: Interval) -> Result<Series, Ob
     };
     let k = sign.mul(g.scale);
     if k.is_negative() {
-        Err(Obstacle::ResidueAngle { cos_theta: c0 })
+        Err(IndexError::ResidueAngle { cos_theta: c0 })
     } else if k.is_positive() {
         Ok(quotient)
     } else {
-        Err(Obstacle::Undecided(Doubt::ResidueSign))
+        Err(IndexError::Undecided(UndecidedReason::ResidueSign))
     }
 }
 
@@ -246,7 +246,7 @@ mod tests {
         )
     }
 
-    fn minimum(numerator: &[f64], denominator: &[f64]) -> Result<Interval, Obstacle> {
+    fn minimum(numerator: &[f64], denominator: &[f64]) -> Result<Interval, IndexError> {
         input_passivity(function(numerator, denominator), false).map(|found| found.minimum)
     }
 
@@ -295,21 +295,22 @@ mod tests {
     #[test]
     fn boundary_poles_are_told_apart() {
         let at = |n: &[f64], d: &[f64]| minimum(n, d).unwrap_err();
-        assert!(matches!(at(&[-1.0], &[1.0, -1.0]), Obstacle::NegativeResidue { .. }));
-        assert!(matches!(at(&[1.0], &[1.0, 1.0]), Obstacle::ResidueAngle { .. }));
-        assert!(matches!(at(&[1.0], &[1.0, -2.0, 1.0]), Obstacle::RepeatedUnitPole { .. }));
-        assert!(matches!(at(&[1.0], &[1.0, 2.0, 1.0]), Obstacle::RepeatedUnitPole { .. }));
+        assert!(matches!(at(&[-1.0], &[1.0, -1.0]), IndexError::NegativeResidue { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, 1.0]), IndexError::ResidueAngle { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, -2.0, 1.0]), IndexError::RepeatedUnitPole { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, 2.0, 1.0]), IndexError::RepeatedUnitPole { .. }));
         // A pair at cos(theta) = 0.625 beside a stable pole: found by the exact recursion.
         assert!(matches!(
             at(&[1.0, 0.0], &[1.0, -1.75, 1.625, -0.5]),
-            Obstacle::ResidueAngle { .. }
+            IndexError::ResidueAngle { .. }
         ));
         // The same pair twice.
         assert!(matches!(
             at(&[1.0], &[1.0, -2.5, 3.5625, -2.5, 1.0]),
-            Obstacle::RepeatedUnitPole { .. } | Obstacle::Undecided(Doubt::SeveralPolePairs)
+            IndexError::RepeatedUnitPole { .. }
+                | IndexError::Undecided(UndecidedReason::SeveralPolePairs)
         ));
-        assert!(matches!(at(&[1.0], &[1.0, -2.5, 1.0]), Obstacle::UnstablePole { .. }));
+        assert!(matches!(at(&[1.0], &[1.0, -2.5, 1.0]), IndexError::UnstablePole { .. }));
     }
 
     #[test]

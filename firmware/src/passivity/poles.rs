@@ -29,7 +29,7 @@ pub struct Reduced {
 /// What stands against a passivity index before the real part is even looked at (conditions of
 /// equation 4), or what could not be decided.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Obstacle {
+pub enum IndexError {
     /// A pole outside the unit circle; the reflection coefficient that shows it is at least 1.
     UnstablePole {
         /// Magnitude of the reflection coefficient of the Schur-Cohn recursion.
@@ -51,12 +51,12 @@ pub enum Obstacle {
         residue: Interval,
     },
     /// Not decided, never to be taken as a yes.
-    Undecided(Doubt),
+    Undecided(UndecidedReason),
 }
 
 /// Why something could not be decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
+pub enum UndecidedReason {
     /// A pole is so near the unit circle that rounding hides on which side it is.
     PoleNearCircle,
     /// Several complex pole pairs on the unit circle.
@@ -77,16 +77,16 @@ pub enum Doubt {
 /// follows takes them as the decimals they stand for, unless a circle pole at `z != 1` makes the
 /// result depend on them being exact.
 #[inline(never)]
-pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, Obstacle> {
+pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, IndexError> {
     if g.numerator.is_zero() {
         return Ok(constant_zero());
     }
     let mut work = Work::new(g, widen);
     if work.exact.ones < -1 {
-        return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE });
+        return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE });
     }
     if work.exact.minus_ones < -1 {
-        return Err(Obstacle::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
+        return Err(IndexError::RepeatedUnitPole { cos_theta: Interval::ONE.neg() });
     }
     let pair = match work.strip_pairs() {
         Ok(pair) => pair,
@@ -98,7 +98,7 @@ pub const fn reduce(g: &Transfer, widen: bool) -> Result<Reduced, Obstacle> {
         return Err(obstacle);
     }
     let Some(numerator) = zeros_multiplied(kept) else {
-        return Err(Obstacle::Undecided(Doubt::OutOfRange));
+        return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     };
     Ok(Reduced {
         scale: kept.scale,
@@ -212,13 +212,13 @@ impl Work {
     }
 
     /// Finds the complex pair of circle poles that is left after cancellation.
-    const fn strip_pairs(&mut self) -> Result<Option<Interval>, Obstacle> {
+    const fn strip_pairs(&mut self) -> Result<Option<Interval>, IndexError> {
         let mut found: Option<Interval> = None;
         loop {
             let sum = match circle_pair(&self.exact.denominator) {
                 Ok(Some(sum)) => sum,
                 Ok(None) => return Ok(found),
-                Err(doubt) => return Err(Obstacle::Undecided(doubt)),
+                Err(doubt) => return Err(IndexError::Undecided(doubt)),
             };
             let (quotient, ..) = self.exact.denominator.over_pair(sum);
             self.exact.denominator = quotient;
@@ -230,9 +230,9 @@ impl Work {
                 // A second pair: the same one is a repeated pole, another one is not handled.
                 let same = before.lo() == sum.lo() && before.hi() == sum.hi();
                 return Err(if same {
-                    Obstacle::RepeatedUnitPole { cos_theta: sum.half() }
+                    IndexError::RepeatedUnitPole { cos_theta: sum.half() }
                 } else {
-                    Obstacle::Undecided(Doubt::SeveralPolePairs)
+                    IndexError::Undecided(UndecidedReason::SeveralPolePairs)
                 });
             } else {
                 found = Some(sum);
@@ -272,14 +272,14 @@ pub const fn hidden_mode(g: &Transfer) -> Option<Interval> {
 /// while the coefficients are short enough; where it does not, no pair is found, and the pole is
 /// left for [`strictly_schur`] to doubt.
 #[inline(never)]
-const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, Doubt> {
+const fn circle_pair(p: &Polynomial) -> Result<Option<Interval>, UndecidedReason> {
     let mut p = *p;
     while p.len() >= 3 && p.is_exact() && p.is_finite() {
         let n = p.degree();
         let (first, last) = (p.coefficient(0), p.coefficient(n));
         if first.lo() == last.lo() && is_palindrome(&p) {
             if n > 2 {
-                return Err(Doubt::SeveralPolePairs);
+                return Err(UndecidedReason::SeveralPolePairs);
             }
             let sum = p.coefficient(1).div(last).neg();
             return Ok(if sum.abs().is_below(Interval::exact(2.0)) { Some(sum) } else { None });
@@ -314,7 +314,7 @@ const fn is_palindrome(p: &Polynomial) -> bool {
 
 /// Schur-Cohn: proves that all roots are inside the unit circle, or that one is outside.
 #[inline(never)]
-pub const fn strictly_schur(p: &Polynomial) -> Result<(), Obstacle> {
+pub const fn strictly_schur(p: &Polynomial) -> Result<(), IndexError> {
     let mut p = *p;
     while p.degree() > 0 {
         let n = p.degree();
@@ -322,12 +322,12 @@ pub const fn strictly_schur(p: &Polynomial) -> Result<(), Obstacle> {
         let size = reflection.abs();
         if !size.is_below(Interval::ONE) {
             return Err(if Interval::ONE.is_below(size) {
-                Obstacle::UnstablePole { reflection: size }
+                IndexError::UnstablePole { reflection: size }
             } else if size.is_exact() && n <= 2 && !on_circle(&p) {
                 // The magnitudes multiply to one and the roots are not on the circle.
-                Obstacle::UnstablePole { reflection: size }
+                IndexError::UnstablePole { reflection: size }
             } else {
-                Obstacle::Undecided(Doubt::PoleNearCircle)
+                IndexError::Undecided(UndecidedReason::PoleNearCircle)
             });
         }
         let mut next = [Interval::ZERO; super::polynomial::MAX_DEGREE];
@@ -338,7 +338,7 @@ pub const fn strictly_schur(p: &Polynomial) -> Result<(), Obstacle> {
         }
         p = Polynomial::ascending(next.split_at(n).0);
         if p.degree() != n - 1 || p.leading().contains(0.0) {
-            return Err(Obstacle::Undecided(Doubt::PoleNearCircle));
+            return Err(IndexError::Undecided(UndecidedReason::PoleNearCircle));
         }
     }
     Ok(())

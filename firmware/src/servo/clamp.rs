@@ -2,10 +2,10 @@
 
 use super::Servo;
 use crate::build_error::BuildError;
-use crate::environment::{Law, Renderable};
+use crate::environment::{Discretize, Law};
 use crate::number::Number;
 
-impl<E: Renderable<N>, N: Number> Servo<E, N> {
+impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The same servo, whose clamp opens and closes within `ticks`.
     ///
     /// # Errors
@@ -38,8 +38,8 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     }
 
     /// Closes the clamp to the torque that is held, so that closing it further acts at once.
-    pub(crate) fn meet(&mut self) {
-        self.limiter.meet(self.torque);
+    pub(crate) fn clamp_to_held_torque(&mut self) {
+        self.limiter.clamp_to_held_torque(self.torque);
     }
 
     /// Puts a torque in the place of the one that is held: no input makes one that is no number.
@@ -63,7 +63,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     }
 
     /// Goes on from another servo's position.
-    pub(crate) fn follow(&mut self, other: &Self) {
+    pub(crate) fn take_position_from(&mut self, other: &Self) {
         self.position = other.position;
     }
 }

@@ -1,22 +1,22 @@
 //! One tick: encoder count in, converter code out.
 
 mod clamp;
-mod rendering;
+mod prepared_servo;
 
-pub use rendering::{Pace, Rendering, RenderingOptions};
+pub use prepared_servo::{PreparedServo, RenderingOptions, TimingLimits};
 
 pub use crate::build_error::BuildError;
-pub use crate::environment::{Delayed, Renders};
+pub use crate::environment::{Delayed, SupportsTiming};
 pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
 pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
 use crate::certificate::{Certified, CertifyScene};
-use crate::coupling::{Offer, Solver};
+use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Law, Renderable};
+use crate::environment::{Discretize, Law};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -57,7 +57,7 @@ pub struct Output {
 /// # Ok::<(), firmware::servo::BuildError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Servo<E: Renderable<N>, N: Number> {
+pub struct Servo<E: Discretize<N>, N: Number> {
     position: Position,
     angle_scale: N::Coefficient,
     law: E::Law,
@@ -83,7 +83,7 @@ impl<E: CertifyScene<N>, N: Number> Servo<E, N> {
     }
 }
 
-impl<E: Renderable<N>, N: Number> Servo<E, N> {
+impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The servo of a scene that somebody else has judged.
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
@@ -107,7 +107,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// no division, no allocation, and nothing that could panic.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount) -> Output {
-        self.simultaneous(raw, &mut NoAction)
+        self.tick_zero_delay(raw, &mut NoAction)
     }
 
     /// One tick in the mode `M`, with an action that adds a torque.
@@ -118,31 +118,31 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
         action: &mut impl Action<N>,
     ) -> Output {
         match M::TIMING {
-            OutputTiming::Simultaneous => self.simultaneous(raw, action),
-            OutputTiming::Latched => self.ahead(raw, action),
+            OutputTiming::Simultaneous => self.tick_zero_delay(raw, action),
+            OutputTiming::Latched => self.tick_latched(raw, action),
         }
     }
 
     /// The code that belongs to the same instant as the count.
     #[inline(always)]
-    fn simultaneous(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
+    fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw);
-        let offer = action.add_to(self.law.offer(x));
-        let output = self.answer(offer, fits);
-        self.advance(x, action);
+        let offer = action.add_to(self.law.evaluate(x));
+        let output = self.solve_to_code(offer, fits);
+        self.update_environment(x, action);
         output
     }
 
     /// The code of the *next* tick, which does not depend on the next tick's count, since the
     /// environment is late by at least one sample: to the bit the code that
-    /// [`Servo::simultaneous`] would give in the tick after this one.
+    /// [`Servo::tick_zero_delay`] would give in the tick after this one.
     #[inline(always)]
-    fn ahead(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
+    fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw);
         // The torque of this tick was computed in the one before.
-        self.advance(x, action);
-        let offer = action.add_to(self.law.offer(x));
-        self.answer(offer, fits)
+        self.update_environment(x, action);
+        let offer = action.add_to(self.law.evaluate(x));
+        self.solve_to_code(offer, fits)
     }
 
     /// One tick at an angle in rad that no encoder has counted: what the number format alone does to
@@ -153,17 +153,17 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         let x = N::from_f64(angle)?;
-        self.answer(self.law.offer(x), true);
-        self.advance(x, &mut NoAction);
+        self.solve_to_code(self.law.evaluate(x), true);
+        self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
     }
 
     /// Ends the tick with the device at `x` (rad) under this tick's torque.
     #[inline(always)]
-    fn advance(&mut self, x: N, action: &mut impl Action<N>) {
+    fn update_environment(&mut self, x: N, action: &mut impl Action<N>) {
         let x_e = self.solver.environment_position(x, self.torque);
-        self.law.advance(x_e);
-        action.advance(x_e);
+        self.law.update(x_e);
+        action.update(x_e);
     }
 
     /// The device's angle in rad, and whether the number format holds it.
@@ -176,7 +176,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
 
     /// Solves coupling and environment with the limited torque, which is then that of this tick.
     #[inline(always)]
-    fn answer(&mut self, offer: Offer<N>, fits: bool) -> Output {
+    fn solve_to_code(&mut self, offer: Response<N>, fits: bool) -> Output {
         let wanted = self.solver.torque(offer);
         let standing_still = if fits { LimitReason::None } else { LimitReason::Angle };
         let (torque, limit) = self.limiter.limit(wanted, standing_still);

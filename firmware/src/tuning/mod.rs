@@ -4,29 +4,29 @@
 //! built as a whole and away from the servo's interrupt; what is refused changes nothing.
 
 mod error;
+mod named_parameters;
 mod render_error;
-mod values;
 
 pub use error::TuningError;
+pub use named_parameters::NamedParameters;
 pub use render_error::RenderError;
-pub use values::Values;
 
 use core::fmt;
 
 use crate::certificate::{CertifyScene, Parameter};
-use crate::environment::{Renderable, Renders};
+use crate::environment::{Discretize, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
 use crate::scene::{Coupling, Scene};
-use crate::servo::{Rendering, RenderingOptions};
+use crate::servo::{PreparedServo, RenderingOptions};
 use crate::step::Step;
 use crate::transducers::Transducers;
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`, and changed
 /// while they run.
-pub trait Tunable<N: Number>: CertifyScene<N> + Values {}
+pub trait Tunable<N: Number>: CertifyScene<N> + NamedParameters {}
 
-impl<N: Number, E: CertifyScene<N> + Values> Tunable<N> for E {}
+impl<N: Number, E: CertifyScene<N> + NamedParameters> Tunable<N> for E {}
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
@@ -90,7 +90,7 @@ impl fmt::Display for Parameters {
 }
 
 /// A scene's tunable parameter; `None` where the scene has no such number.
-fn value<E: Values>(scene: &mut Scene<E>, parameter: Parameter) -> Option<&mut f64> {
+fn value<E: NamedParameters>(scene: &mut Scene<E>, parameter: Parameter) -> Option<&mut f64> {
     match parameter {
         Parameter::CouplingStiffness => match &mut scene.coupling {
             Coupling::Rigid => None,
@@ -102,7 +102,7 @@ fn value<E: Values>(scene: &mut Scene<E>, parameter: Parameter) -> Option<&mut f
 }
 
 /// The parameters that a scene has.
-pub fn parameters<E: Values + Copy>(scene: &Scene<E>) -> Parameters {
+pub fn parameters<E: NamedParameters + Copy>(scene: &Scene<E>) -> Parameters {
     let mut scene = *scene;
     let mut bits = 0;
     for (i, (_, parameter)) in TUNABLE.iter().enumerate() {
@@ -112,7 +112,7 @@ pub fn parameters<E: Values + Copy>(scene: &Scene<E>) -> Parameters {
 }
 
 /// The value of a scene's parameter; `None` where the scene has no such number.
-pub fn get<E: Values + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f64> {
+pub fn get<E: NamedParameters + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f64> {
     let mut scene = *scene;
     value(&mut scene, parameter).copied()
 }
@@ -141,7 +141,7 @@ pub fn check(has: Parameters, changes: &[(Parameter, f64)]) -> Result<(), Tuning
 ///
 /// # Errors
 /// As [`check`].
-pub fn apply<E: Values + Copy>(
+pub fn apply<E: NamedParameters + Copy>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],
 ) -> Result<Scene<E>, TuningError> {
@@ -157,14 +157,14 @@ pub fn apply<E: Values + Copy>(
 
 /// A set that is ready to run.
 #[derive(Clone, Debug)]
-pub struct Prepared<E: Renderable<N>, N: Number, M> {
+pub struct Prepared<E: Discretize<N>, N: Number, M> {
     /// The scene, which is judged and timed.
     pub scene: Scene<E>,
     /// Damping in N m s/rad that the device may lose with this set running; see
-    /// [`Timed::margin`](crate::certificate::Timed::margin).
+    /// [`TimingChecked::margin`](crate::certificate::TimingChecked::margin).
     pub margin: Option<f64>,
     /// Its servo.
-    pub rendering: Rendering<E, N, M>,
+    pub rendering: PreparedServo<E, N, M>,
 }
 
 /// Makes a changed scene ready to run.
@@ -181,13 +181,13 @@ pub fn prepare<E, N, M>(
     options: &RenderingOptions,
 ) -> Result<Prepared<E, N, M>, Step>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
     let scene = apply(scene, changes).map_err(|_| Step::Change)?;
-    let timed = E::timed(scene)?;
-    let rendering = Rendering::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
+    let timed = E::timing_checked(scene)?;
+    let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     Ok(Prepared {
         scene,
         margin: Some(timed.margin_with(options.injection.unwrap_or(0.0))),
@@ -207,12 +207,12 @@ pub fn explain<E, N, M>(
     options: &RenderingOptions,
 ) -> Result<(), RenderError>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
     let timed = E::time(E::certify(apply(scene, changes)?)?)?;
-    Rendering::<E, N, M>::build(&timed, transducers, options)?;
+    PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
     Ok(())
 }
 

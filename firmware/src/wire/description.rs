@@ -8,7 +8,7 @@ use crate::environment::Environment;
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
-    Latched, OutputMode, OutputTiming, RenderingOptions, Renders, Simultaneous, Transducers,
+    Latched, OutputMode, OutputTiming, RenderingOptions, Simultaneous, SupportsTiming, Transducers,
 };
 use crate::tuning::{self, Parameters, RenderError, Tunable};
 
@@ -48,7 +48,7 @@ impl Description {
 
     fn by_mode<M: OutputMode>(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError>
     where
-        Environment: Renders<M>,
+        Environment: SupportsTiming<M>,
     {
         match self.format {
             Format::F32 => self.by_number::<f32, M>(changes),
@@ -71,7 +71,7 @@ impl Description {
         changes: &[(Parameter, f64)],
     ) -> Result<(), RenderError>
     where
-        Environment: Tunable<N> + Renders<M>,
+        Environment: Tunable<N> + SupportsTiming<M>,
     {
         let Self { scene, transducers, rendering, .. } = self;
         tuning::explain::<Environment, N, M>(scene, changes, transducers, rendering)

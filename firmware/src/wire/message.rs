@@ -14,10 +14,10 @@ use super::decoder::Discarded;
 use super::description::Description;
 use super::telemetry::Batch;
 use crate::certificate::Parameter;
-use crate::cycle::State;
-use crate::fault::{Fault, Retained};
+use crate::fault::{Fault, FaultRecord};
 use crate::reset::ResetCause;
 use crate::servo::Step;
+use crate::servo_loop::State;
 
 /// Numbers that one set may change: more than any scene has.
 pub const MAX_CHANGES: usize = 8;
@@ -247,8 +247,8 @@ pub struct Remembered {
     pub count: i32,
 }
 
-impl From<Retained> for Remembered {
-    fn from(record: Retained) -> Self {
+impl From<FaultRecord> for Remembered {
+    fn from(record: FaultRecord) -> Self {
         Self { fault: record.fault.into(), tick: record.tick, count: record.count }
     }
 }

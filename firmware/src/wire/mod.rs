@@ -14,7 +14,7 @@ pub mod telemetry;
 
 pub use decoder::{Decoder, Discarded};
 pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
-pub use session::{Facts, Session};
+pub use session::{BoardInfo, Session};
 
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
 /// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.

@@ -3,8 +3,8 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-use crate::cycle::{Frame, State};
 use crate::dac::DacCode;
+use crate::servo_loop::{Frame, State};
 use crate::torque::LimitReason;
 
 /// Ticks in one message. With more of them they would be seen later, and little would be saved.

@@ -3,23 +3,23 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::{DWT, NVIC};
-use firmware::board::place::Place;
-use firmware::board::seat::{Ends, Meeting, Seat, ends};
+use firmware::board::isr_cell::IsrCell;
+use firmware::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::AMPLIFIER;
 use firmware::board::stm32::{Mode, begin, connect, period};
 use firmware::boot::Startup;
-use firmware::certificate::Timed;
-use firmware::cycle::{Cycle, Hardware, Options};
+use firmware::certificate::TimingChecked;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::scene::Scene;
-use firmware::servo::{Rendering, RenderingOptions};
+use firmware::servo::{PreparedServo, RenderingOptions};
+use firmware::servo_loop::{Hardware, Options, ServoLoop};
 
 use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
 
 /// The scene, as late as the board's converter.
-const TIMED: Timed<Scene<Environment>, Mode> = SCENE.certified().timed();
+const TIMED: TimingChecked<Scene<Environment>, Mode> = SCENE.certified().timing_checked();
 
 /// The board, but for what would move something.
 struct Muted(Registers);
@@ -40,23 +40,23 @@ impl Hardware for Muted {
     }
 
     #[inline(always)]
-    fn passed(&mut self) -> u32 {
-        self.0.passed()
+    fn periods_since_last(&mut self) -> u32 {
+        self.0.periods_since_last()
     }
 
     #[inline(always)]
-    fn elapsed(&mut self) -> u32 {
-        self.0.elapsed()
+    fn time_in_period(&mut self) -> u32 {
+        self.0.time_in_period()
     }
 
     #[inline(always)]
-    fn feed(&mut self) {
-        self.0.feed();
+    fn feed_watchdog(&mut self) {
+        self.0.feed_watchdog();
     }
 }
 
-static PLACE: Place<Seat<Muted, Environment, f32, Mode>> = Place::empty();
-static MEETING: Meeting<Environment, f32, Mode> = static_cell::StaticCell::new();
+static PLACE: IsrCell<ServoIsr<Muted, Environment, f32, Mode>> = IsrCell::empty();
+static MAILBOX: MailboxCell<Environment, f32, Mode> = static_cell::StaticCell::new();
 
 /// What the interrupt has measured, in cycles.
 struct Measured {
@@ -99,7 +99,7 @@ unsafe extern "C" fn TIM6_DAC() {
     let start = DWT::cycle_count();
     // SAFETY: this is the handler of the interrupt that is enabled once the place is filled, and no
     // interrupt interrupts itself.
-    unsafe { PLACE.get() }.tick();
+    unsafe { PLACE.borrow_mut() }.tick();
     MEASURED.add(DWT::cycle_count().wrapping_sub(start));
 }
 
@@ -115,24 +115,24 @@ pub fn measure() -> Result<(), Failure> {
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
     let hardware = Registers::new(period(SCENE.timing.period));
-    let Ends { requests, inbox, frames, mut told } = ends(&MEETING);
-    let rendering = Rendering::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
+    let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
+    let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;
-    let cycle = Cycle::new(rendering, &Options::DEFAULT, hardware.period(), None);
+    let cycle = ServoLoop::new(rendering, &Options::DEFAULT, hardware.period(), None);
     requests.arm();
     let mut hardware = Muted(hardware);
     hardware.0.zero();
     begin(&mut hardware.0);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {
-        PLACE.fill(Seat { cycle, hardware, inbox, frames });
+        PLACE.init(ServoIsr { cycle, hardware, inbox, frames });
         NVIC::unmask(embassy_stm32::interrupt::TIM6_DAC);
     }
     defmt::info!("move the handle, if you like, for a minute: the amplifier is off");
     for ticks in [OPENING, MINUTE] {
         MEASURED.begin_again();
         while MEASURED.ticks.load(Ordering::Relaxed) < ticks {
-            while told.take().is_some() {}
+            while frame_reader.take().is_some() {}
         }
     }
     let of = |number: &AtomicU32| number.load(Ordering::Relaxed);

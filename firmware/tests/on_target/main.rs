@@ -12,12 +12,12 @@ use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::{CHIP, CONVERTER, ENCODER, ENCODER_CLOCK};
 use firmware::board::stm32::{begin, connect, period, width};
 use firmware::boot::Startup;
-use firmware::cycle::Hardware;
 use firmware::dac::DacCode;
 use firmware::encoder::Position;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
+use firmware::servo_loop::Hardware;
 
 /// The builder's encoder and motor.
 const TRANSDUCERS: Transducers = Transducers {
@@ -62,8 +62,8 @@ fn paced() -> Registers {
 /// Waits until the next period has begun.
 fn next(hardware: &mut Registers) {
     let counts = hardware.period();
-    while hardware.elapsed() < counts {}
-    hardware.passed();
+    while hardware.time_in_period() < counts {}
+    hardware.periods_since_last();
 }
 
 /// Waits for this many periods, which are milliseconds.

@@ -1,11 +1,11 @@
 //! A board that is simulated: encoder, converter, amplifier and timer of the servo's interrupt.
 
 use firmware::boot::Startup;
-use firmware::cycle::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
-use firmware::fault::Retained;
+use firmware::fault::FaultRecord;
 use firmware::reset::ResetCause;
+use firmware::servo_loop::{BEGAN_LATE, Frame, FrameSink, Hardware, State};
 
 /// Timer counts in a period.
 pub const PERIOD: u32 = 1000;
@@ -68,17 +68,17 @@ impl Hardware for Board {
     }
 
     #[inline]
-    fn passed(&mut self) -> u32 {
+    fn periods_since_last(&mut self) -> u32 {
         if self.delay > 0 && self.passed == 1 { BEGAN_LATE } else { self.passed }
     }
 
     #[inline]
-    fn elapsed(&mut self) -> u32 {
+    fn time_in_period(&mut self) -> u32 {
         if self.late { PERIOD } else { self.delay }
     }
 
     #[inline]
-    fn feed(&mut self) {}
+    fn feed_watchdog(&mut self) {}
 }
 
 impl Startup for Board {
@@ -88,8 +88,8 @@ impl Startup for Board {
 
     fn guard(&mut self) {}
 
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
-        Retained::NOTHING
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
+        FaultRecord::NOTHING
     }
 
     fn reset_cause(&mut self) -> ResetCause {

@@ -1,6 +1,6 @@
 //! How much an error can become: norms of impulse responses.
 
-use firmware::certificate::Loop;
+use firmware::certificate::LoopTransfers;
 use firmware::environment::{Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::passivity::polynomial::Polynomial;
@@ -130,7 +130,7 @@ impl Errors {
         let Environment::Rational(Rational { numerator, .. }) = &scene.environment else {
             return None;
         };
-        let controller = Loop::in_format(scene, format).ok()?.controller;
+        let controller = LoopTransfers::in_format(scene, format).ok()?.controller;
         let over = ascending(&controller.numerator, controller.ones, controller.minus_ones)?;
         let under = ascending(&controller.denominator, 0, 0)?;
         let position = l1(&over, &under)? * controller.scale.midpoint().abs();

@@ -14,7 +14,7 @@ use crate::subject::Subject;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tick {
     /// It is in time.
-    InTime,
+    SimHardware,
     /// The interrupt does not run.
     Missed,
     /// Its code comes after the update that it was for.
@@ -27,7 +27,7 @@ pub enum Tick {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pattern {
     /// All in time.
-    InTime,
+    SimHardware,
     /// The first so many of these, again and again.
     Periodic([Tick; Pattern::LONGEST], usize),
     /// By chance, each with a probability, and never more in a row than so many.
@@ -57,7 +57,7 @@ impl Pattern {
     pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
         let only_delays = most == 0 && latched && rng.random_bool(0.3);
         if !only_delays && (most == 0 || rng.random_bool(0.15)) {
-            return Self::InTime;
+            return Self::SimHardware;
         }
         if most > 0 && rng.random_bool(0.3) {
             let missed = rng.random_range(0..=200);
@@ -65,7 +65,7 @@ impl Pattern {
             return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
         }
         let length = rng.random_range(2..=Self::LONGEST);
-        let mut ticks = [Tick::InTime; Self::LONGEST];
+        let mut ticks = [Tick::SimHardware; Self::LONGEST];
         let mut in_a_row = 0;
         let kind = match (only_delays, latched) {
             (true, _) => 3,
@@ -80,7 +80,8 @@ impl Pattern {
                 *tick = if is_late { Tick::Late } else { Tick::Missed };
             } else {
                 in_a_row = 0;
-                *tick = if delayed && rng.random_bool(0.6) { Tick::Delayed } else { Tick::InTime };
+                *tick =
+                    if delayed && rng.random_bool(0.6) { Tick::Delayed } else { Tick::SimHardware };
             }
         }
         Self::Periodic(ticks, length)

@@ -13,10 +13,10 @@
 
 use std::marker::PhantomData;
 
-use firmware::cycle::{Cycle, Mailbox, State as Doing};
-use firmware::environment::{Environment, Renderable};
+use firmware::environment::{Discretize, Environment};
 use firmware::number::Number;
-use firmware::servo::{OutputMode, OutputTiming, Rendering, Renders};
+use firmware::servo::{OutputMode, OutputTiming, PreparedServo, SupportsTiming};
+use firmware::servo_loop::{Mailbox, ServoLoop, State as Doing};
 use firmware::tuning::Tunable;
 
 use crate::device::{Held, State, Step, TORQUE};
@@ -95,9 +95,9 @@ impl Outcome {
 /// A booted servo and the sets that may be swapped in.
 pub struct Machine<N: Number, M> {
     /// The servo as it booted.
-    pub cycle: Cycle<Environment, N, M>,
+    pub cycle: ServoLoop<Environment, N, M>,
     /// The sets: its own and the other one.
-    pub sets: Vec<Rendering<Environment, N, M>>,
+    pub sets: Vec<PreparedServo<Environment, N, M>>,
     /// When its codes reach the motor.
     pub output: Output,
     mode: PhantomData<M>,
@@ -181,7 +181,7 @@ impl Ticks {
     #[inline]
     fn next(&mut self) -> Tick {
         match &mut self.pattern {
-            Pattern::InTime => Tick::InTime,
+            Pattern::SimHardware => Tick::SimHardware,
             Pattern::Periodic(ticks, length) => {
                 let tick = ticks[self.at];
                 self.at = (self.at + 1) % *length;
@@ -194,12 +194,12 @@ impl Ticks {
                 } else if number >> 8 & 0xff < u64::from(*late) {
                     Tick::Late
                 } else {
-                    Tick::InTime
+                    Tick::SimHardware
                 };
-                self.in_a_row = if tick == Tick::InTime { 0 } else { self.in_a_row + 1 };
+                self.in_a_row = if tick == Tick::SimHardware { 0 } else { self.in_a_row + 1 };
                 if self.in_a_row > *most {
                     self.in_a_row = 0;
-                    return Tick::InTime;
+                    return Tick::SimHardware;
                 }
                 tick
             }
@@ -209,13 +209,13 @@ impl Ticks {
 
 impl<N: Number, M: OutputMode> Machine<N, M>
 where
-    Environment: Tunable<N> + Renders<M>,
-    <Environment as Renderable<N>>::Law: Clone,
+    Environment: Tunable<N> + SupportsTiming<M>,
+    <Environment as Discretize<N>>::Law: Clone,
 {
     /// A booted servo and its sets.
     pub fn new(
-        cycle: Cycle<Environment, N, M>,
-        sets: Vec<Rendering<Environment, N, M>>,
+        cycle: ServoLoop<Environment, N, M>,
+        sets: Vec<PreparedServo<Environment, N, M>>,
         output: Output,
     ) -> Self {
         Self { cycle, sets, output, mode: PhantomData }

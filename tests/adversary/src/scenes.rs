@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::certificate::{Posed, TimingError, assess_in};
+use firmware::certificate::{PassivityProblem, TimingError, assess_in};
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
@@ -536,7 +536,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
 
 /// Whether the certificate's own quick answer is yes.
 fn passes(scene: &Scene, format: Format) -> bool {
-    Posed::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
+    PassivityProblem::in_format(scene, format).is_ok_and(|posed| posed.is_certified())
 }
 
 /// Whether a board takes a scene that the certificate has passed: where its torques are latched, it

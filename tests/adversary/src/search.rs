@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use firmware::boot::{Booted, Program, boot};
 use firmware::certificate::{Assessment, certify_in};
-use firmware::cycle::{Mailbox, Options};
 use firmware::environment::Environment;
 use firmware::number::Number;
 use firmware::scene::Scene;
-use firmware::servo::{Latched, OutputMode, Rendering, Renders, Simultaneous};
+use firmware::servo::{Latched, OutputMode, PreparedServo, Simultaneous, SupportsTiming};
+use firmware::servo_loop::{Mailbox, Options};
 use firmware::tuning::Tunable;
 use fixed::types::{I8F24, I12F20};
 use rand::SeedableRng;
@@ -117,7 +117,7 @@ pub trait Task {
         program: &Program<Environment>,
     ) -> Self::Result
     where
-        Environment: Tunable<N> + Renders<M>;
+        Environment: Tunable<N> + SupportsTiming<M>;
 }
 
 /// Why there is nothing to search.
@@ -156,20 +156,21 @@ fn with<N: Number, M: OutputMode, T: Task>(
     task: T,
 ) -> Result<T::Result, Unjudged>
 where
-    Environment: Tunable<N> + Renders<M>,
+    Environment: Tunable<N> + SupportsTiming<M>,
 {
     let mut drawn = drawn.clone();
     // Refused scenes are looked at for remedies, which takes a while.
     certify_quickly(&drawn.scene, drawn.format).ok_or(Unjudged::Refused)?;
     if let Some(share) = drawn.injected {
         let timed = drawn.scene.certify_in(N::FORMAT).ok().and_then(|scene| scene.time::<M>().ok());
-        drawn.rendering.injection = timed.map(|timed| timed.room() * share);
+        drawn.rendering.injection = timed.map(|timed| timed.injectable_damping() * share);
     }
     let set = |scene: &Scene| {
         let certified = scene.certify_in(N::FORMAT).ok()?;
         let assessment = *certified.assessment();
         let timed = certified.time::<M>().ok()?;
-        let set = Rendering::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
+        let set =
+            PreparedServo::<_, N, M>::new(&timed, &drawn.transducers, &drawn.rendering).ok()?;
         Some((set, assessment))
     };
     let (own, assessment) = set(&drawn.scene).ok_or(Unjudged::Refused)?;
@@ -201,7 +202,7 @@ where
 }
 
 fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
-    let posed = firmware::certificate::Posed::in_format(scene, format.format()).ok()?;
+    let posed = firmware::certificate::PassivityProblem::in_format(scene, format.format()).ok()?;
     posed.is_certified().then_some(())
 }
 
@@ -231,7 +232,7 @@ impl Task for Climb<'_> {
         _: &Program<Environment>,
     ) -> Found
     where
-        Environment: Tunable<N> + Renders<M>,
+        Environment: Tunable<N> + SupportsTiming<M>,
     {
         let effort = self.search.effort;
         let mut found = Found { accepted: 1, largest: -1.0, rate: -1.0, ..Found::default() };

@@ -3,14 +3,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::certificate::{Answer, Assessment, Rest, Steps};
-use firmware::cycle::READ_WITHIN;
+use firmware::certificate::{Answer, Assessment, QuantizationBound, Resolution};
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Simultaneous;
+use firmware::servo_loop::READ_WITHIN;
 use rand::Rng;
 
 use crate::norm::Errors;
@@ -94,7 +94,7 @@ impl Subject {
         let Drawn { scene, transducers, .. } = drawn;
         let declared = declared(scene);
         let unit = declared / scene.timing.period;
-        let steps = Steps::of(transducers, None);
+        let steps = Resolution::of(transducers, None);
         let step = TAU / transducers.counts_per_turn;
         // A rigid device has no more passivity than damping, whatever was declared.
         let has = declared.min(scene.device.damping);
@@ -107,7 +107,7 @@ impl Subject {
             sets += 1;
             let judged = judged_as.unwrap_or(scene);
             let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
-            let whole = Rest::of(judged, format, &steps)
+            let whole = QuantizationBound::of(judged, format, &steps)
                 .map(|rest| Errors { position: rest.encoder.unwrap_or(0.0), numbers: rest.numbers })
                 .filter(|errors| errors.sum().is_finite());
             let through = Errors::through(judged, format, largest).map(|e| e.over(0.5 * step));

@@ -12,7 +12,7 @@ use firmware::boot::Program;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Number;
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{OutputMode, Renders};
+use firmware::servo::{OutputMode, SupportsTiming};
 use firmware::tuning::Tunable;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +33,7 @@ impl Task for Once {
         _: &Program<Environment>,
     ) -> Outcome
     where
-        Environment: Tunable<N> + Renders<M>,
+        Environment: Tunable<N> + SupportsTiming<M>,
     {
         machine.run(&subject, &self.plan, true)
     }
@@ -64,7 +64,7 @@ fn springy(stiffness: f64) -> Plan {
         zero: -0.03,
         start,
         armed_by_boot: true,
-        pattern: Pattern::InTime,
+        pattern: Pattern::SimHardware,
         delay: 0.0,
         requests: [None; REQUESTS],
         again: false,

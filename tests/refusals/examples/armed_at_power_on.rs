@@ -1,6 +1,6 @@
 //! The same with a reason.
-use firmware::cycle::Options;
 use firmware::environment::DelayedSpring;
+use firmware::servo_loop::Options;
 use refusals::*;
 
 firmware::scene_program! {

@@ -1,5 +1,5 @@
 //! The same wall one sample late: that is the sample which the latch takes.
-use firmware::certificate::{Certified, Timed};
+use firmware::certificate::{Certified, TimingChecked};
 use firmware::environment::DamperWall;
 use firmware::scene::Scene;
 use firmware::servo::Latched;
@@ -7,7 +7,7 @@ use refusals::scene;
 
 const CERTIFIED: Certified<Scene<DamperWall<1>>> =
     scene(DamperWall { stiffness: 20.0, damping: 0.01 }).certified();
-const TIMED: Timed<Scene<DamperWall<1>>, Latched> = CERTIFIED.timed::<Latched>();
+const TIMED: TimingChecked<Scene<DamperWall<1>>, Latched> = CERTIFIED.timing_checked::<Latched>();
 
 fn main() {
     let _ = TIMED;

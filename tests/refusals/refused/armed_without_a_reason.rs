@@ -1,5 +1,5 @@
 //! A device that would start by itself, and nobody says why it may.
-use firmware::cycle::Options;
+use firmware::servo_loop::Options;
 use firmware::environment::DelayedSpring;
 use refusals::*;
 

@@ -1,5 +1,5 @@
 //! Certified as long as its torque is never limited, which a board does when it fades in.
-use firmware::certificate::{Certified, Timed};
+use firmware::certificate::{Certified, TimingChecked};
 use firmware::environment::DelayedSpring;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Latched;
@@ -10,7 +10,7 @@ const SCENE: Scene<DelayedSpring<2>> = Scene {
     ..scene(DelayedSpring { stiffness: 15.0 })
 };
 const CERTIFIED: Certified<Scene<DelayedSpring<2>>> = SCENE.certified();
-const TIMED: Timed<Scene<DelayedSpring<2>>, Latched> = CERTIFIED.timed::<Latched>();
+const TIMED: TimingChecked<Scene<DelayedSpring<2>>, Latched> = CERTIFIED.timing_checked::<Latched>();
 
 fn main() {
     let _ = TIMED;

@@ -1,11 +1,11 @@
 //! Yes and no without the numbers against the assessment with them: the same answers, far from the
 //! line, next to it, and where rounding decides.
 
-use firmware::certificate::{Answer, Posed, Rejection, assess};
+use firmware::certificate::{Answer, PassivityProblem, Rejection, assess};
 use firmware::environment::{Environment, Wall};
 use firmware::number::{Format, Number};
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Latched, OutputMode, Renders, Simultaneous, Step};
+use firmware::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
 use fixed::types::{I8F24, I12F20};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,7 +14,7 @@ use tests::scenes::{self, Poles};
 /// Compares the answers of both rules and the verdict; tells whether there is a certificate.
 fn compare(scene: &Scene) -> bool {
     let assessment = assess(scene);
-    match Posed::of(scene) {
+    match PassivityProblem::of(scene) {
         Ok(posed) => {
             let found = [posed.passes_paper(), posed.passes_exact(), posed.is_certified()];
             let wanted = [
@@ -33,11 +33,11 @@ fn compare(scene: &Scene) -> bool {
 /// search for the index: what the one renders the other has certified.
 fn compare_on_board<M: OutputMode>(scene: &Scene, format: Format) -> bool
 where
-    Environment: Renders<M>,
+    Environment: SupportsTiming<M>,
 {
-    let quick = scene.timed_in::<M>(format);
+    let quick = scene.timing_checked_in::<M>(format);
     let (room, margin) = match scene.certify_in(format).map(|scene| scene.time::<M>()) {
-        Ok(Ok(timed)) => (timed.room(), timed.margin()),
+        Ok(Ok(timed)) => (timed.injectable_damping(), timed.margin()),
         // A search may leave open what the bound in closed form settles, next to the line only.
         Err(Rejection::Undecided { index: Some(index), limit: Some(limit), .. })
             if quick.is_ok() =>
@@ -51,7 +51,7 @@ where
         }
     };
     let quick = quick.unwrap_or_else(|_| panic!("{scene:?}"));
-    assert_eq!((quick.room(), quick.margin()), (room, margin), "{scene:?}");
+    assert_eq!((quick.injectable_damping(), quick.margin()), (room, margin), "{scene:?}");
     true
 }
 

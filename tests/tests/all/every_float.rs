@@ -1,7 +1,7 @@
 //! `certify` over all of `f64`: no input makes it panic, none that is not finite passes, and what
 //! it says is consistent.
 
-use firmware::certificate::{Answer, Assumptions, Rejection, Rule, Steps, assess_in, certify};
+use firmware::certificate::{Answer, Assumptions, Rejection, Resolution, Rule, assess_in, certify};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
@@ -173,7 +173,7 @@ proptest! {
     /// The whole answer, remedies, sentence and assumptions included.
     #[test]
     fn every_scene_gets_an_answer(scene in scene(), encoder in float(), friction in float()) {
-        let steps = Steps { encoder: Some(encoder), full_scale: None, friction: Some(friction) };
+        let steps = Resolution { encoder: Some(encoder), full_scale: None, friction: Some(friction) };
         let assumptions = Assumptions::of(&scene, &assess_in(&scene, Format::F32), &steps);
         prop_assert!(assumptions.iter().all(|one| one.to_string().len() > 40));
         match certify(&scene) {
@@ -210,7 +210,7 @@ fn a_delay_of_any_size_gets_an_answer() {
             environment,
             torque_limit: None,
         };
-        let steps = Steps { encoder: Some(1e-4), full_scale: Some(1.0), friction: Some(0.01) };
+        let steps = Resolution { encoder: Some(1e-4), full_scale: Some(1.0), friction: Some(0.01) };
         let assessment = assess_in(&scene, Format::F32);
         assert!(matches!(assessment.outcome, Err(Rejection::Invalid(_))), "{assessment:?}");
         assert!(Assumptions::of(&scene, &assessment, &steps).iter().count() > 0);

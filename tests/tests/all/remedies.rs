@@ -3,10 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use firmware::certificate::{Parameter, Posed, Rejection, Rule, assess, assess_in, certify_in};
+use firmware::certificate::{
+    Parameter, PassivityProblem, Rejection, Rule, assess, assess_in, certify_in,
+};
 use firmware::environment::Environment;
 use firmware::number::Format;
-use firmware::passivity::poles::Doubt;
+use firmware::passivity::poles::UndecidedReason;
 use firmware::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -137,7 +139,7 @@ impl Printed {
 fn passes(scene: &Scene, format: Format, printed: &Printed, value: f64) -> bool {
     let changed = with(scene, printed.parameter, value)
         .unwrap_or_else(|| panic!("{printed:?} names a number that {scene:?} does not have"));
-    Posed::in_format(&changed, format).is_ok_and(|posed| posed.is_certified())
+    PassivityProblem::in_format(&changed, format).is_ok_and(|posed| posed.is_certified())
 }
 
 /// Whether a stiffness is next to none and the coefficients of the wall, two that are equally near,
@@ -149,7 +151,7 @@ fn is_hidden(scene: &Scene, format: Format, printed: &Printed, value: f64) -> bo
     }
     let changed = with(scene, printed.parameter, value).expect("it has a stiffness");
     let outcome = assess_in(&changed, format).outcome;
-    matches!(outcome, Err(Rejection::Undecided { doubt: Doubt::ResidueSign, .. }))
+    matches!(outcome, Err(Rejection::Undecided { doubt: UndecidedReason::ResidueSign, .. }))
 }
 
 /// Every kind of environment and coupling, some of them one-sided or limited, with a longest period

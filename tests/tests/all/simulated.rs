@@ -11,7 +11,7 @@ use analysis::missed::Missed;
 use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
 use analysis::stability::{Verdict, judge};
 use analysis::verdict;
-use firmware::certificate::Loop;
+use firmware::certificate::LoopTransfers;
 use firmware::environment::Environment;
 use firmware::scene::{Coupling, Scene};
 use rand::{Rng, SeedableRng};
@@ -144,7 +144,7 @@ fn a_certified_scene_is_stable_and_its_motion_ends() {
         }
         let motion = simulate(&experiment, stride).unwrap_or_else(|why| panic!("{seed}: {why}"));
         assert!(is_bounded(scene, &motion), "seed {seed}: certified, and moves on\n{text}");
-        assert!(Loop::of(scene).is_ok(), "seed {seed}");
+        assert!(LoopTransfers::of(scene).is_ok(), "seed {seed}");
         certified[match scene.environment {
             Environment::DelayedSpring(_) => 0,
             Environment::DamperWall(_) => 1,

@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::{Assessment, Loop, Posed, Rule, assess};
+use firmware::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
 use firmware::passivity::interval::Interval;
 use firmware::passivity::transfer::Transfer;
 use firmware::scene::{Coupling, Scene};
@@ -177,11 +177,11 @@ impl Judged {
     /// Where the environment has no transfer function.
     pub fn of(name: &str, scene: &Scene) -> Result<Self, ChartError> {
         let no_transfer = |why| ChartError::NoTransfer { scene: name.to_owned(), why };
-        let transfers = Loop::of(scene).map_err(no_transfer)?;
-        let latched = Loop::equivalent_where_latched(scene).map_err(no_transfer)?;
+        let transfers = LoopTransfers::of(scene).map_err(no_transfer)?;
+        let latched = LoopTransfers::equivalent_where_latched(scene).map_err(no_transfer)?;
         let assessment = assess(scene);
-        let posed = Posed::of(scene).ok();
-        let limit = posed.as_ref().and_then(Posed::limit).map(Interval::midpoint);
+        let posed = PassivityProblem::of(scene).ok();
+        let limit = posed.as_ref().and_then(PassivityProblem::limit).map(Interval::midpoint);
         let alone = assessment.alpha.map(Interval::midpoint);
         let cos = assessment.cos_theta;
         let curve = |role, transfer, alpha| Curve::new(role, transfer, scene, cos, alpha);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use clap::Args;
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::encoder::CounterWidth;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
@@ -115,7 +115,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             let counts_per_turn = counts.unwrap_or(program.transducers.counts_per_turn);
             let counter = CounterWidth::Bits32;
             let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
-            let (scene, steps) = (at_rate(&program.scene), Steps::of(&transducers, friction));
+            let (scene, steps) = (at_rate(&program.scene), Resolution::of(&transducers, friction));
             Question {
                 name: program.name.to_owned(),
                 subject: Subject { scene, transducers, steps, range },
@@ -126,7 +126,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             let file = scene_file(scene)?;
             let transducers = transducers_of(&file, counts, None);
             let said = file.steps();
-            let steps = Steps {
+            let steps = Resolution {
                 encoder: counts.map(|counts| TAU / counts).or(said.encoder),
                 friction: friction.or(said.friction),
                 ..said

@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use firmware::certificate::Rest;
+use firmware::certificate::QuantizationBound;
 use firmware::number::Arithmetic;
-use firmware::text::AtMost;
+use firmware::text::RoundUp3;
 use serde::Serialize;
 
 use crate::listing::listing;
@@ -70,7 +70,7 @@ pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
 }
 
 /// That the encoder is too coarse for any format, and what would do.
-fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&Rest>) -> String {
+fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&QuantizationBound>) -> String {
     let counts = subject.transducers.counts_per_turn;
     format!(
         "no: in every format the encoder alone makes a device without friction hum by {} N m, above \
@@ -84,7 +84,7 @@ fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&Rest>) -> Str
 }
 
 /// What the certificate says of rest.
-fn as_certified(rest: Option<&Rest>) -> String {
+fn as_certified(rest: Option<&QuantizationBound>) -> String {
     rest.map_or_else(String::new, |rest| format!("; as certified {rest}"))
 }
 
@@ -179,7 +179,7 @@ fn row(candidate: &Candidate) -> [String; 9] {
         figure(losses.and_then(|losses| losses.error_elsewhere)),
         figure(losses.map(|losses| losses.alone.hum)),
         figure(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
-        candidate.rest.map_or_else(|| "none".to_owned(), |rest| AtMost(rest.hum()).to_string()),
+        candidate.rest.map_or_else(|| "none".to_owned(), |rest| RoundUp3(rest.hum()).to_string()),
         candidate.rejected.join("; "),
     ]
 }

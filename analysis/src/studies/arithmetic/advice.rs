@@ -1,6 +1,6 @@
 //! Which number format is enough for a scene, and the cheapest that is.
 
-use firmware::certificate::Rest;
+use firmware::certificate::QuantizationBound;
 use firmware::number::Arithmetic;
 use serde::{Serialize, Serializer};
 
@@ -38,7 +38,7 @@ pub struct Candidate {
     /// The most that it may hum by as certified, with encoder and converter, and the device's
     /// friction against that; none where nothing bounds it.
     #[serde(serialize_with = "at_rest")]
-    pub rest: Option<Rest>,
+    pub rest: Option<QuantizationBound>,
     /// Why it is not taken; empty where it is, or is only dearer.
     pub rejected: Vec<String>,
 }
@@ -50,11 +50,11 @@ impl Candidate {
     }
 }
 
-fn is_still(rest: Option<&Rest>) -> bool {
+fn is_still(rest: Option<&QuantizationBound>) -> bool {
     rest.is_some_and(|rest| rest.friction.is_some() && rest.comes_to_rest() != Some(false))
 }
 
-fn at_rest<S: Serializer>(rest: &Option<Rest>, to: S) -> Result<S::Ok, S::Error> {
+fn at_rest<S: Serializer>(rest: &Option<QuantizationBound>, to: S) -> Result<S::Ok, S::Error> {
     rest.as_ref().map(AtRest::of).serialize(to)
 }
 
@@ -125,7 +125,7 @@ fn candidate(
     arithmetic: Arithmetic,
     instructions: f64,
     losses: Result<Losses, ArithmeticError>,
-    rest: Option<Rest>,
+    rest: Option<QuantizationBound>,
     figures: &Figures,
 ) -> Candidate {
     let share = instructions * figures.rate / figures.clock;

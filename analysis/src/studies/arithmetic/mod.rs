@@ -18,7 +18,7 @@ pub use motion::Motion;
 pub use rest::{Rest, at_rest};
 pub use units::Units;
 
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::number::{Arithmetic, InEach, Number};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
@@ -37,7 +37,7 @@ pub struct Subject {
     /// Its sensor and its motor.
     pub transducers: Transducers,
     /// What somebody has said of their steps, and of the device's friction.
-    pub steps: Steps,
+    pub steps: Resolution,
     /// Largest angle in rad to each side that a scaled format has to hold.
     pub range: f64,
 }

@@ -1,6 +1,6 @@
 //! What somebody or something says about a loop, and whether that is so.
 
-use firmware::certificate::{Rejection, Rest, Steps, assess, certify};
+use firmware::certificate::{QuantizationBound, Rejection, Resolution, assess, certify};
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
@@ -110,8 +110,8 @@ impl Claim {
 
     /// What the certificate says about a certified scene at rest, on a device with these steps and
     /// this friction, computed in a number format; the figure is the friction in N m that is enough.
-    pub fn at_rest(scene: &Scene, format: Format, steps: &Steps) -> Self {
-        let rest = Rest::of(scene, format, steps);
+    pub fn at_rest(scene: &Scene, format: Format, steps: &Resolution) -> Self {
+        let rest = QuantizationBound::of(scene, format, steps);
         let says = match rest.and_then(|rest| rest.comes_to_rest()) {
             Some(comes) => Says::of(comes),
             None => Says::Undecided,

@@ -1,6 +1,6 @@
 //! What a linear analysis in real numbers does not see: steps of the arithmetic and of the encoder.
 
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::number::{Arithmetic, Format};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
@@ -25,7 +25,7 @@ pub fn fixed_point() -> Result<Study, FailureError> {
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 0.3, ..PADDLES };
     let format = Format::Fixed { fraction_bits: 16 };
-    let certificate = Claim::at_rest(&scene, format, &Steps::of(&fine, Some(0.0)));
+    let certificate = Claim::at_rest(&scene, format, &Resolution::of(&fine, Some(0.0)));
     let trial = |what, friction, expected| Trial {
         arithmetic: Arithmetic::I16F16,
         ..leaning(what, &scene, fine, expected, friction)
@@ -41,7 +41,7 @@ pub fn fixed_point() -> Result<Study, FailureError> {
 pub fn encoder() -> Result<Study, FailureError> {
     let scene = paper();
     let needed = friction_for_rest(&scene, &PADDLES);
-    let steps = Steps::of(&PADDLES, Some(0.0));
+    let steps = Resolution::of(&PADDLES, Some(0.0));
     let certificate = Claim::at_rest(&scene, Format::F32, &steps);
     let hums = leaning("no friction", &scene, PADDLES, End::Hums, 0.0);
     let rests = leaning("K Delta/2 + B Delta/T of friction", &scene, PADDLES, End::Rests, needed);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use firmware::certificate::Loop;
+use firmware::certificate::LoopTransfers;
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::Scene;
 
@@ -67,5 +67,5 @@ fn resonance(depth: f64, angle: f64) -> Environment {
 
 /// The environment that behind the standard coupling is this scene's controller.
 fn equivalent(scene: &Scene) -> Result<Response, FailureError> {
-    Ok(Response::new(Loop::of(scene).map_err(SimulationError::from)?.equivalent))
+    Ok(Response::new(LoopTransfers::of(scene).map_err(SimulationError::from)?.equivalent))
 }

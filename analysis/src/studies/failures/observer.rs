@@ -18,7 +18,7 @@ use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial, wall_of};
 use super::trial::Trial;
 use crate::simulation::SimulationError;
 use crate::simulation::drive::Drive;
-use crate::simulation::rendering::Rendering;
+use crate::simulation::rendering::PreparedServo;
 
 /// Samples of the trial.
 const SAMPLES: usize = 4000;
@@ -53,7 +53,7 @@ enum Divide {
 
 /// The wall with the observer around it: what it asks the motor for.
 fn observed(scene: &Scene, trial: &Trial, by: &str, divide: Divide) -> Result<Claim, FailureError> {
-    let mut servo = Rendering::new(scene).map_err(SimulationError::from)?;
+    let mut servo = PreparedServo::new(scene).map_err(SimulationError::from)?;
     let mut device = LoadedDevice::new(&trial.experiment, &PADDLES)?;
     let step = TAU / PADDLES.counts_per_turn;
     let (mut energy, mut last, mut held, mut peak) = (0.0, 0.0, 0.0, 0.0_f64);

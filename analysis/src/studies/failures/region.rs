@@ -43,7 +43,7 @@ impl Region {
             let stride = Stride { method, substeps };
             Ok(critical_stiffness(experiment, stride)?.unwrap_or(0.0))
         };
-        let Limit::AtMost(certified) = largest_stiffness(&experiment.scene) else {
+        let Limit::RoundUp3(certified) = largest_stiffness(&experiment.scene) else {
             return Err(FailureError::NoLimit);
         };
         let mut apparent = [const { Vec::new() }; METHODS.len()];

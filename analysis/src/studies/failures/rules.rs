@@ -94,7 +94,7 @@ pub fn damped_rule() -> Result<Study, FailureError> {
     let claims = vec![rule("K < (b + B)/(T/2 + t_d)", limit), rule("K < b/(T/2 + t_d)", undamped)];
     let shakes = trial("B = b, 0.7 of that", &scene, PADDLES, End::Grows).pushed(5.0, 100);
     let without = coupled(PADDLE, wall_of(0.0, 0.5 * damping, DELAY));
-    let Limit::AtMost(most) = largest_stiffness(&without) else {
+    let Limit::RoundUp3(most) = largest_stiffness(&without) else {
         return Err(FailureError::NoLimit);
     };
     let rests = coupled(PADDLE, wall_of(0.95 * most, 0.5 * damping, DELAY));

@@ -44,7 +44,9 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
         0 => rigid(PADDLE, wall_of(0.0, 0.0, delay)),
         _ => coupled(PADDLE, wall_of(0.0, 0.0, delay)),
     };
-    let Limit::AtMost(limit) = largest_stiffness(&scene) else { return Err(FailureError::NoLimit) };
+    let Limit::RoundUp3(limit) = largest_stiffness(&scene) else {
+        return Err(FailureError::NoLimit);
+    };
     let [below, above] = [0.99, 1.01].map(|part| with_wall(&scene, part * limit, None));
     let device = Chain::rigid(PADDLE.inertia, PADDLE.damping)?;
     let hand = search(&above, &device)?.worst;

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
@@ -13,7 +13,7 @@ use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, encoder_friction, rigid, trial, wall_of};
 use crate::simulation::SimulationError;
-use crate::simulation::rendering::Rendering;
+use crate::simulation::rendering::PreparedServo;
 
 /// Times to and fro.
 const TIMES: usize = 8;
@@ -27,7 +27,7 @@ pub fn zigzag() -> Result<Study, FailureError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
     // Whatever the converter's steps are.
-    let steps = Steps { full_scale: None, ..Steps::of(&PADDLES, Some(ALMOST * needed)) };
+    let steps = Resolution { full_scale: None, ..Resolution::of(&PADDLES, Some(ALMOST * needed)) };
     let certificate = Claim::at_rest(&scene, Format::F64, &steps);
     let mut rests = trial("in no hand", &scene, PADDLES, End::Rests).pushed(1.0, 2000);
     rests.experiment.encoder_step = Some(TAU / PADDLES.counts_per_turn);
@@ -51,7 +51,7 @@ pub fn wall() -> Scene {
 /// Where the scene has no law that could run.
 pub fn gained(scene: &Scene, friction: f64) -> Result<f64, FailureError> {
     let step = TAU / PADDLES.counts_per_turn;
-    let mut servo = Rendering::new(scene).map_err(SimulationError::from)?;
+    let mut servo = PreparedServo::new(scene).map_err(SimulationError::from)?;
     let mut work = [0.0; 2];
     for half in 0..2 * TIMES {
         // Below the edge, and on its way up; above it, and on its way down.

@@ -42,7 +42,7 @@ pub fn table(programs: &[(&Program, f64)]) -> Tradeoff {
 /// A wall at its stiffest; `None` where no stiffness is certified, or each.
 fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
     let scene = at_period(&program.scene, 1.0 / rate);
-    let Limit::AtMost(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {
+    let Limit::RoundUp3(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {
         return None;
     };
     // What is found in one sample is felt in the next, whatever the coupling.

@@ -1,7 +1,7 @@
 //! Number formats of the servo: what a tick takes on the emulated board, and what is lost of the
 //! torque (theory, section 9).
 
-use firmware::certificate::Steps;
+use firmware::certificate::Resolution;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
@@ -55,7 +55,7 @@ impl Case {
     pub(super) fn of(program: &Program) -> Self {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
         let (scene, range) = (program.scene, HALF_A_TURN);
-        let steps = Steps::of(&transducers, None);
+        let steps = Resolution::of(&transducers, None);
         let subject = arithmetic::Subject { scene, transducers, steps, range };
         Self { name: program.name, subject, script: (program.script)() }
     }

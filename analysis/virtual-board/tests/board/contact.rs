@@ -8,7 +8,7 @@ use analysis::link::Message;
 use analysis::program::Program;
 use analysis::rig::SimulatedDevice;
 use firmware::certificate::Parameter;
-use firmware::cycle::State;
+use firmware::servo_loop::State;
 use firmware::wire::message::{Outcome, Status, ToBoard};
 use virtual_board::chip::Chip;
 use virtual_board::device::Device;

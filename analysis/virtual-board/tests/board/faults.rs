@@ -1,8 +1,8 @@
 //! Every fault, provoked from outside, and how soon the motor is without torque.
 
-use firmware::cycle::State;
 use firmware::fault::Fault;
 use firmware::reset::ResetCause;
+use firmware::servo_loop::State;
 use firmware::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;

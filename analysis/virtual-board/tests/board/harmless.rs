@@ -1,8 +1,8 @@
 //! What is no fault, or cannot be known to be one: nothing unsafe comes of it.
 
 use analysis::program::Program;
-use firmware::cycle::State;
-use firmware::fault::{Fault, Retained};
+use firmware::fault::{Fault, FaultRecord};
+use firmware::servo_loop::State;
 use firmware::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
@@ -135,12 +135,12 @@ fn a_peripheral_that_is_broken_at_power_on_leaves_the_amplifier_off() {
 #[test]
 fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
     on_both(|chip| {
-        for word in 0..=Retained::WORDS {
+        for word in 0..=FaultRecord::WORDS {
             let mut bench = Bench::running(chip, "damper_wall");
             bench.pins().turns.push_back(10_000);
             bench.run(2);
             let record = bench.record();
-            let is_flipped = word < Retained::WORDS;
+            let is_flipped = word < FaultRecord::WORDS;
             if is_flipped {
                 bench.flip(record + 4 * word as u32, 1 << (4 * word));
             }

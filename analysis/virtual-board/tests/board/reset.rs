@@ -1,8 +1,8 @@
 //! What a reset was for, what comes of it, and what a board sets up before its servo runs.
 
-use firmware::cycle::State;
 use firmware::fault::Fault;
 use firmware::reset::ResetCause;
+use firmware::servo_loop::State;
 use firmware::wire::message::FaultCode;
 use virtual_board::chip::{Chip, FREEZE, STM32F405, WATCHDOG_FREEZES};
 use virtual_board::core::exceptions::NON_MASKABLE;

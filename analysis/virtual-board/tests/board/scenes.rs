@@ -3,11 +3,11 @@
 use analysis::program::{Program, damper_wall, delayed_spring, free_mode};
 use analysis::toolchain::NumberFormat;
 use firmware::boot;
-use firmware::cycle::Options;
 use firmware::encoder::CounterWidth;
 use firmware::environment::FreeMode;
 use firmware::scene::Scene;
-use firmware::servo::{Latched, RenderingOptions, Renders, Transducers};
+use firmware::servo::{Latched, RenderingOptions, SupportsTiming, Transducers};
+use firmware::servo_loop::Options;
 use firmware::tuning::Tunable;
 use tests::replica::Replica;
 use virtual_board::chip::Chip;
@@ -49,7 +49,7 @@ fn free_mode_gives_the_host_s_codes() {
 /// A program's whole script on a board, against the servo on the host with the same counts.
 fn compare<E>(chip: &'static Chip, name: &'static str, scene: Scene<E>, transducers: &Transducers)
 where
-    E: Tunable<f32> + Renders<Latched>,
+    E: Tunable<f32> + SupportsTiming<Latched>,
 {
     let program = Program::find(name).unwrap();
     let mut bench = Bench::boot(chip, name, InHand::of(program));
@@ -81,7 +81,7 @@ fn with_the_same_cycle<E>(
     samples: &[Sample],
 ) -> Vec<u16>
 where
-    E: Tunable<f32> + Renders<Latched>,
+    E: Tunable<f32> + SupportsTiming<Latched>,
 {
     let mut host = Replica::<E, Latched>::boot(boot::Program {
         scene,

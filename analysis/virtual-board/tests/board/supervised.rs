@@ -2,9 +2,9 @@
 
 use analysis::program::{SUPERVISED, supervised_spring};
 use firmware::boot::Program;
-use firmware::cycle::{Options, State};
 use firmware::fault::Fault;
 use firmware::servo::{Latched, RenderingOptions, Transducers};
+use firmware::servo_loop::{Options, State};
 use firmware::wire::message::{FaultCode, Outcome};
 use tests::replica::Replica;
 use virtual_board::board::Event;

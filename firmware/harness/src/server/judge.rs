@@ -1,6 +1,6 @@
 //! Answers scenes by their bits: questions in by the pipe `counts`, replies out by `codes`.
 
-use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, pace};
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
 use semihosting::fs::File;
 use semihosting::io::Write;
 
@@ -8,7 +8,7 @@ use crate::question::answer;
 
 /// Answers until the host closes its end.
 pub fn run() -> ! {
-    pace::start_clock();
+    tick_timer::start_clock();
     let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);

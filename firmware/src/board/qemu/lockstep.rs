@@ -15,9 +15,9 @@ use semihosting::io::Error;
 use semihosting::io::{Read, Write};
 
 use super::lines;
-use crate::board::place::Place;
+use crate::board::isr_cell::IsrCell;
 use crate::board::shown::{Moved, Shown};
-use crate::cycle::State;
+use crate::servo_loop::State;
 
 /// The host's end could not be opened.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ struct Pipes {
     codes: File,
 }
 
-static PIPES: Place<Pipes> = Place::empty();
+static PIPES: IsrCell<Pipes> = IsrCell::empty();
 /// What the host has said last. In memory of its own, so that a fault at whatever instruction finds
 /// there what was read.
 static HEARD: [AtomicU8; Moved::BYTES] = [const { AtomicU8::new(0) }; Moved::BYTES];
@@ -68,7 +68,7 @@ pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
 pub(super) unsafe fn open() -> Result<(), NoHost> {
     let (counts, codes) = pipes()?;
     // SAFETY: nobody uses the place yet, as the caller promises.
-    unsafe { PIPES.fill(Pipes { counts, codes }) };
+    unsafe { PIPES.init(Pipes { counts, codes }) };
     Ok(())
 }
 
@@ -84,7 +84,7 @@ pub(super) fn zero() {
 /// The pipes must be open.
 pub(super) unsafe fn receive() -> Option<u32> {
     // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
-    let mut counts = unsafe { &PIPES.look().counts };
+    let mut counts = unsafe { &PIPES.borrow().counts };
     // SAFETY: the bytes of the atomics, which nobody else looks at meanwhile.
     let bytes = unsafe { from_raw_parts_mut(HEARD.as_ptr().cast_mut().cast(), HEARD.len()) };
     if counts.read_exact(bytes).is_err() {
@@ -114,7 +114,7 @@ pub(super) unsafe fn show(state: State) {
         let (code, amplifier) = lines::outputs();
         let shown = Shown { code, amplifier, state };
         // SAFETY: as in `receive`.
-        let _ = unsafe { &PIPES.look().codes }.write_all(&shown.to_bytes(number));
+        let _ = unsafe { &PIPES.borrow().codes }.write_all(&shown.to_bytes(number));
         SHOWN.store(number, Ordering::Relaxed);
     }
 }

@@ -9,7 +9,7 @@ use static_cell::StaticCell;
 use super::exit::EXIT_DONE;
 use super::meter::{Scale, now};
 use super::spread::Spread;
-use crate::board::place::Place;
+use crate::board::isr_cell::IsrCell;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
 
@@ -53,7 +53,7 @@ impl Parts for NoParts {
 }
 
 /// The interrupt's end of the queue.
-static TICKS: Place<Producer<'static, Measured>> = Place::empty();
+static TICKS: IsrCell<Producer<'static, Measured>> = IsrCell::empty();
 static DROPPED: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicBool = AtomicBool::new(false);
 
@@ -63,7 +63,7 @@ static ENDED: AtomicBool = AtomicBool::new(false);
 /// Only the interrupt that uses the queue may call this, after [`Log::open`].
 pub unsafe fn push(tick: Measured) {
     // SAFETY: filled, and used by this interrupt alone, as the caller promises.
-    if unsafe { TICKS.get() }.enqueue(tick).is_err() {
+    if unsafe { TICKS.borrow_mut() }.enqueue(tick).is_err() {
         DROPPED.fetch_add(1, Ordering::Relaxed);
     }
 }
@@ -119,7 +119,7 @@ impl<P: Parts> Log<P> {
         static QUEUE: StaticCell<Queue<Measured, LENGTH>> = StaticCell::new();
         let (push, ticks) = QUEUE.init(Queue::new()).split();
         // SAFETY: nobody uses the place yet, as the caller promises.
-        unsafe { TICKS.fill(push) };
+        unsafe { TICKS.init(push) };
         let [interrupt, lockstep, below] = [Spread::EMPTY; 3];
         Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
     }
@@ -160,7 +160,7 @@ impl<P: Parts> Log<P> {
 
     fn log(&mut self) {
         let dropped = DROPPED.load(Ordering::Relaxed);
-        let overruns = super::pace::missed();
+        let overruns = super::tick_timer::missed();
         let ticks = self.interrupt.count();
         defmt::info!("ticks={} dropped={} overruns={}", ticks, dropped, overruns);
         self.parts.log();

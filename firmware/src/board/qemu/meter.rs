@@ -8,9 +8,9 @@
 use core::arch::{asm, naked_asm};
 use core::sync::atomic::{Ordering, compiler_fence};
 
-pub use super::pace::now;
+pub use super::tick_timer::now;
 
-use crate::environment::Renderable;
+use crate::environment::Discretize;
 use crate::number::Number;
 use crate::scene::Scene;
 use crate::servo::{BuildError, Servo, Transducers};
@@ -21,7 +21,7 @@ use crate::servo::{BuildError, Servo, Transducers};
 /// # Errors
 /// Where the scene or the transducers cannot be had in this number format.
 #[doc(hidden)]
-pub fn judged_elsewhere<E: Renderable<N>, N: Number>(
+pub fn judged_elsewhere<E: Discretize<N>, N: Number>(
     scene: &Scene<E>,
     transducers: &Transducers,
 ) -> Result<Servo<E, N>, BuildError> {

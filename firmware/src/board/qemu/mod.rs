@@ -15,7 +15,6 @@ pub mod lockstep;
 pub mod log;
 #[cfg(feature = "log")]
 pub mod meter;
-pub mod pace;
 #[cfg(feature = "log")]
 mod parts;
 pub mod registers;
@@ -26,6 +25,7 @@ mod start;
 pub(super) mod stop;
 mod sweep;
 pub mod tick;
+pub mod tick_timer;
 
 pub use exit::{EXIT_DONE, EXIT_REFUSED};
 pub use start::{Mode, Places, run};
@@ -45,10 +45,10 @@ unsafe fn DefaultHandler(number: i16) {
 macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
         /// The scene, whose torque is as late as it says.
-        const TIMED: $crate::certificate::Timed<
+        const TIMED: $crate::certificate::TimingChecked<
             $crate::scene::Scene<$environment>,
             $crate::board::qemu::Mode,
-        > = $certified.timed::<$crate::board::qemu::Mode>();
+        > = $certified.timing_checked::<$crate::board::qemu::Mode>();
 
         static PLACES: $crate::board::qemu::Places<$environment, $number> =
             $crate::board::qemu::Places::empty();
@@ -58,7 +58,7 @@ macro_rules! board_program {
         extern "C" fn tick() {
             // SAFETY: called by the handler of the interrupt that `run` enables once it has filled
             // the place, and no interrupt interrupts itself.
-            unsafe { PLACES.seat.get() }.tick();
+            unsafe { PLACES.seat.borrow_mut() }.tick();
         }
 
         /// A tick, with the world around it.
@@ -66,9 +66,9 @@ macro_rules! board_program {
         unsafe extern "C" fn sys_tick() {
             // SAFETY: the place is filled before the interrupt is enabled, and these are called
             // before and after a tick, when nobody holds what is in it.
-            let state = || unsafe { PLACES.seat.get() }.cycle.state();
+            let state = || unsafe { PLACES.seat.borrow_mut() }.cycle.state();
             // SAFETY: as above.
-            let lose = |missed| unsafe { PLACES.seat.get() }.hardware.lose(missed);
+            let lose = |missed| unsafe { PLACES.seat.borrow_mut() }.hardware.lose(missed);
             // SAFETY: the pipes are open before the interrupt is enabled.
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
@@ -88,20 +88,20 @@ macro_rules! board_program {
 macro_rules! board_sweep {
     // A simulated device keeps within all limits.
     ($sweep:ident, $transducers:ident, $limits:ident) => {
-        static PLACE: $crate::board::qemu::SweepPlace = $crate::board::place::Place::empty();
+        static PLACE: $crate::board::qemu::SweepPlace = $crate::board::isr_cell::IsrCell::empty();
 
         /// What other boards have as their timer's interrupt.
         #[inline(never)]
         extern "C" fn tick() {
             // SAFETY: called by the handler of the interrupt that `measure` enables once it has
             // filled the place, and no interrupt interrupts itself.
-            $crate::board::qemu::lines::write(unsafe { PLACE.get() }.next().code);
+            $crate::board::qemu::lines::write(unsafe { PLACE.borrow_mut() }.next().code);
         }
 
         /// A tick, with the world around it.
         #[unsafe(export_name = "SysTick")]
         unsafe extern "C" fn sys_tick() {
-            let state = || $crate::cycle::State::Running;
+            let state = || $crate::servo_loop::State::Running;
             // A sweep has no use for a time that the host has lost.
             let lose = |_| ();
             // SAFETY: the pipes are open and the place is filled before the interrupt is enabled.

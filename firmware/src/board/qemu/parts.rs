@@ -10,14 +10,14 @@ use super::exit::refuse;
 use super::log::{Measured, Parts};
 use super::meter::{Scale, measure};
 use super::spread::Spread;
-use crate::board::seat::FRAMES;
+use crate::board::servo_isr::FRAMES;
 use crate::boot::Program;
-use crate::cycle::{Frame, FrameQueue, FrameSink, Frames, State};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::energy::EnergyMonitor;
 use crate::number::Number;
 use crate::servo::{OutputMode, Servo, Step};
+use crate::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
 use crate::torque::LimitReason;
 use crate::tuning::Tunable;
 

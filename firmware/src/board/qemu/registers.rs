@@ -1,30 +1,30 @@
 //! The board as the servo sees it.
 
-use super::pace::{Pace, Period};
+use super::tick_timer::{Period, TickTimer};
 use super::{lines, lockstep};
 use crate::board::retained;
 use crate::boot::Startup;
-use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
+use crate::servo_loop::Hardware;
 
 /// What belongs to the servo's interrupt.
 pub struct Registers {
-    pace: Pace,
+    pace: TickTimer,
     period: Period,
 }
 
 impl Registers {
     /// Those of a board that is paced so.
     pub fn new(period: Period) -> Self {
-        Self { pace: Pace::new(period), period }
+        Self { pace: TickTimer::new(period), period }
     }
 
     /// The pacing is about to begin.
     pub fn start(&mut self) {
-        self.pace = Pace::new(self.period);
+        self.pace = TickTimer::new(self.period);
     }
 
     /// So many periods have passed without a tick.
@@ -50,20 +50,20 @@ impl Hardware for Registers {
     }
 
     #[inline(always)]
-    fn passed(&mut self) -> u32 {
-        self.pace.passed()
+    fn periods_since_last(&mut self) -> u32 {
+        self.pace.periods_since_last()
     }
 
     #[inline(always)]
-    fn elapsed(&mut self) -> u32 {
-        self.pace.elapsed()
+    fn time_in_period(&mut self) -> u32 {
+        self.pace.time_in_period()
     }
 
     /// The emulator has no watchdog.
     #[inline(always)]
-    fn feed(&mut self) {}
+    fn feed_watchdog(&mut self) {}
 
-    fn keep(&mut self, record: &[u32; Retained::WORDS]) {
+    fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
         retained::keep(record);
     }
 }
@@ -76,7 +76,7 @@ impl Startup for Registers {
     /// The emulator has no watchdog.
     fn guard(&mut self) {}
 
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
         retained::kept()
     }
 

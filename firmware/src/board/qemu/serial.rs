@@ -6,10 +6,10 @@ use cortex_m::peripheral::NVIC;
 use heapless::spsc::{Consumer, Producer, Queue};
 use static_cell::StaticCell;
 
-use super::pace;
+use super::tick_timer;
 use crate::board::BAUD;
+use crate::board::isr_cell::IsrCell;
 use crate::board::link::Port;
-use crate::board::place::Place;
 
 /// USART1's registers, from the F405's memory map: status, data, and control register 1.
 const STATUS: *const u32 = 0x4001_1000 as *const u32;
@@ -45,7 +45,7 @@ unsafe impl cortex_m::interrupt::InterruptNumber for Interrupt {
 }
 
 /// The interrupt's end of the queue.
-static INCOMING: Place<Producer<'static, u8>> = Place::empty();
+static INCOMING: IsrCell<Producer<'static, u8>> = IsrCell::empty();
 /// Bytes that came when there was no room.
 static LOST: AtomicU32 = AtomicU32::new(0);
 
@@ -61,13 +61,13 @@ pub fn open() -> Serial {
     static QUEUE: StaticCell<Queue<u8, WAITING>> = StaticCell::new();
     let (producer, incoming) = QUEUE.init_with(Queue::new).split();
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { INCOMING.fill(producer) };
+    unsafe { INCOMING.init(producer) };
     // SAFETY: nothing else uses the port, and its interrupt finds its place filled.
     unsafe {
         CONTROL.write_volatile(ON);
         NVIC::unmask(Interrupt);
     }
-    Serial { incoming, free: pace::now() }
+    Serial { incoming, free: tick_timer::now() }
 }
 
 /// A byte has come.
@@ -76,7 +76,7 @@ pub fn open() -> Serial {
 /// To be called by the handler of the port's interrupt, and nothing else.
 pub(super) unsafe fn receive() {
     // SAFETY: the place was filled before the interrupt was enabled, and nothing else uses it.
-    let incoming = unsafe { INCOMING.get() };
+    let incoming = unsafe { INCOMING.borrow_mut() };
     // SAFETY: the port's registers; reading the data says that they were taken.
     while unsafe { STATUS.read_volatile() } & RECEIVED != 0 {
         let byte = unsafe { DATA.read_volatile() } as u8;
@@ -108,7 +108,7 @@ impl Port for Serial {
         if bytes.is_empty() {
             return 0;
         }
-        let now = pace::now();
+        let now = tick_timer::now();
         let busy = self.free.wrapping_sub(now).cast_signed();
         if busy <= 0 {
             self.free = now;

@@ -5,19 +5,19 @@ use static_cell::StaticCell;
 
 use super::exit::refuse;
 use super::lockstep;
-use super::pace::{self, Period};
 use super::registers::Registers;
 use super::serial::{self, Serial};
+use super::tick_timer::{self, Period};
+use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
-use crate::board::place::Place;
-use crate::board::seat::{Ends, Meeting, Seat, ends};
+use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
-use crate::servo::Renders;
+use crate::servo::SupportsTiming;
 use crate::tuning::Tunable;
-use crate::wire::{Facts, Session};
+use crate::wire::{BoardInfo, Session};
 
 #[cfg(feature = "log")]
 use crate::servo::Step;
@@ -35,8 +35,8 @@ pub type Mode = crate::servo::Simultaneous;
 /// A program's places in memory, which have its scene's types.
 pub struct Places<E: Tunable<N>, N: Number> {
     /// Where the servo's interrupt finds its seat.
-    pub seat: Place<Seat<Registers, E, N, Mode>>,
-    meeting: Meeting<E, N, Mode>,
+    pub seat: IsrCell<ServoIsr<Registers, E, N, Mode>>,
+    mailbox: MailboxCell<E, N, Mode>,
     link: StaticCell<Link<Serial, E, N, Mode>>,
     #[cfg(feature = "log")]
     log: StaticCell<Log<CycleParts<E, N, Mode>>>,
@@ -46,8 +46,8 @@ impl<E: Tunable<N>, N: Number> Places<E, N> {
     /// Empty places.
     pub const fn empty() -> Self {
         Self {
-            seat: Place::empty(),
-            meeting: StaticCell::new(),
+            seat: IsrCell::empty(),
+            mailbox: StaticCell::new(),
             link: StaticCell::new(),
             #[cfg(feature = "log")]
             log: StaticCell::new(),
@@ -63,7 +63,7 @@ pub fn run<E, N>(
     places: &'static Places<E, N>,
 ) -> !
 where
-    E: Tunable<N> + Renders<Mode>,
+    E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
     let timer = begin();
@@ -79,7 +79,7 @@ where
     let _ = compiler;
     let link = prepare(name, program, period, places);
     connect();
-    pace::start(timer, period);
+    tick_timer::start(timer, period);
     // Does not sleep: with WFI the emulator's time runs on by two periods of SysTick at a time.
     loop {
         #[cfg(not(feature = "log"))]
@@ -104,11 +104,11 @@ fn prepare<E, N>(
     places: &'static Places<E, N>,
 ) -> &'static mut Link<Serial, E, N, Mode>
 where
-    E: Tunable<N> + Renders<Mode>,
+    E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
     let mut hardware = Registers::new(period);
-    let Ends { requests, inbox, frames, told } = ends(&places.meeting);
+    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(&places.mailbox);
     let Booted { cycle, margin, reset, left, .. } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     #[cfg(feature = "log")]
@@ -120,19 +120,19 @@ where
     }
     hardware.start();
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.seat.fill(Seat { cycle, hardware, inbox, frames }) };
+    unsafe { places.seat.init(ServoIsr { cycle, hardware, inbox, frames }) };
     let timer_counts = period.clock_counts();
-    let facts = Facts { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
+    let facts = BoardInfo { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
     places.link.init_with(|| Link {
         port: serial::open(),
-        session: Session::new(program, margin, facts, requests, told),
+        session: Session::new(program, margin, facts, requests, frame_reader),
     })
 }
 
 /// Clock and interrupts. To be called once.
 pub(super) fn begin() -> SYST {
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
-    pace::start_clock();
+    tick_timer::start_clock();
     // SysTick stays above, with the priority that it has out of reset.
     critical::lower_all(&mut core.NVIC);
     core.SYST

@@ -2,8 +2,8 @@
 
 use super::{lines, lockstep};
 use crate::board::retained;
-use crate::cycle::State;
 use crate::fault::Fault;
+use crate::servo_loop::State;
 
 /// Ends the program because of a fault: no torque, amplifier off, a record for the next boot, and
 /// a reset, for which other boards need a watchdog.

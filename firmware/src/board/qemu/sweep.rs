@@ -1,8 +1,8 @@
 //! From reset to a measurement: the same codes as on the host, one a tick, from the first tick on.
 
 use super::start::{begin, connect, period};
-use super::{lines, pace};
-use crate::board::place::Place;
+use super::{lines, tick_timer};
+use crate::board::isr_cell::IsrCell;
 use crate::excitation::{Exciter, Sweep};
 
 #[cfg(feature = "log")]
@@ -12,7 +12,7 @@ use super::{
 };
 
 /// Where a sweep's interrupt finds what it plays.
-pub type SweepPlace = Place<Exciter<'static>>;
+pub type SweepPlace = IsrCell<Exciter<'static>>;
 
 /// Plays a sweep.
 pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPlace) -> ! {
@@ -22,10 +22,10 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPl
     let mut log = unsafe { Log::open(calibrate(), NoParts) };
     let period = period(sweep.period());
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.fill(Exciter::new(sweep)) };
+    unsafe { place.init(Exciter::new(sweep)) };
     connect();
     lines::amplifier(true);
-    pace::start(timer, period);
+    tick_timer::start(timer, period);
     loop {
         #[cfg(feature = "log")]
         log.poll();

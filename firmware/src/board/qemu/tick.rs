@@ -4,7 +4,7 @@
 use super::lockstep;
 #[cfg(feature = "log")]
 use super::{lines, log, meter};
-use crate::cycle::State;
+use crate::servo_loop::State;
 
 /// One interrupt. What `tick` does is what other boards have as their timer's interrupt, from its
 /// first instruction to its last, and it is what is measured as such; `state` says what the servo

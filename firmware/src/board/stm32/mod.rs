@@ -13,7 +13,6 @@ mod fast;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 mod g4;
 pub mod line;
-pub mod pace;
 pub mod quadrature;
 pub mod registers;
 mod reset;
@@ -21,6 +20,7 @@ pub mod serial;
 mod start;
 pub(super) mod stop;
 mod sweep;
+pub mod tick_timer;
 
 #[cfg(feature = "stm32f405")]
 use f4 as family;

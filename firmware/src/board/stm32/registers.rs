@@ -3,29 +3,29 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
 
-use super::pace::{Pace, Period};
 use super::quadrature::Counter;
+use super::tick_timer::{Period, TickTimer};
 use super::wiring::{AMPLIFIER, CONVERTER, ENCODER};
 use super::{family, reset};
 use crate::board::retained;
 use crate::boot::Startup;
-use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::reset::ResetCause;
+use crate::servo_loop::Hardware;
 
 /// The registers that belong to the servo's interrupt.
 pub struct Registers {
-    pace: Pace,
+    pace: TickTimer,
     period: Period,
 }
 
 impl Registers {
     /// Prepares the pacing timer; it does not run yet.
     pub fn new(period: Period) -> Self {
-        Self { pace: Pace::prepare(period), period }
+        Self { pace: TickTimer::prepare(period), period }
     }
 
     /// Begins to pace. The interrupt's handler must find its place filled from here on.
@@ -51,21 +51,21 @@ impl Hardware for Registers {
     }
 
     #[inline(always)]
-    fn passed(&mut self) -> u32 {
-        self.pace.passed()
+    fn periods_since_last(&mut self) -> u32 {
+        self.pace.periods_since_last()
     }
 
     #[inline(always)]
-    fn elapsed(&mut self) -> u32 {
-        self.pace.elapsed()
+    fn time_in_period(&mut self) -> u32 {
+        self.pace.time_in_period()
     }
 
     #[inline(always)]
-    fn feed(&mut self) {
+    fn feed_watchdog(&mut self) {
         pac::IWDG.kr().write(|w| w.set_key(Key::RESET));
     }
 
-    fn keep(&mut self, record: &[u32; Retained::WORDS]) {
+    fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
         retained::keep(record);
     }
 }
@@ -86,7 +86,7 @@ impl Startup for Registers {
         pac::IWDG.rlr().write(|w| w.set_rl(counts as u16));
     }
 
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
         retained::kept()
     }
 

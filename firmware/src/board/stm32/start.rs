@@ -8,31 +8,31 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac;
 use static_cell::StaticCell;
 
-use super::pace::Period;
 use super::quadrature::Counter;
 use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
+use super::tick_timer::Period;
 use super::wiring::{self, CONVERTER, ENCODER};
 use super::{Connected, Mode, family};
 use crate::board::input_filter::InputFilter;
+use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
-use crate::board::place::Place;
-use crate::board::seat::{Ends, Meeting, Seat, ends};
+use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
-use crate::cycle::Reason;
-use crate::environment::Renderable;
-use crate::fault::Retained;
+use crate::environment::Discretize;
+use crate::fault::FaultRecord;
 use crate::number::Number;
 use crate::period as periods;
 use crate::reset::ResetCause;
-use crate::servo::{OutputMode, OutputTiming, Renders, Transducers};
+use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
+use crate::servo_loop::Reason;
 use crate::tuning::Tunable;
-use crate::wire::{Facts, Session};
+use crate::wire::{BoardInfo, Session};
 
 /// Where the servo's interrupt finds its seat.
-pub type ServoPlace<E, N> = Place<Seat<Registers, E, N, Mode>>;
+pub type ServoPlace<E, N> = IsrCell<ServoIsr<Registers, E, N, Mode>>;
 
 /// The host's end of the board, for the task below the servo.
 pub type HostLink<E, N> = Link<Serial, E, N, Mode>;
@@ -45,11 +45,11 @@ pub type LinkPlace<E, N> = StaticCell<HostLink<E, N>>;
 pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The static places of a program, whose types are its scene's.
-pub struct Places<E: Renderable<N> + 'static, N: Number> {
+pub struct Places<E: Discretize<N> + 'static, N: Number> {
     /// What the servo's interrupt works with.
     pub servo: &'static ServoPlace<E, N>,
     /// Where it meets the task below.
-    pub meeting: &'static Meeting<E, N, Mode>,
+    pub mailbox: &'static MailboxCell<E, N, Mode>,
     /// That task's end of the host's link.
     pub link: &'static LinkPlace<E, N>,
     /// The filter of the encoder's inputs.
@@ -64,7 +64,7 @@ pub fn run<E, N, S>(
     task: Task<E, N, S>,
 ) -> !
 where
-    E: Tunable<N> + Renders<Mode>,
+    E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
     let link = install(name, program, places);
@@ -99,29 +99,29 @@ fn install<E, N>(
     places: Places<E, N>,
 ) -> &'static mut HostLink<E, N>
 where
-    E: Tunable<N> + Renders<Mode>,
+    E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
     let port = connect(places.filter).serial;
     let period = period(program.scene.timing.period);
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
-    let Ends { requests, inbox, frames, told } = ends(places.meeting);
+    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(places.mailbox);
     let Booted { cycle, margin, reset, left, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.servo.fill(Seat { cycle, hardware, inbox, frames }) };
+    unsafe { places.servo.init(ServoIsr { cycle, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     greet(name);
     log_reset(reset, left, arms_because);
-    let facts = Facts { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
-    let session = Session::new(program, margin, facts, requests, told);
+    let facts = BoardInfo { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
+    let session = Session::new(program, margin, facts, requests, frame_reader);
     places.link.init(Link { port, session })
 }
 
-impl<E: Tunable<N> + Renders<Mode>, N: Number> HostLink<E, N> {
+impl<E: Tunable<N> + SupportsTiming<Mode>, N: Number> HostLink<E, N> {
     /// Serves the host, and sleeps from one interrupt to the next: whatever there is to do, an
     /// interrupt has made it so.
     pub async fn serve(&mut self) -> ! {
@@ -159,9 +159,9 @@ fn greet(name: &str) {
 }
 
 /// Why the board was reset, and what comes of it.
-fn log_reset(reset: ResetCause, left: Option<Retained>, arms_because: Option<Reason>) {
+fn log_reset(reset: ResetCause, left: Option<FaultRecord>, arms_because: Option<Reason>) {
     defmt::info!("last reset: {=str}", reset.as_str());
-    if let Some(Retained { fault, tick, .. }) = left {
+    if let Some(FaultRecord { fault, tick, .. }) = left {
         let (_, [a, b]) = fault.encode();
         defmt::warn!("not armed: {=str} ({}, {}) in tick {}", fault.as_str(), a, b, tick);
     }
@@ -226,17 +226,17 @@ macro_rules! board_program {
         $crate::board_filter!($program.transducers);
 
         /// The scene, as late as the board's converter: where it is not, this does not compile.
-        const TIMED: $crate::certificate::Timed<
+        const TIMED: $crate::certificate::TimingChecked<
             $crate::scene::Scene<$environment>,
             $crate::board::stm32::Mode,
-        > = $certified.timed::<$crate::board::stm32::Mode>();
+        > = $certified.timing_checked::<$crate::board::stm32::Mode>();
 
         /// What this board runs.
         const FITTED: $crate::boot::Program<$environment> = $crate::board::stm32::fitted($program);
 
         static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
-            $crate::board::place::Place::empty();
-        static MEETING: $crate::board::seat::Meeting<
+            $crate::board::isr_cell::IsrCell::empty();
+        static MAILBOX: $crate::board::servo_isr::MailboxCell<
             $environment,
             $number,
             $crate::board::stm32::Mode,
@@ -261,7 +261,7 @@ macro_rules! board_program {
             let name = env!("CARGO_BIN_NAME");
             let places = $crate::board::stm32::Places {
                 servo: &PLACE,
-                meeting: &MEETING,
+                mailbox: &MAILBOX,
                 link: &LINK,
                 filter: FILTER,
             };
@@ -309,7 +309,7 @@ macro_rules! board_tick {
             unsafe extern "C" fn TIM6_DAC() {
                 // SAFETY: this is the handler of the interrupt that is enabled once the place is
                 // filled, and no interrupt interrupts itself.
-                unsafe { PLACE.get() }.tick();
+                unsafe { PLACE.borrow_mut() }.tick();
             }
         }
     };

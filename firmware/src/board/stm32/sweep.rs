@@ -17,21 +17,21 @@ use super::serial::Serial;
 use super::start::{begin, connect, period, width};
 use super::wiring::ENCODER;
 use crate::board::input_filter::InputFilter;
+use crate::board::isr_cell::IsrCell;
 use crate::board::link::Port;
-use crate::board::place::Place;
 use crate::boot::Startup;
-use crate::cycle::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::dac::DacCode;
 use crate::encoder::Position;
 use crate::excitation::{
     Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd, byte,
 };
 use crate::servo::Transducers;
-use crate::text::Written;
+use crate::servo_loop::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
+use crate::text::ShortF64;
 use crate::torque::LimitReason;
 
 /// Where the sweep's interrupt finds what it works with.
-pub type SweepPlace = Place<Player>;
+pub type SweepPlace = IsrCell<Player>;
 
 /// What a sweep's device is measured with, and kept within.
 pub struct Setup {
@@ -84,7 +84,7 @@ impl Player {
     /// One tick: the sweep's next sample while it is wanted, none while it is not.
     #[inline(always)]
     pub fn tick(&mut self) {
-        let passed = self.hardware.passed();
+        let passed = self.hardware.periods_since_last();
         let count = self.position.update(self.hardware.count()).count;
         let step = count.wrapping_sub(core::mem::replace(&mut self.last, count));
         if self.left > 0
@@ -108,7 +108,7 @@ impl Player {
             (self.start, self.dropped) = (count, self.rows.dropped());
         }
         self.held = code;
-        self.hardware.feed();
+        self.hardware.feed_watchdog();
     }
 
     /// Why the sweep ends in this tick, if it does.
@@ -173,7 +173,7 @@ pub fn measure<const N: usize>(
         dropped: 0,
     };
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.fill(player) };
+    unsafe { place.init(player) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
@@ -250,8 +250,8 @@ impl Writer {
 
     fn row(&mut self, frame: &Frame) {
         let heading = if frame.tick == 0 { "time,torque,counts\n" } else { "" };
-        let time = Written(f64::from(frame.tick) * self.period);
-        let torque = Written(f64::from(frame.code.offset()) * self.step);
+        let time = ShortF64(f64::from(frame.tick) * self.period);
+        let torque = ShortF64(f64::from(frame.code.offset()) * self.step);
         self.count = frame.count;
         let _ = writeln!(self.line, "{heading}{time},{torque},{}", frame.count);
     }
@@ -262,8 +262,8 @@ impl Writer {
     }
 
     fn describe(&mut self, setup: &Setup, ticks: u64) {
-        let (period, counts) = (Written(self.period), Written(setup.transducers.counts_per_turn));
-        let (travel, speed) = (Written(setup.limits.travel), Written(setup.limits.speed));
+        let (period, counts) = (ShortF64(self.period), ShortF64(setup.transducers.counts_per_turn));
+        let (travel, speed) = (ShortF64(setup.limits.travel), ShortF64(setup.limits.speed));
         self.line.clear();
         let _ = writeln!(
             self.line,
@@ -287,7 +287,7 @@ macro_rules! board_sweep {
             filter: FILTER,
         };
 
-        static PLACE: $crate::board::stm32::SweepPlace = $crate::board::place::Place::empty();
+        static PLACE: $crate::board::stm32::SweepPlace = $crate::board::isr_cell::IsrCell::empty();
 
         $crate::board_tick!();
 

@@ -1,4 +1,4 @@
-//! From a [`Certified`] scene to a [`Timed`] one: the scene's delay and the board's are the same, and
+//! From a [`Certified`] scene to a [`TimingChecked`] one: the scene's delay and the board's are the same, and
 //! the scene stands the limits that a board puts on its torque.
 
 use core::fmt;
@@ -8,7 +8,7 @@ use core::marker::PhantomData;
 use super::Certified;
 use super::assessment::Assessment;
 use super::margin::Limited;
-use super::model::{Missed, Numbers, largest_solved, nonlinear_bound};
+use super::model::{LoopIntervals, Missed, largest_solved, nonlinear_bound};
 use super::parameter::first_invalid;
 use super::rules::{Rule, paper_limit};
 use crate::number::Format;
@@ -24,7 +24,7 @@ use crate::text::Sentence;
 /// nothing else.
 ///
 /// ```
-/// use firmware::certificate::{Certified, Timed};
+/// use firmware::certificate::{Certified, TimingChecked};
 /// use firmware::environment::DelayedSpring;
 /// use firmware::scene::{Coupling, Device, Scene, Timing};
 /// use firmware::servo::Latched;
@@ -39,18 +39,18 @@ use crate::text::Sentence;
 /// };
 /// const CERTIFIED: Certified<SpringScene> = SPRING.certified();
 /// // Late by one sample, which is what the latch takes: this compiles.
-/// const TIMED: Timed<SpringScene, Latched> = CERTIFIED.timed::<Latched>();
+/// const TIMED: TimingChecked<SpringScene, Latched> = CERTIFIED.timing_checked::<Latched>();
 /// # let _ = TIMED;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timed<S, M> {
+pub struct TimingChecked<S, M> {
     scene: S,
     format: Format,
     limited: Limited,
     mode: PhantomData<M>,
 }
 
-impl<S, M> Timed<S, M> {
+impl<S, M> TimingChecked<S, M> {
     pub(super) const fn new(scene: S, format: Format, limited: Limited) -> Self {
         Self { scene, format, limited, mode: PhantomData }
     }
@@ -61,8 +61,8 @@ impl<S, M> Timed<S, M> {
     /// An arbitrarily switched damper `B` adds at most `B` to the index (theory, section 5, the
     /// nonlinear bound), and index and damper together have to meet conditions 17 and 18, the rule
     /// that does not ask for linearity.
-    pub const fn room(&self) -> f64 {
-        self.limited.room()
+    pub const fn injectable_damping(&self) -> f64 {
+        self.limited.injectable_damping()
     }
 
     /// Damping in N m s/rad that the device may lose with everything else as it runs on a board, where
@@ -71,7 +71,7 @@ impl<S, M> Timed<S, M> {
         self.limited.margin(0.0)
     }
 
-    /// The same while so much damping (N m s/rad) is switched on and off: below [`Timed::room`].
+    /// The same while so much damping (N m s/rad) is switched on and off: below [`TimingChecked::injectable_damping`].
     pub const fn margin_with(&self, injected: f64) -> f64 {
         self.limited.margin(injected)
     }
@@ -169,13 +169,13 @@ impl fmt::Display for TimingError {
 impl core::error::Error for TimingError {}
 
 impl Assessment {
-    /// [`Timed::margin`] of the scene that was assessed and certified; `None` where no board renders it
+    /// [`TimingChecked::margin`] of the scene that was assessed and certified; `None` where no board renders it
     /// for its numbers.
     pub const fn margin_on_board(&self, scene: &Scene) -> Option<f64> {
         self.margin_injecting(scene, 0.0)
     }
 
-    /// [`Timed::margin_with`] of that scene.
+    /// [`TimingChecked::margin_with`] of that scene.
     pub const fn margin_injecting(&self, scene: &Scene, injected: f64) -> Option<f64> {
         match agree::<Simultaneous>(scene, self) {
             Ok(limited) => Some(limited.margin(injected)),
@@ -217,7 +217,7 @@ pub(super) const fn judged<const CANCELS: bool, M: OutputMode>(
     if first_invalid(scene).is_some() {
         return Err(Step::Certificate);
     }
-    let n = &Numbers::of_late(scene, is_late, format);
+    let n = &LoopIntervals::of_late(scene, is_late, format);
     let solved = match M::TIMING {
         OutputTiming::Latched if is_late => Some(Interval::ONE),
         OutputTiming::Latched => None,
@@ -238,7 +238,7 @@ pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
 ) -> Result<Limited, TimingError> {
-    let n = Numbers::of(scene, assessment.format);
+    let n = LoopIntervals::of(scene, assessment.format);
     agreed::<M>(scene, assessment.rule, assessment.bound, &n)
 }
 
@@ -246,7 +246,7 @@ const fn agreed<M: OutputMode>(
     scene: &Scene,
     rule: Rule,
     bound: Option<Interval>,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Result<Limited, TimingError> {
     if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
@@ -283,7 +283,7 @@ const fn agreed<M: OutputMode>(
 const fn stands_counts_read_late<M: OutputMode>(
     limited: &Limited,
     scene: &Scene,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> bool {
     match M::TIMING {
         OutputTiming::Latched => {
@@ -294,7 +294,7 @@ const fn stands_counts_read_late<M: OutputMode>(
 }
 
 /// What the bound has to stay below for that.
-const fn read_late(limited: &Limited, n: &Numbers) -> Interval {
+const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
     let late = Interval::exact(READ_WITHIN).div(n.period);
     Missed::read_late(n, late).limit(limited.coupling)
 }
@@ -310,7 +310,7 @@ pub(super) const fn limited_bound(
     scene: &Scene,
     rule: Rule,
     bound: Option<Interval>,
-    n: &Numbers,
+    n: &LoopIntervals,
 ) -> Option<Interval> {
     if matches!(rule, Rule::Nonlinear) {
         return bound;

@@ -86,15 +86,17 @@ fn the_room_is_what_the_index_leaves() {
     };
     let wall = DamperWall::<1> { stiffness: 4.0, damping: 0.003 };
     // Linear: K T / 2 + B, below delta; below K_vc T / 2 where the coupling is softer.
-    let room = |scene: Scene<DamperWall<1>>| scene.certify().unwrap().timed::<Latched>().room();
+    let room = |scene: Scene<DamperWall<1>>| {
+        scene.certify().unwrap().timing_checked::<Latched>().injectable_damping()
+    };
     close(room(scene(wall, 44.0)), 0.022 - 0.005);
     close(room(scene(wall, 20.0)), 0.010 - 0.005);
     // Limited and one-sided: the bound is the same for this wall.
     close(room(Scene { torque_limit: Some(1.0), ..scene(wall, 44.0) }), 0.022 - 0.005);
     let sided = scene(OneSided { face: 0.1, wall }, 44.0).certify().unwrap();
-    close(sided.timed::<Latched>().room(), 0.022 - 0.005);
+    close(sided.timing_checked::<Latched>().injectable_damping(), 0.022 - 0.005);
     // The bound of a wall that is later: K T (n - 1/2) + B.
     let later = DamperWall::<3> { stiffness: 2.0, damping: 0.003 };
     let later = scene(OneSided { face: 0.1, wall: later }, 44.0).certify().unwrap();
-    close(later.timed::<Latched>().room(), 0.022 - 0.008);
+    close(later.timing_checked::<Latched>().injectable_damping(), 0.022 - 0.008);
 }

@@ -2,7 +2,7 @@
 //! torques, where the coefficients' rounding alone makes a difference of 1e-10 to 1e-5.
 
 use super::*;
-use crate::certificate::{Loop, Rest, Steps};
+use crate::certificate::{LoopTransfers, QuantizationBound, Resolution};
 use crate::number::{Format, OutOfRange, Rounding};
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
@@ -95,7 +95,7 @@ fn response(g: &Transfer) -> Vec<f64> {
 fn difference<N: Number>(scene: &Scene, format: Format) -> f64 {
     let strong = Transducers { full_scale_torque: 1e9, ..TRANSDUCERS };
     let mut servo = Servo::<Environment, N>::build(scene, &strong).unwrap();
-    let response = response(&Loop::in_format(scene, format).unwrap().controller);
+    let response = response(&LoopTransfers::in_format(scene, format).unwrap().controller);
     let scale = core::f64::consts::TAU / TRANSDUCERS.counts_per_turn;
     let scale = N::FORMAT.coefficient(scale, Rounding::Inward);
     let counts: Vec<i32> = hand().step_by(3).take(TICKS).collect();
@@ -189,7 +189,7 @@ fn rounding<N: Number, Exactly: Number>(scene: &Scene) -> f64 {
         }
         most = most.max((rounded.torque_nm() - exact.torque_nm()).abs());
     }
-    most / Rest::of(scene, N::FORMAT, &Steps::of(&strong, None)).unwrap().numbers
+    most / QuantizationBound::of(scene, N::FORMAT, &Resolution::of(&strong, None)).unwrap().numbers
 }
 
 trait Ticks {
@@ -223,10 +223,10 @@ fn rounding_moves_the_torque_by_no_more_than_the_certificate_says() {
 fn an_encoder_moves_the_torque_by_as_much_as_the_certificate_says() {
     for environment in environments() {
         let scene = Scene { coupling: Coupling::Spring { stiffness: 37.3 }, ..scene(environment) };
-        let response = response(&Loop::of(&scene).unwrap().controller);
+        let response = response(&LoopTransfers::of(&scene).unwrap().controller);
         let worst: f64 = response.iter().map(|h| h.abs() * 0.5e-4).sum();
-        let steps = Steps { encoder: Some(1e-4), ..Steps::default() };
-        let said = Rest::of(&scene, Format::F64, &steps).unwrap().encoder.unwrap();
+        let steps = Resolution { encoder: Some(1e-4), ..Resolution::default() };
+        let said = QuantizationBound::of(&scene, Format::F64, &steps).unwrap().encoder.unwrap();
         assert!((said - worst).abs() <= 1e-8 * said, "{said} {worst} {environment:?}");
     }
 }

@@ -43,7 +43,7 @@ fn hand() -> impl Iterator<Item = i32> {
     })
 }
 
-fn torques<E: Renderable<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
+fn torques<E: Discretize<N>, N: Number>(mut servo: Servo<E, N>) -> Vec<f64> {
     let tick = |count: i32| {
         servo.tick(RawCount::from(count));
         servo.torque_nm()
@@ -151,7 +151,7 @@ fn free_mode_is_equation_23() {
 }
 
 /// Largest torque error against f64 in N m.
-fn error<E: Renderable<N> + Renderable<f64>, N: Number>(scene: &Scene<E>) -> f64 {
+fn error<E: Discretize<N> + Discretize<f64>, N: Number>(scene: &Scene<E>) -> f64 {
     let exact = torques(Servo::<E, f64>::build(scene, &TRANSDUCERS).unwrap());
     let rounded = torques(Servo::<E, N>::build(scene, &TRANSDUCERS).unwrap());
     exact.iter().zip(&rounded).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -161,8 +161,8 @@ fn error<E: Renderable<N> + Renderable<f64>, N: Number>(scene: &Scene<E>) -> f64
 fn formats_are_as_exact_as_their_step_times_the_loops_gain() {
     fn bounded<E>(scene: Scene<E>, gain: f64)
     where
-        E: Renderable<f32> + Renderable<f64>,
-        E: Renderable<FixedI32<U16>> + Renderable<FixedI32<U20>>,
+        E: Discretize<f32> + Discretize<f64>,
+        E: Discretize<FixedI32<U16>> + Discretize<FixedI32<U20>>,
     {
         // A step of f32 at 0.2 rad, and half a step of the fixed formats a rounding: angle,
         // compliance and law, so three halves in all; `gain` is the l1 norm of the loop's

@@ -136,7 +136,7 @@ fn any_environment() -> impl Strategy<Value = Environment> {
 /// Whatever could be built: no panic, and never more torque than allowed.
 fn endures<N: Number>(scene: &Scene<Environment>, transducers: &Transducers, raw: &[u32])
 where
-    Environment: Renderable<N>,
+    Environment: Discretize<N>,
 {
     let Ok(mut servo) = Servo::<Environment, N>::build(scene, transducers) else { return };
     let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);

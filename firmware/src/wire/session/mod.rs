@@ -10,7 +10,7 @@
 //! ```text
 //! ToBoard::Set -> on_message     kept in `requested`, or refused: busy
 //!         poll -> prepare_set    certified and built (`tuning::prepare`), or refused with the step
-//!                 submit         to the servo's interrupt, which swaps it in (`cycle::swap`)
+//!                 submit         to the servo's interrupt, which swaps it in (`servo_loop::swap`)
 //! Notice::Applied -> on_notice   it is the active set; ToHost::Answer
 //! ```
 
@@ -32,18 +32,18 @@ use super::message::{
     ToHost,
 };
 use crate::boot::Program;
-use crate::cycle::{self, FrameReader, Notice, Requests};
-use crate::environment::Renderable;
-use crate::fault::Retained;
+use crate::environment::Discretize;
+use crate::fault::FaultRecord;
 use crate::number::Number;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Rendering, Renders};
+use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
+use crate::servo_loop::{self, FrameReader, Notice, Requests};
 use crate::tuning::{self, Tunable};
 
 /// What a board reports about itself.
 #[derive(Clone, Copy, Debug)]
-pub struct Facts {
+pub struct BoardInfo {
     /// Name of the program.
     pub name: &'static str,
     /// Timer counts in the servo's period.
@@ -51,7 +51,7 @@ pub struct Facts {
     /// Cause of the last reset.
     pub reset: ResetCause,
     /// The fault that stopped it before that reset.
-    pub left: Option<Retained>,
+    pub left: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
 }
@@ -67,10 +67,10 @@ struct Set<E> {
 }
 
 /// The board's end of the wire; `LENGTH` is that of the servo's queue of frames.
-pub struct Session<'a, E: Renderable<N>, N: Number, M, const LENGTH: usize> {
-    facts: Facts,
+pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
+    facts: BoardInfo,
     program: Program<E>,
-    requests: Requests<'a, Rendering<E, N, M>>,
+    requests: Requests<'a, PreparedServo<E, N, M>>,
     frames: FrameReader<'a, LENGTH>,
     decoder: Decoder<{ LONGEST_TO_BOARD + CHECKSUM }>,
     outbox: Outbox,
@@ -88,7 +88,7 @@ pub struct Session<'a, E: Renderable<N>, N: Number, M, const LENGTH: usize> {
 
 impl<'a, E, N, M, const LENGTH: usize> Session<'a, E, N, M, LENGTH>
 where
-    E: Tunable<N> + Renders<M>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
     M: OutputMode,
 {
@@ -97,8 +97,8 @@ where
     pub fn new(
         program: Program<E>,
         margin: Option<f64>,
-        facts: Facts,
-        requests: Requests<'a, Rendering<E, N, M>>,
+        facts: BoardInfo,
+        requests: Requests<'a, PreparedServo<E, N, M>>,
         frames: FrameReader<'a, LENGTH>,
     ) -> Self {
         Self {
@@ -261,7 +261,7 @@ where
             counts_per_turn: transducers.counts_per_turn,
             full_scale_torque: transducers.full_scale_torque,
             energy_step: transducers.energy_unit(),
-            longest_gap: cycle::longest_gap(rendering, period),
+            longest_gap: servo_loop::longest_gap(rendering, period),
         }
     }
 
@@ -278,7 +278,7 @@ where
         Running { sets: self.revision, margin: *margin, values }
     }
 
-    fn status(&self, servo: &cycle::Status) -> Status {
+    fn status(&self, servo: &servo_loop::Status) -> Status {
         Status {
             state: servo.state,
             fault: servo.fault.map(FaultCode::from),

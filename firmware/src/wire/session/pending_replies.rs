@@ -3,8 +3,8 @@
 
 use heapless::Deque;
 
-use crate::cycle::Status;
 use crate::fault::Fault;
+use crate::servo_loop::Status;
 use crate::wire::message::{Id, Outcome, Refusal};
 
 /// Most answers that are kept; the oldest goes first.

@@ -2,7 +2,7 @@
 
 use core::num::NonZeroU32;
 
-use crate::cycle::{Frame, FrameReader};
+use crate::servo_loop::{Frame, FrameReader};
 use crate::wire::telemetry::Batch;
 
 /// Longest time in s that a tick waits for others to go with it: a picture at 30 Hz.

@@ -9,13 +9,13 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::certificate::Parameter;
-use crate::cycle::{Cycle, Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, State};
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
+use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{encode, largest_frame};
@@ -40,7 +40,7 @@ fn program() -> Program<Wall> {
             largest_speed: Transducers::NO_HAND_IS_FASTER,
         },
         rendering: RenderingOptions { fade: 0.02, injection: None },
-        options: cycle::Options::DEFAULT,
+        options: servo_loop::Options::DEFAULT,
     }
 }
 
@@ -57,13 +57,13 @@ impl Hardware for Still {
         self.code = code;
     }
     fn amplifier(&mut self, _: bool) {}
-    fn passed(&mut self) -> u32 {
+    fn periods_since_last(&mut self) -> u32 {
         1
     }
-    fn elapsed(&mut self) -> u32 {
+    fn time_in_period(&mut self) -> u32 {
         250
     }
-    fn feed(&mut self) {}
+    fn feed_watchdog(&mut self) {}
 }
 
 type Said = ToHost<String>;
@@ -74,25 +74,25 @@ const FRAMES: usize = 32;
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
     session: Session<'static, Wall, f32, Latched, FRAMES>,
-    cycle: Cycle<Wall, f32, Latched>,
+    cycle: ServoLoop<Wall, f32, Latched>,
     hardware: Still,
-    inbox: Inbox<'static, Rendering<Wall, f32, Latched>>,
+    inbox: Inbox<'static, PreparedServo<Wall, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
     ear: Decoder<{ LONGEST_TO_HOST + CHECKSUM }>,
 }
 
 impl Bench {
-    fn new(left: Option<Retained>) -> Self {
+    fn new(left: Option<FaultRecord>) -> Self {
         let program = program();
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, queue) = Box::leak(Box::new(FrameQueue::<FRAMES>::new())).split();
         let Program { scene, transducers, rendering, options } = &program;
         let prepared =
             tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
-        let cycle = Cycle::new(prepared.rendering, options, 1000, None);
+        let cycle = ServoLoop::new(prepared.rendering, options, 1000, None);
         let reset = ResetCause::Pin;
         let facts =
-            Facts { name: "wall", timer_counts: 1000, reset, left, stack_left: || Some(77) };
+            BoardInfo { name: "wall", timer_counts: 1000, reset, left, stack_left: || Some(77) };
         requests.arm();
         let session = Session::new(program, prepared.margin, facts, requests, queue);
         let hardware = Still { code: DacCode::MID_SCALE };
@@ -205,7 +205,7 @@ fn codes(stiffness: f64) -> f64 {
 #[test]
 fn greets_with_what_its_numbers_mean() {
     let fault = crate::fault::Fault::Watchdog;
-    let record = Retained { fault, tick: 7, count: -8 };
+    let record = FaultRecord { fault, tick: 7, count: -8 };
     let mut bench = Bench::new(Some(record));
     let said = bench.ask(&ToBoard::Hello);
     let [

@@ -3,7 +3,7 @@
 #![no_main]
 
 use firmware::certificate::Certified;
-use firmware::cycle::{LinkPolicy, Options};
+use firmware::servo_loop::{LinkPolicy, Options};
 use firmware::encoder::CounterWidth;
 use firmware::environment::DamperWall;
 use firmware::number::fixed::types::I8F24;

@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use firmware::certificate::Timed;
-use firmware::cycle::{Frame, FrameQueue, FrameSink, Frames, State};
+use firmware::certificate::TimingChecked;
+use firmware::servo_loop::{Frame, FrameQueue, FrameSink, Frames, State};
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{
     Coefficients, DamperWall, DelayedSpring, FilteredWall, FreeMode, FreeModeWall, OneSided,
@@ -11,7 +11,7 @@ use firmware::environment::{
 };
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::energy::EnergyMonitor;
-use firmware::servo::{Latched, Output, Rendering, RenderingOptions, Servo, Transducers};
+use firmware::servo::{Latched, Output, PreparedServo, RenderingOptions, Servo, Transducers};
 use fixed::types::{I8F24, I16F16};
 use no_panic::no_panic;
 
@@ -33,7 +33,7 @@ fn scene<E>(environment: E) -> Scene<E> {
 }
 
 type Wall = OneSided<DamperWall<1>>;
-type Walled = Rendering<Wall, f32, Latched>;
+type Walled = PreparedServo<Wall, f32, Latched>;
 
 /// What a cycle does in a usual tick: rendering, with or without injected damping, energy, frame.
 #[no_panic]
@@ -52,9 +52,9 @@ fn cycle(
 fn rendering(injection: Option<f64>) -> Walled {
     let wall = DamperWall { stiffness: 11.0, damping: 0.005 };
     let certified = scene(OneSided { face: 0.0, wall }).certify().expect("a safe scene");
-    let timed: Timed<_, Latched> = certified.timed();
+    let timed: TimingChecked<_, Latched> = certified.timing_checked();
     let options = RenderingOptions { injection, ..RenderingOptions::DEFAULT };
-    Rendering::new(&timed, &TRANSDUCERS, &options).expect("it fits the format")
+    PreparedServo::new(&timed, &TRANSDUCERS, &options).expect("it fits the format")
 }
 
 macro_rules! ticks {

@@ -5,7 +5,7 @@
 //! over: each turns a mass into a non-passive element or a negative spring into a passive one.
 
 use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::Obstacle;
+use firmware::passivity::poles::IndexError;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
@@ -20,7 +20,7 @@ mod transfer;
 /// Descending coefficients.
 type Fraction = (Vec<f64>, Vec<f64>);
 
-fn least((over, under): &Fraction) -> Result<Interval, Obstacle> {
+fn least((over, under): &Fraction) -> Result<Interval, IndexError> {
     input_passivity_of(ContinuousTransfer::new(over, under)).map(|found| found.minimum)
 }
 
@@ -122,7 +122,7 @@ fn random_functions_agree_with_the_reference() {
                 stable += 1;
             }
             (None, Ok(least)) => panic!("{fraction:?} is unstable, but {least:?}"),
-            (Some(_), Err(Obstacle::Undecided(_))) => open += 1,
+            (Some(_), Err(IndexError::Undecided(_))) => open += 1,
             (Some(_), Err(why)) => panic!("{fraction:?} is stable, but {why:?}"),
             (None, Err(_)) => unstable += 1,
         }
@@ -146,14 +146,14 @@ fn elements_are_what_they_are() {
         contains((vec![x, 0.0], vec![1.0]), 0.0);
         contains((vec![x, 0.25, x], vec![1.0, 0.0]), 0.25);
         let negative_spring = least(&(vec![-x], vec![1.0, 0.0]));
-        assert!(matches!(negative_spring, Err(Obstacle::NegativeResidue { .. })));
+        assert!(matches!(negative_spring, Err(IndexError::NegativeResidue { .. })));
         // A negative mass has a pole at infinity with a negative residue.
         let negative_mass = least(&(vec![-x, 0.0], vec![1.0]));
         assert!(negative_mass.is_err(), "{negative_mass:?}");
         let twice = least(&(vec![x], vec![1.0, 0.0, 0.0]));
-        assert!(matches!(twice, Err(Obstacle::RepeatedUnitPole { .. })), "{twice:?}");
+        assert!(matches!(twice, Err(IndexError::RepeatedUnitPole { .. })), "{twice:?}");
         let angle = least(&(vec![x], vec![1.0, 0.0, 1.0]));
-        assert!(matches!(angle, Err(Obstacle::ResidueAngle { .. })), "{angle:?}");
+        assert!(matches!(angle, Err(IndexError::ResidueAngle { .. })), "{angle:?}");
     }
     // A lossless resonator is recognised where its numbers are short enough to stay exact.
     for x in [0.5, 1.0, 44.0] {

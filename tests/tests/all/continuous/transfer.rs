@@ -7,7 +7,7 @@
 
 use firmware::passivity::discrete::{RealPart, input_passivity};
 use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::{Doubt, Obstacle};
+use firmware::passivity::poles::{IndexError, UndecidedReason};
 use firmware::passivity::polynomial::{MAX_DEGREE, Polynomial, UnitRoot};
 use firmware::passivity::transfer::Transfer;
 
@@ -131,22 +131,22 @@ const fn binary_exponent(value: Interval) -> i32 {
 ///
 /// `cos_theta` of the result belongs to the image: `tan(theta / 2)` is the frequency over the
 /// scale.
-pub const fn input_passivity_of(g: ContinuousTransfer) -> Result<RealPart, Obstacle> {
+pub const fn input_passivity_of(g: ContinuousTransfer) -> Result<RealPart, IndexError> {
     if g.denominator.is_zero() || g.numerator.degree() > MAX_DEGREE {
-        return Err(Obstacle::Undecided(Doubt::OutOfRange));
+        return Err(IndexError::Undecided(UndecidedReason::OutOfRange));
     }
     match g.image() {
         // A pole at s = w lands at infinity, where the denominator has lost its degree.
         Some(image) if image.relative_degree() > 0 => {
-            Err(Obstacle::UnstablePole { reflection: Interval::new(f64::MAX, f64::INFINITY) })
+            Err(IndexError::UnstablePole { reflection: Interval::new(f64::MAX, f64::INFINITY) })
         }
         Some(image) => input_passivity(image, false),
-        None => Err(Obstacle::Undecided(Doubt::OutOfRange)),
+        None => Err(IndexError::Undecided(UndecidedReason::OutOfRange)),
     }
 }
 
 /// Output strict passivity in continuous time: `min Re (1/G(j w))` of a passive `G` (equation 2).
-pub const fn output_passivity_of(g: ContinuousTransfer) -> Result<RealPart, Obstacle> {
+pub const fn output_passivity_of(g: ContinuousTransfer) -> Result<RealPart, IndexError> {
     match input_passivity_of(g) {
         Ok(_) => input_passivity_of(g.inverse()),
         Err(obstacle) => Err(obstacle),
@@ -157,7 +157,7 @@ pub const fn output_passivity_of(g: ContinuousTransfer) -> Result<RealPart, Obst
 mod tests {
     use super::*;
 
-    fn minimum(numerator: &[f64], denominator: &[f64]) -> Result<Interval, Obstacle> {
+    fn minimum(numerator: &[f64], denominator: &[f64]) -> Result<Interval, IndexError> {
         input_passivity_of(ContinuousTransfer::new(numerator, denominator)).map(|r| r.minimum)
     }
 
@@ -168,7 +168,7 @@ mod tests {
         assert!(minimum(&[0.25], &[1.0]).unwrap().contains(0.25));
         assert!(minimum(&[30.0], &[1.0, 0.0]).unwrap().contains(0.0));
         assert!(minimum(&[0.5, 0.25, 30.0], &[1.0, 0.0]).unwrap().contains(0.25));
-        assert!(matches!(minimum(&[-30.0], &[1.0, 0.0]), Err(Obstacle::NegativeResidue { .. })));
+        assert!(matches!(minimum(&[-30.0], &[1.0, 0.0]), Err(IndexError::NegativeResidue { .. })));
     }
 
     #[test]
@@ -190,13 +190,13 @@ mod tests {
     fn what_is_not_positive_real_is_found() {
         // Non-collocated resonance: 1 / (s^2 + s + 1).
         assert!(minimum(&[1.0], &[1.0, 1.0, 1.0]).unwrap().is_negative());
-        assert!(matches!(minimum(&[1.0], &[1.0, -1.0]), Err(Obstacle::UnstablePole { .. })));
+        assert!(matches!(minimum(&[1.0], &[1.0, -1.0]), Err(IndexError::UnstablePole { .. })));
         // s / (s^2 + 1): lossless. 1 / (s^2 + 1): residue of the wrong angle.
         assert!(minimum(&[1.0, 0.0], &[1.0, 0.0, 1.0]).unwrap().is_zero());
-        assert!(matches!(minimum(&[1.0], &[1.0, 0.0, 1.0]), Err(Obstacle::ResidueAngle { .. })));
+        assert!(matches!(minimum(&[1.0], &[1.0, 0.0, 1.0]), Err(IndexError::ResidueAngle { .. })));
         assert!(matches!(
             minimum(&[1.0], &[1.0, 0.0, 0.0]),
-            Err(Obstacle::RepeatedUnitPole { .. })
+            Err(IndexError::RepeatedUnitPole { .. })
         ));
     }
 }

@@ -2,8 +2,8 @@
 //! constants, and the client in Python has both.
 
 use firmware::board::BAUD;
-use firmware::cycle::State;
 use firmware::fault::Fault;
+use firmware::servo_loop::State;
 use firmware::torque::LimitReason;
 use firmware::tuning::TUNABLE;
 use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
@@ -65,7 +65,7 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/scene.rs", "Scene"),
         ("firmware/src/environment/any.rs", "Wall"),
         ("firmware/src/transducers.rs", "Transducers"),
-        ("firmware/src/servo/rendering.rs", "RenderingOptions"),
+        ("firmware/src/servo/prepared_servo.rs", "RenderingOptions"),
         ("firmware/src/wire/telemetry.rs", "Packed"),
     ] {
         let table = table(&document, &format!("### {name}"));
@@ -92,7 +92,7 @@ fn every_variant_is_there_with_its_number() {
         ("firmware/src/step.rs", "Step", "### Step", None),
         ("firmware/src/number/mod.rs", "Format", "### Format", None),
         ("firmware/src/output_timing.rs", "OutputTiming", "### OutputTiming", None),
-        ("firmware/src/cycle/state.rs", "State", "### State", None),
+        ("firmware/src/servo_loop/state.rs", "State", "### State", None),
         ("firmware/src/reset.rs", "ResetCause", "### ResetCause", None),
         ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),
         ("firmware/src/certificate/parameter.rs", "Parameter", "### Parameter", None),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use firmware::passivity::discrete::{RealPart, index_near, index_within};
 use firmware::passivity::interval::Interval;
-use firmware::passivity::poles::Obstacle;
+use firmware::passivity::poles::IndexError;
 use firmware::passivity::polynomial::Polynomial;
 use firmware::passivity::transfer::Transfer;
 use nalgebra::Complex;
@@ -140,10 +140,10 @@ fn enclosed(alpha: Interval, delta: f64) -> Answer {
     Answer { alpha: Some((alpha.lo(), alpha.hi())), verdict }
 }
 
-fn proved(found: Result<RealPart, Obstacle>, delta: f64) -> Answer {
+fn proved(found: Result<RealPart, IndexError>, delta: f64) -> Answer {
     match found {
         Ok(found) => enclosed(found.minimum, delta),
-        Err(Obstacle::Undecided(_)) => Answer { alpha: None, verdict: Verdict::Open },
+        Err(IndexError::Undecided(_)) => Answer { alpha: None, verdict: Verdict::Open },
         Err(_) => Answer { alpha: None, verdict: Verdict::No },
     }
 }

@@ -1,8 +1,8 @@
 //! The types of all scenes that a file can name.
 
 use firmware::environment::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, MAX_DELAY,
-    OneSided, Placed, Renderable, Spring, Wall,
+    DamperWall, DelayedSpring, Discretize, Environment, FilteredWall, FreeMode, FreeModeWall,
+    MAX_DELAY, OneSided, Placed, Spring, Wall,
 };
 use firmware::number::Number;
 
@@ -70,7 +70,7 @@ impl<const DELAY: usize> Damped<DELAY> {
 }
 
 /// A wall where it is.
-fn sided<W: Spring<N> + Renderable<N>, N: Number>(
+fn sided<W: Spring<N> + Discretize<N>, N: Number>(
     job: Job<'_>,
     place: &Wall,
     wall: W,
@@ -83,7 +83,7 @@ fn sided<W: Spring<N> + Renderable<N>, N: Number>(
 }
 
 /// A wall that ends free motion. There is no type of one that has its rest elsewhere than at zero.
-fn ended<W: Spring<N> + Renderable<N>, N: Number>(
+fn ended<W: Spring<N> + Discretize<N>, N: Number>(
     job: Job<'_>,
     residual: f64,
     place: &Wall,

@@ -10,9 +10,9 @@ pub use programs::OfPrograms;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
-use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, pace};
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
 use firmware::encoder::RawCount;
-use firmware::environment::Renderable;
+use firmware::environment::Discretize;
 use firmware::number::{InEach, Number};
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
@@ -34,7 +34,7 @@ pub trait Kinds {
 
 /// Does trials of these types until the host closes its end.
 pub fn run<K: Kinds>() -> ! {
-    pace::start_clock();
+    tick_timer::start_clock();
     let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
         semihosting::process::exit(EXIT_REFUSED);
@@ -105,7 +105,7 @@ impl Host {
     // SAFETY: the section is one of code, in flash that the emulated board has.
     #[unsafe(link_section = ".more")]
     #[inline(never)]
-    fn ticks<E: Renderable<N>, N: Number>(
+    fn ticks<E: Discretize<N>, N: Number>(
         &mut self,
         scene: Scene<E>,
         transducers: &Transducers,
@@ -176,7 +176,7 @@ pub struct Job<'a> {
 
 impl Job<'_> {
     /// Its ticks, as a servo of this environment.
-    fn of<E: Renderable<N>, N: Number>(self, environment: E) -> Result<(), Gone> {
+    fn of<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), Gone> {
         let Scene { device, timing, coupling, torque_limit, .. } = *self.scene;
         let scene = Scene { device, timing, coupling, environment, torque_limit };
         self.host.ticks::<E, N>(scene, self.transducers)

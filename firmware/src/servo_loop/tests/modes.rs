@@ -3,7 +3,7 @@
 use fixed::types::I8F24;
 
 use super::*;
-use crate::servo::{Renders, Simultaneous};
+use crate::servo::{Simultaneous, SupportsTiming};
 use crate::tuning::Tunable;
 
 /// Counts of a hand that pushes in and lets go, again and again.
@@ -14,7 +14,7 @@ fn hand() -> impl Iterator<Item = i32> {
 /// Codes that are written while the hand moves, from the first tick on.
 fn codes<N: Number, M: OutputMode>() -> Vec<i32>
 where
-    Spring: Tunable<N> + Renders<M>,
+    Spring: Tunable<N> + SupportsTiming<M>,
 {
     let mut bench: Bench<Spring, N, M> = Bench::armed(&SPRING, Board::new()).unwrap();
     hand().for_each(|count| {

@@ -3,7 +3,7 @@
 //!
 //! The clamp closes, the new set starts at rest where the device is, runs shut for a few ticks, and its
 //! clamp opens. No part of this is safe because of the time that it takes. A limit that moves, however
-//! fast, is in the certificate of either set ([`certificate::timed`](crate::certificate::Timed)): one
+//! fast, is in the certificate of either set ([`certificate::timed`](crate::certificate::TimingChecked)): one
 //! that falls takes energy away, and one that rises puts in, once, what the environment stores at its
 //! depth. In between there is no torque, and the new set remembers nothing but a device that stood where
 //! it is, which is a motion that it could have seen.

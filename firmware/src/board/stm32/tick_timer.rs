@@ -14,8 +14,8 @@ use embassy_stm32::rcc;
 
 use super::wiring::CLOCK;
 use crate::build_error::BuildError;
-use crate::cycle::{BEGAN_LATE, READ_WITHIN};
 use crate::period;
+use crate::servo_loop::{BEGAN_LATE, READ_WITHIN};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' converters can take.
@@ -85,7 +85,7 @@ const MOST: f64 = 65_536.0;
 
 /// Keeps count of the periods. Belongs to the servo's interrupt.
 #[derive(Debug)]
-pub struct Pace {
+pub struct TickTimer {
     /// Clock counts in a period.
     period: NonZeroU32,
     /// Clock counts after its beginning in which a tick has to begin.
@@ -94,7 +94,7 @@ pub struct Pace {
     began: u32,
 }
 
-impl Pace {
+impl TickTimer {
     /// Sets both timers up and leaves them standing. The servo's interrupt must still be disabled.
     pub fn prepare(period: Period) -> Self {
         rcc::enable_and_reset::<peripherals::TIM6>();
@@ -123,9 +123,9 @@ impl Pace {
     }
 
     /// Acknowledges the tick; gives the periods that have begun since the last time: see
-    /// [`Hardware::passed`](crate::cycle::Hardware::passed).
+    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last).
     #[inline(always)]
-    pub fn passed(&mut self) -> u32 {
+    pub fn periods_since_last(&mut self) -> u32 {
         TIMER.sr().write(|w| w.set_uif(false));
         let next = self.began.wrapping_add(self.period.get());
         let late = now().wrapping_sub(next);
@@ -141,7 +141,7 @@ impl Pace {
 
     /// Clock counts since the present period began.
     #[inline(always)]
-    pub fn elapsed(&self) -> u32 {
+    pub fn time_in_period(&self) -> u32 {
         now().wrapping_sub(self.began)
     }
 }

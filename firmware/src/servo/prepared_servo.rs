@@ -5,10 +5,10 @@ use core::marker::PhantomData;
 
 use super::{Output, Servo};
 use crate::build_error::BuildError;
-use crate::certificate::{CertifyScene, Timed};
+use crate::certificate::{CertifyScene, TimingChecked};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
-use crate::environment::{Renderable, Renders};
+use crate::environment::{Discretize, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::{OutputMode, READ_WITHIN};
 use crate::scene::{Scene, Timing};
@@ -19,7 +19,7 @@ use crate::transducers::Transducers;
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderingOptions {
     /// Time in s in which the clamp opens from nothing to the torque limit, and closes; for another set
-    /// of parameters a tenth of it ([`longest_gap`](crate::cycle::longest_gap)).
+    /// of parameters a tenth of it ([`longest_gap`](crate::servo_loop::longest_gap)).
     pub fade: f64,
     /// Damping in N m s/rad that is injected while more energy has gone into the hand than came
     /// out of it; `None`: the energy is only watched.
@@ -34,7 +34,7 @@ impl RenderingOptions {
 
 impl RenderingOptions {
     /// For constants: a compile error where the damping that is injected does not fit into the room
-    /// that a scene leaves; see [`Timed::room`].
+    /// that a scene leaves; see [`TimingChecked::injectable_damping`].
     ///
     /// # Panics
     /// If it does not; in a constant that is the compile error.
@@ -59,16 +59,16 @@ impl Default for RenderingOptions {
 
 /// The servo of a scene that was timed for the mode `M`, ready to be swapped in.
 #[derive(Clone, Debug)]
-pub struct Rendering<E: Renderable<N>, N: Number, M> {
+pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
     servo: Servo<E, N>,
     injector: Option<Injector<N>>,
-    pace: Pace,
+    pace: TimingLimits,
     mode: PhantomData<M>,
 }
 
 /// What the time between two updates may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pace {
+pub struct TimingLimits {
     /// The period in s.
     pub period: f64,
     /// Updates in a row that may be missed before the certificate is void.
@@ -81,7 +81,7 @@ pub struct Pace {
     span: u32,
 }
 
-impl<E: CertifyScene<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
+impl<E: CertifyScene<N> + SupportsTiming<M>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
     /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
     /// coefficients than this number format's, such as the scene's as it was written, is taken
     /// again.
@@ -89,7 +89,7 @@ impl<E: CertifyScene<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, 
     /// # Errors
     /// Where the scene, the transducers or the options cannot be had in this number format.
     pub fn new(
-        timed: &Timed<Scene<E>, M>,
+        timed: &TimingChecked<Scene<E>, M>,
         transducers: &Transducers,
         options: &RenderingOptions,
     ) -> Result<Self, BuildError> {
@@ -97,18 +97,18 @@ impl<E: CertifyScene<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, 
         if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
-        let again = E::timed(*timed.scene());
+        let again = E::timing_checked(*timed.scene());
         let again = again.map_err(|_| BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
     }
 }
 
-impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
+impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
     /// From a certificate in this number format.
     // In a frame of its own: what it takes is not on the stack while a scene is judged.
     #[inline(never)]
     pub(crate) fn build(
-        timed: &Timed<Scene<E>, M>,
+        timed: &TimingChecked<Scene<E>, M>,
         transducers: &Transducers,
         options: &RenderingOptions,
     ) -> Result<Self, BuildError> {
@@ -119,7 +119,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
         let ticks = (options.fade / period).max(1.0);
         let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
         servo.shut();
-        let room = timed.room();
+        let room = timed.injectable_damping();
         let injector = match options.injection {
             None => None,
             Some(damping) if damping < room => {
@@ -132,7 +132,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
             }
             Some(damping) => return Err(BuildError::Injection { damping, room }),
         };
-        let pace = Pace::new(scene.timing, transducers)?;
+        let pace = TimingLimits::new(scene.timing, transducers)?;
         Ok(Self { servo, injector, pace, mode: PhantomData })
     }
 
@@ -168,12 +168,12 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Rendering<E, N, M> {
     }
 
     /// What the time between two updates may be.
-    pub const fn pace(&self) -> Pace {
+    pub const fn timing_limits(&self) -> TimingLimits {
         self.pace
     }
 }
 
-impl Pace {
+impl TimingLimits {
     /// Ticks up to which a wrapping counter of them tells the future from the past.
     pub(crate) const LONGEST: u32 = i32::MAX.cast_unsigned();
 

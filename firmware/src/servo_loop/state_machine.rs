@@ -3,16 +3,16 @@
 
 use super::swap::{ARMING, SETTLING, SWAPPING};
 use super::*;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 
-impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
+impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// Whatever is not a tick of a running servo that nobody asks anything.
     #[cold]
     #[inline(never)]
-    pub(super) fn attend(
+    pub(super) fn run_state_machine(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
         dropped: u32,
     ) {
         let asked = inbox.take();
@@ -38,13 +38,13 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         }
     }
 
-    fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+    fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if !self.state.is_armed() {
             if let Some(fault) = self.persists() {
                 return inbox.tell(Notice::NotArmed(fault));
             }
             self.fault = None;
-            hardware.keep(&Retained::NOTHING);
+            hardware.store_fault(&FaultRecord::NOTHING);
             self.energy.reset();
             // Whatever the environment remembers from before a fault, the motor did not do.
             self.rendering.rest_here();
@@ -52,41 +52,43 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             self.ramp = ARMING;
             self.state = State::FadingIn;
         }
-        match (self.state, self.goal) {
-            (State::FadingOut, Goal::Stop(fault)) => return inbox.tell(Notice::NotArmed(fault)),
-            (State::FadingOut, Goal::Release) => self.state = State::FadingIn,
+        match (self.state, self.after_fade) {
+            (State::FadingOut, AfterFade::Stop(fault)) => {
+                return inbox.tell(Notice::NotArmed(fault));
+            }
+            (State::FadingOut, AfterFade::Release) => self.state = State::FadingIn,
             _ => {}
         }
-        self.goal = Goal::Render;
+        self.after_fade = AfterFade::Render;
         inbox.tell(Notice::Armed);
     }
 
-    fn disarm(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+    fn disarm(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if self.state.is_armed() {
             self.ramp = ARMING;
-            self.begin_fading_out(Goal::Release);
+            self.begin_fading_out(AfterFade::Release);
         } else {
             inbox.tell(Notice::Disarmed);
         }
     }
 
     /// Closes the clamp from where the torque is, so that the torque moves at once.
-    pub(super) fn begin_fading_out(&mut self, goal: Goal) {
-        self.goal = goal;
+    pub(super) fn begin_fading_out(&mut self, after_fade: AfterFade) {
+        self.after_fade = after_fade;
         self.state = State::FadingOut;
-        self.rendering.servo_mut().meet();
+        self.rendering.servo_mut().clamp_to_held_torque();
     }
 
-    fn close_for_a_set(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
+    fn close_for_a_set(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
         if inbox.has_set() {
             self.ramp = SWAPPING;
-            self.begin_fading_out(Goal::Render);
+            self.begin_fading_out(AfterFade::Render);
         }
     }
 
-    fn fade_in(&mut self, inbox: &Inbox<'_, Rendering<E, N, M>>) {
+    fn fade_in(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
         if inbox.has_set() {
-            return self.begin_fading_out(Goal::Render);
+            return self.begin_fading_out(AfterFade::Render);
         }
         for _ in 0..self.ramp {
             if self.rendering.servo_mut().open() {
@@ -98,7 +100,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     fn fade_out(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
         // Shut before this tick, so that this tick's code was mid-scale.
         if !self.rendering.servo().is_shut() {
@@ -107,22 +109,22 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             }
             return;
         }
-        match self.goal {
-            Goal::Render => {
+        match self.after_fade {
+            AfterFade::Render => {
                 self.swap(inbox);
                 self.settling = SETTLING;
                 self.state = State::Settling;
             }
-            Goal::Release => {
+            AfterFade::Release => {
                 hardware.amplifier(false);
                 self.state = State::Disarmed;
                 inbox.tell(Notice::Disarmed);
             }
-            Goal::Stop(fault) => self.stop(fault, hardware, inbox),
+            AfterFade::Stop(fault) => self.stop(fault, hardware, inbox),
         }
     }
 
-    fn settle(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+    fn settle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if self.swap(inbox) {
             self.settling = SETTLING;
         }
@@ -133,16 +135,16 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// A tick without amplifier.
-    fn rest(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) {
+    fn rest(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         self.swap(inbox);
-        self.calm = self.calm.saturating_add(1);
+        self.fault_free_ticks = self.fault_free_ticks.saturating_add(1);
     }
 
     /// Puts the set that waits in the place of the running one, between two ticks and whole. To be
     /// called with the clamp shut: the new set's is, too.
-    fn swap(&mut self, inbox: &mut Inbox<'_, Rendering<E, N, M>>) -> bool {
+    fn swap(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) -> bool {
         let Some(mut set) = inbox.set() else { return false };
-        set.servo_mut().follow(self.rendering.servo());
+        set.servo_mut().take_position_from(self.rendering.servo());
         set.rest_here();
         self.rendering = set;
         inbox.tell(Notice::Applied);

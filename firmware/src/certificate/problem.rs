@@ -1,16 +1,16 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
-use super::model::{Numbers, largest_solved, nonlinear_bound, transfer};
+use super::model::{LoopIntervals, largest_solved, nonlinear_bound, transfer};
 use super::parameter::first_invalid;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
 use crate::environment::Environment;
 use crate::number::Format;
-use crate::passivity::bernstein::Closeness;
+use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle, Reduced, cancelled, hidden_mode};
+use crate::passivity::poles::{IndexError, Reduced, UndecidedReason, cancelled, hidden_mode};
 use crate::passivity::transfer::{Transfer, Unbuildable};
 use crate::scene::Scene;
 
@@ -26,7 +26,7 @@ const ROUGHLY: f64 = 1e-4;
 /// thousands of scenes.
 ///
 /// ```
-/// use firmware::certificate::Posed;
+/// use firmware::certificate::PassivityProblem;
 /// use firmware::environment::{Environment, Wall};
 /// use firmware::scene::{Coupling, Device, Scene, Timing};
 ///
@@ -45,19 +45,19 @@ const ROUGHLY: f64 = 1e-4;
 ///     environment: Environment::DamperWall(wall(stiffness)),
 ///     torque_limit: None,
 /// };
-/// let passes = |stiffness| Posed::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
+/// let passes = |stiffness| PassivityProblem::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
 /// assert!(passes(23.9) && !passes(24.1));
 /// ```
 #[derive(Clone, Copy)]
-pub struct Posed {
-    pub(super) numbers: Numbers,
+pub struct PassivityProblem {
+    pub(super) numbers: LoopIntervals,
     pub(super) environment: Transfer,
     pub(super) rule: Rule,
     /// Bound on the index of a one-sided or limited scene.
     pub(super) bound: Option<Interval>,
 }
 
-impl Posed {
+impl PassivityProblem {
     /// Poses a scene as it was written.
     ///
     /// # Errors
@@ -70,16 +70,16 @@ impl Posed {
     /// The same with the coefficients that a servo in a number format multiplies by.
     ///
     /// # Errors
-    /// As [`Posed::of`].
+    /// As [`PassivityProblem::of`].
     pub const fn in_format(scene: &Scene, format: Format) -> Result<Self, Rejection> {
         match first_invalid(scene) {
             Some(invalid) => Err(Rejection::Invalid(invalid)),
-            None => Self::with(scene, Numbers::of(scene, format)),
+            None => Self::with(scene, LoopIntervals::of(scene, format)),
         }
     }
 
     /// Poses a scene whose numbers are valid.
-    pub(super) const fn with(scene: &Scene, numbers: Numbers) -> Result<Self, Rejection> {
+    pub(super) const fn with(scene: &Scene, numbers: LoopIntervals) -> Result<Self, Rejection> {
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
@@ -127,7 +127,7 @@ impl Posed {
             // What is clear enough for "not certified" may not be for "rejected".
             Rule::Exact => {
                 match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
-                    Answer::Undecided => self.exact(&self.coupled(None, &Closeness::TIGHT)),
+                    Answer::Undecided => self.exact(&self.coupled(None, &Precision::TIGHT)),
                     clear => clear,
                 }
             }
@@ -184,10 +184,10 @@ impl Posed {
     }
 
     /// Answer of equations 17 to 19, given the index of the environment alone.
-    pub(super) const fn paper(&self, alone: &Result<RealPart, Obstacle>) -> Answer {
+    pub(super) const fn paper(&self, alone: &Result<RealPart, IndexError>) -> Answer {
         let Some(limit) = paper_limit(&self.numbers) else { return Answer::Fail };
         match (alone, self.rule, self.bound) {
-            (Err(Obstacle::Undecided(_)), ..) => Answer::Undecided,
+            (Err(IndexError::Undecided(_)), ..) => Answer::Undecided,
             (Err(_), ..) => Answer::Fail,
             (Ok(found), Rule::Exact, _) => compare(found.minimum, limit),
             (Ok(_), Rule::Nonlinear, Some(bound)) => compare(bound, limit),
@@ -196,16 +196,16 @@ impl Posed {
     }
 
     /// Answer of theory, section 4.1, given the index of `E'`.
-    pub(super) const fn exact(&self, coupled: &Result<RealPart, Obstacle>) -> Answer {
+    pub(super) const fn exact(&self, coupled: &Result<RealPart, IndexError>) -> Answer {
         match coupled {
             Ok(found) => compare(found.minimum, exact_limit(&self.numbers)),
-            Err(Obstacle::Undecided(_)) => Answer::Undecided,
+            Err(IndexError::Undecided(_)) => Answer::Undecided,
             Err(_) => Answer::Fail,
         }
     }
 
     /// About how much more damping the rule asks for than the device has, as a part of `delta`:
-    /// negative where [`Posed::is_certified`], except that it does not tell closely next to zero.
+    /// negative where [`PassivityProblem::is_certified`], except that it does not tell closely next to zero.
     /// `None` where there is no index. For searches, which follow it to where it is zero.
     pub(super) const fn shortage(&self) -> Option<f64> {
         let shortage = match self.rule {
@@ -219,7 +219,7 @@ impl Posed {
     }
 
     const fn exact_shortage(&self) -> Option<Interval> {
-        match self.coupled(None, &Closeness::within(ROUGHLY)) {
+        match self.coupled(None, &Precision::within(ROUGHLY)) {
             Ok(found) => Some(found.minimum.sub(exact_limit(&self.numbers))),
             Err(_) => None,
         }
@@ -245,11 +245,11 @@ impl Posed {
     /// About the passivity that this law asks of a device, scaled to the worst period; `None` where
     /// it passes on none.
     ///
-    /// By the exact rule that is [`Posed::at_port`]. A one-sided or limited scene passes on
+    /// By the exact rule that is [`PassivityProblem::at_port`]. A one-sided or limited scene passes on
     /// what its coupling stands for, if its own bound is less.
     pub(super) const fn needed_passivity(&self) -> Option<f64> {
         match self.rule {
-            Rule::Exact => match self.at_port(&Closeness::within(ROUGHLY)) {
+            Rule::Exact => match self.at_port(&Precision::within(ROUGHLY)) {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
             },
@@ -262,7 +262,7 @@ impl Posed {
 
     /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
-    pub(super) const fn at_port(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+    pub(super) const fn at_port(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         match self.behind_reduced(self.numbers.compliance, true) {
             Ok(late) => reduced_index(&late, closeness),
             Err(obstacle) => Err(obstacle),
@@ -277,7 +277,7 @@ impl Posed {
     }
 
     /// Index of the environment alone.
-    pub(super) const fn alone(&self, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+    pub(super) const fn alone(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
         index_looked_at(&self.environment, self.numbers.period, true, closeness)
     }
 
@@ -289,9 +289,9 @@ impl Posed {
     /// [`super::model::Missed::limit`] with `nu = 1`).
     pub(super) const fn coupled(
         &self,
-        alone: Option<Result<RealPart, Obstacle>>,
-        closeness: &Closeness,
-    ) -> Result<RealPart, Obstacle> {
+        alone: Option<Result<RealPart, IndexError>>,
+        closeness: &Precision,
+    ) -> Result<RealPart, IndexError> {
         let at_once = match alone {
             Some(alone) if self.is_standard() => alone,
             None if self.is_standard() => self.alone(closeness),
@@ -309,7 +309,11 @@ impl Posed {
 
     /// Index of `E'` for a coupling with this much compliance over the standard one.
     #[inline(never)]
-    const fn behind(&self, excess: Interval, closeness: &Closeness) -> Result<RealPart, Obstacle> {
+    const fn behind(
+        &self,
+        excess: Interval,
+        closeness: &Precision,
+    ) -> Result<RealPart, IndexError> {
         match self.behind_reduced(excess, false) {
             Ok(equivalent) => reduced_index(&equivalent, closeness),
             Err(obstacle) => Err(obstacle),
@@ -325,10 +329,10 @@ impl Posed {
         &self,
         compliance: Interval,
         a_sample_late: bool,
-    ) -> Result<Reduced, Obstacle> {
+    ) -> Result<Reduced, IndexError> {
         let mut controller = match self.controller(compliance) {
             Ok(controller) => controller,
-            Err(_) => return Err(Obstacle::Undecided(Doubt::OutOfRange)),
+            Err(_) => return Err(IndexError::Undecided(UndecidedReason::OutOfRange)),
         };
         controller.shift -= a_sample_late as i32;
         velocity_reduced(&controller, self.numbers.period, false)
@@ -342,8 +346,8 @@ impl Posed {
 }
 
 /// What it takes to tell on which side of `limit` an index is.
-const fn near(limit: Interval) -> Closeness {
-    Closeness::around(limit.neg())
+const fn near(limit: Interval) -> Precision {
+    Precision::around(limit.neg())
 }
 
 const fn unbuildable(error: Unbuildable) -> Rejection {
@@ -351,7 +355,7 @@ const fn unbuildable(error: Unbuildable) -> Rejection {
         Unbuildable::Improper => Rejection::Improper,
         Unbuildable::IllPosed => Rejection::IllPosed { loop_gain: Interval::ZERO },
         Unbuildable::OutOfRange => Rejection::Undecided {
-            doubt: Doubt::OutOfRange,
+            doubt: UndecidedReason::OutOfRange,
             index: None,
             limit: None,
             remedies: Remedies::NONE,

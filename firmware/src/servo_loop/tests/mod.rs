@@ -12,7 +12,7 @@ use super::*;
 use crate::boot::Program;
 use crate::encoder::CounterWidth;
 use crate::environment::DelayedSpring;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::scene::{Coupling, Device, Scene, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
@@ -82,7 +82,7 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     let mut program = SPRING;
     program.scene.environment.stiffness = 45.0;
     let mut board = Board::new();
-    let mut mailbox = Mailbox::<Rendering<Spring, f32, Latched>>::new();
+    let mut mailbox = Mailbox::<PreparedServo<Spring, f32, Latched>>::new();
     let (requests, _inbox) = mailbox.split();
     let result = crate::boot::boot(&program, &mut board, &requests);
     let error = result.map(|_| ()).unwrap_err();
@@ -125,7 +125,7 @@ fn a_program_that_says_so_is_armed_at_power_on_and_after_no_other_reset() {
 /// RAM may keep a record through a supply that was off for a moment.
 #[test]
 fn a_fault_that_was_kept_is_armed_at_no_power_on() {
-    let kept = Retained { fault: Fault::ClockLost, tick: 0, count: 0 }.encode();
+    let kept = FaultRecord { fault: Fault::ClockLost, tick: 0, count: 0 }.encode();
     let options = Options::DEFAULT.armed_at_power_on("nobody can reach it");
     let program = Program { options, ..SPRING };
     let board = Board { kept, ..Board::new() };

@@ -19,7 +19,7 @@ const SETS: usize = 2;
 /// Notices that wait, and that place.
 const NOTICES: usize = 6;
 
-/// The place where both meet; `R` is what is swapped in, a [`Rendering`](crate::servo::Rendering).
+/// The place where both meet; `R` is what is swapped in, a [`PreparedServo`](crate::servo::PreparedServo).
 #[derive(Debug)]
 pub struct Mailbox<R> {
     sets: Queue<R, SETS>,

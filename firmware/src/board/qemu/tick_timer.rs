@@ -81,7 +81,7 @@ pub fn missed() -> u32 {
 
 /// Keeps count of the periods. Belongs to the servo's interrupt.
 #[derive(Debug)]
-pub struct Pace {
+pub struct TickTimer {
     /// Clock counts in a period.
     period: u32,
     /// Clock counts up to which a tick is in time.
@@ -90,7 +90,7 @@ pub struct Pace {
     began: u32,
 }
 
-impl Pace {
+impl TickTimer {
     /// From now on.
     pub fn new(period: Period) -> Self {
         let period = period.clock_counts;
@@ -99,7 +99,7 @@ impl Pace {
 
     /// Periods that have begun since the last tick: 1 in time. To be called at a tick's beginning.
     #[inline(always)]
-    pub fn passed(&mut self) -> u32 {
+    pub fn periods_since_last(&mut self) -> u32 {
         let now = now();
         let since = now.wrapping_sub(self.began);
         // To half a period the period began now: the two clocks are not of one source.
@@ -119,7 +119,7 @@ impl Pace {
 
     /// Clock counts since the present period began.
     #[inline(always)]
-    pub fn elapsed(&self) -> u32 {
+    pub fn time_in_period(&self) -> u32 {
         now().wrapping_sub(self.began)
     }
 

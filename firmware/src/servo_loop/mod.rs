@@ -6,18 +6,18 @@
 //!     any of them -> faulted -> (armed again) -> fading in
 //! ```
 //!
-//! The usual tick, running and with nothing asked for, goes straight through [`Cycle::run`];
+//! The usual tick, running and with nothing asked for, goes straight through [`ServoLoop::run`];
 //! everything that is rare is kept out of its way.
 
-mod attend;
+mod fault_detection;
 mod frame;
 mod frame_queue;
 mod hardware;
 mod mailbox;
 mod options;
 mod state;
+mod state_machine;
 mod swap;
-mod trouble;
 
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
@@ -31,16 +31,16 @@ pub use crate::output_timing::READ_WITHIN;
 
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
-use crate::environment::Renderable;
+use crate::environment::Discretize;
 use crate::fault::Fault;
 use crate::number::Number;
 use crate::output_timing::OutputMode;
-use crate::servo::{Pace, Rendering};
+use crate::servo::{PreparedServo, TimingLimits};
 use crate::torque::LimitReason;
 
 /// What becomes of the servo once its clamp is shut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Goal {
+enum AfterFade {
     /// It renders, with the set that waits.
     Render,
     /// The amplifier goes off.
@@ -51,23 +51,23 @@ enum Goal {
 
 /// The last tick that began late, and by what part of a period.
 #[derive(Clone, Copy, Debug, Default)]
-struct Late {
+struct MissedUpdates {
     tick: u32,
     part: f32,
 }
 
 /// The servo on a board: its rendering, what it is doing, and what it watches.
 #[derive(Clone, Debug)]
-pub struct Cycle<E: Renderable<N>, N: Number, M> {
-    rendering: Rendering<E, N, M>,
+pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
+    rendering: PreparedServo<E, N, M>,
     energy: EnergyMonitor,
     state: State,
-    goal: Goal,
+    after_fade: AfterFade,
     fault: Option<Fault>,
     tick: u32,
     /// Timer counts in a period.
     period: u32,
-    late: Late,
+    late: MissedUpdates,
     /// Updates missed since the start.
     missed: u32,
     /// The longest tick so far that was in time, in timer counts.
@@ -79,8 +79,8 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     /// Ticks until the samples of a new set have filled its memory.
     settling: u32,
     /// What was last found that stops a servo, and the ticks since then without amplifier.
-    trouble: Option<Fault>,
-    calm: u32,
+    fault_detection: Option<Fault>,
+    fault_free_ticks: u32,
     link: LinkPolicy,
     /// Ticks of silence after which the host counts as lost, if it can.
     link_timeout: u32,
@@ -89,37 +89,39 @@ pub struct Cycle<E: Renderable<N>, N: Number, M> {
     link_lost: bool,
 }
 
-impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
+impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A cycle around a rendering, disarmed.
     ///
     /// `period` is the number of timer counts in a period, and `left` the fault that was left from
     /// before the last reset.
     pub fn new(
-        rendering: Rendering<E, N, M>,
+        rendering: PreparedServo<E, N, M>,
         options: &Options,
         period: u32,
         left: Option<Fault>,
     ) -> Self {
         let link_timeout = match options.link {
-            LinkPolicy::Ignore => Pace::LONGEST,
-            LinkPolicy::Hold | LinkPolicy::Release => rendering.pace().ticks(options.link_timeout),
+            LinkPolicy::Ignore => TimingLimits::LONGEST,
+            LinkPolicy::Hold | LinkPolicy::Release => {
+                rendering.timing_limits().ticks(options.link_timeout)
+            }
         };
         Self {
             rendering,
             energy: EnergyMonitor::default(),
             state: State::Disarmed,
-            goal: Goal::Release,
+            after_fade: AfterFade::Release,
             fault: left,
             tick: 0,
             period,
-            late: Late::default(),
+            late: MissedUpdates::default(),
             missed: 0,
             longest: 0,
             was_late: false,
             ramp: swap::ARMING,
             settling: 0,
-            trouble: None,
-            calm: 0,
+            fault_detection: None,
+            fault_free_ticks: 0,
             link: options.link,
             link_timeout,
             link_deadline: link_timeout,
@@ -132,10 +134,10 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     pub fn run(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
-        let (passed, raw) = (hardware.passed(), hardware.count());
+        let (passed, raw) = (hardware.periods_since_last(), hardware.count());
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
         // One jump each, none of them taken in a usual tick: conditions that are put together first
@@ -148,7 +150,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
-        if self.rendering.pace().is_too_far(step) {
+        if self.rendering.timing_limits().is_too_far(step) {
             self.jump(passed, step, hardware, inbox);
         }
         if output.limit == LimitReason::NotANumber {
@@ -164,10 +166,10 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         self.energy.observe::<M>(step, code);
         let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
         if attend != 0 || link_due {
-            self.attend(hardware, inbox, frames.dropped());
+            self.run_state_machine(hardware, inbox, frames.dropped());
         }
-        hardware.feed();
-        let elapsed = hardware.elapsed();
+        hardware.feed_watchdog();
+        let elapsed = hardware.time_in_period();
         let mut slack = self.period.wrapping_sub(elapsed);
         if elapsed > self.longest {
             slack = self.long(elapsed, hardware, inbox);
@@ -176,7 +178,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     }
 
     /// The rendering.
-    pub const fn rendering(&self) -> &Rendering<E, N, M> {
+    pub const fn rendering(&self) -> &PreparedServo<E, N, M> {
         &self.rendering
     }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::certificate::Parameter;
 use crate::environment::{DamperWall, FilteredWall, FreeMode, OneSided};
-use crate::servo::Renders;
+use crate::servo::SupportsTiming;
 use crate::tuning::{self, Tunable};
 
 /// Largest change from one code to the next.
@@ -11,10 +11,10 @@ fn largest_step(codes: &[i32]) -> i32 {
     codes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).max().unwrap()
 }
 
-fn set<E: Tunable<f32> + Renders<Latched>>(
+fn set<E: Tunable<f32> + SupportsTiming<Latched>>(
     program: &Program<E>,
     changes: &[(Parameter, f64)],
-) -> Rendering<E, f32, Latched> {
+) -> PreparedServo<E, f32, Latched> {
     let Program { scene, transducers, rendering, .. } = program;
     tuning::prepare(scene, changes, transducers, rendering).unwrap().rendering
 }
@@ -29,7 +29,7 @@ fn hand() -> impl Iterator<Item = i32> {
 /// that no code is further from the last one than a step of a swap's ramp and the scene's own change.
 fn swaps_without_a_step<E>(environment: E, changes: [&[(Parameter, f64)]; 2], own: i32)
 where
-    E: Tunable<f32> + Renders<Latched>,
+    E: Tunable<f32> + SupportsTiming<Latched>,
 {
     let program = program(environment);
     let mut bench: Bench<E, f32, Latched> = Bench::armed(&program, Board::new()).unwrap();

@@ -7,14 +7,14 @@ use crate::environment::{
 };
 
 /// Something with numbers that have names.
-pub trait Values {
+pub trait NamedParameters {
     /// The number of this name; `None` where there is none.
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64>;
 }
 
 macro_rules! values {
     ($([$($generics:tt)*] $type:ty: $($parameter:ident => $field:ident),* $(; $inner:ident)?;)*) => {$(
-        impl<$($generics)*> Values for $type {
+        impl<$($generics)*> NamedParameters for $type {
             fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
                 match parameter {
                     $(Parameter::$parameter => Some(&mut self.$field),)*
@@ -32,20 +32,20 @@ values! {
     [const N: usize] DamperWall<N>: Stiffness => stiffness, Damping => damping;
     [const N: usize] FilteredWall<N>:
         Stiffness => stiffness, Damping => damping, Filter => filter;
-    [W: Values] Placed<W>: Face => face; wall;
-    [W: Values] OneSided<W>: Face => face; wall;
+    [W: NamedParameters] Placed<W>: Face => face; wall;
+    [W: NamedParameters] OneSided<W>: Face => face; wall;
     [const N: usize] FreeMode<N>: Residual => residual;
-    [W: Values] FreeModeWall<W>: Residual => residual; wall;
+    [W: NamedParameters] FreeModeWall<W>: Residual => residual; wall;
 }
 
-impl Values for Rational {
+impl NamedParameters for Rational {
     /// Its coefficients belong together; none is changed alone.
     fn value(&mut self, _: Parameter) -> Option<&mut f64> {
         None
     }
 }
 
-impl Values for Wall {
+impl NamedParameters for Wall {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match parameter {
             Parameter::Stiffness => Some(&mut self.stiffness),
@@ -57,7 +57,7 @@ impl Values for Wall {
     }
 }
 
-impl Values for Environment {
+impl NamedParameters for Environment {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (self, parameter) {
             // A spring has no damper, whatever its wall says.

@@ -2,27 +2,29 @@
 
 use static_cell::StaticCell;
 
-use crate::cycle::{Cycle, FrameQueue, FrameReader, Frames, Hardware, Inbox, Mailbox, Requests};
-use crate::environment::Renderable;
+use crate::environment::Discretize;
 use crate::number::Number;
-use crate::servo::{OutputMode, Rendering};
+use crate::servo::{OutputMode, PreparedServo};
+use crate::servo_loop::{
+    FrameQueue, FrameReader, Frames, Hardware, Inbox, Mailbox, Requests, ServoLoop,
+};
 
 /// Frames that may wait for the task that sends them, a power of two: 1.6 ms at 20 kHz.
 pub const FRAMES: usize = 32;
 
 /// What the servo's interrupt works with.
-pub struct Seat<H, E: Renderable<N> + 'static, N: Number, M: 'static> {
+pub struct ServoIsr<H, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The servo, and what it is doing.
-    pub cycle: Cycle<E, N, M>,
+    pub cycle: ServoLoop<E, N, M>,
     /// The board's registers.
     pub hardware: H,
     /// Requests from below.
-    pub inbox: Inbox<'static, Rendering<E, N, M>>,
+    pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
     /// Frames to below.
     pub frames: Frames<'static, FRAMES>,
 }
 
-impl<H: Hardware, E: Renderable<N>, N: Number, M: OutputMode> Seat<H, E, N, M> {
+impl<H: Hardware, E: Discretize<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, M> {
     /// One tick.
     #[inline(always)]
     pub fn tick(&mut self) {
@@ -32,26 +34,26 @@ impl<H: Hardware, E: Renderable<N>, N: Number, M: OutputMode> Seat<H, E, N, M> {
 
 /// Where the servo's interrupt and the task below it meet. A program has one, in a static place of
 /// its own, since the types are its scene's.
-pub type Meeting<E, N, M> = StaticCell<Mailbox<Rendering<E, N, M>>>;
+pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
 
 /// The ends of what the interrupt and the task share.
-pub struct Ends<E: Renderable<N> + 'static, N: Number, M: 'static> {
+pub struct Endpoints<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The task's end of the mailbox.
-    pub requests: Requests<'static, Rendering<E, N, M>>,
+    pub requests: Requests<'static, PreparedServo<E, N, M>>,
     /// The interrupt's end of it.
-    pub inbox: Inbox<'static, Rendering<E, N, M>>,
+    pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
     /// The interrupt's end of the queue of frames.
     pub frames: Frames<'static, FRAMES>,
     /// The task's end of it.
-    pub told: FrameReader<'static, FRAMES>,
+    pub frame_reader: FrameReader<'static, FRAMES>,
 }
 
 /// Makes the mailbox and the queue of frames. To be called once.
-pub fn ends<E: Renderable<N>, N: Number, M: OutputMode>(
-    meeting: &'static Meeting<E, N, M>,
-) -> Ends<E, N, M> {
+pub fn endpoints<E: Discretize<N>, N: Number, M: OutputMode>(
+    mailbox: &'static MailboxCell<E, N, M>,
+) -> Endpoints<E, N, M> {
     static QUEUE: StaticCell<FrameQueue<FRAMES>> = StaticCell::new();
-    let (requests, inbox) = meeting.init_with(Mailbox::new).split();
-    let (frames, told) = QUEUE.init_with(FrameQueue::new).split();
-    Ends { requests, inbox, frames, told }
+    let (requests, inbox) = mailbox.init_with(Mailbox::new).split();
+    let (frames, frame_reader) = QUEUE.init_with(FrameQueue::new).split();
+    Endpoints { requests, inbox, frames, frame_reader }
 }

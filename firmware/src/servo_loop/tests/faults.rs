@@ -10,7 +10,7 @@ fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
     assert!(!bench.board.is_on());
     assert_eq!(bench.board.codes().last(), Some(&2048));
     assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
-    let kept = Retained::decode(&bench.board.kept).unwrap();
+    let kept = FaultRecord::decode(&bench.board.kept).unwrap();
     assert_eq!((kept.fault, kept.count), (fault, bench.board.count));
     // It stays so, and there is no torque whatever the device does.
     bench.board.events.clear();
@@ -26,7 +26,7 @@ fn assert_armed_again(bench: &mut Bench<Spring, f32, Latched>) {
     assert_eq!(bench.notices(), [Notice::Armed]);
     assert_eq!((bench.cycle.state(), bench.cycle.fault()), (State::Running, None));
     assert!(bench.board.is_on());
-    assert_eq!(bench.board.kept, Retained::NOTHING);
+    assert_eq!(bench.board.kept, FaultRecord::NOTHING);
 }
 
 #[test]
@@ -180,13 +180,13 @@ fn a_fault_before_the_servo_is_armed_keeps_it_from_being_armed() {
 
 #[test]
 fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
-    let panicked = Retained { fault: Fault::Panic { line: 12, column: 5 }, tick: 77, count: -3 };
-    let watchdog = Retained { fault: Fault::Watchdog, tick: 0, count: 0 };
+    let panicked = FaultRecord { fault: Fault::Panic { line: 12, column: 5 }, tick: 77, count: -3 };
+    let watchdog = FaultRecord { fault: Fault::Watchdog, tick: 0, count: 0 };
     let by_watchdog = ResetCause::IndependentWatchdog;
     for (kept, reset, left) in [
         (panicked.encode(), by_watchdog, panicked),
         (panicked.encode(), ResetCause::Software, panicked),
-        (Retained::NOTHING, by_watchdog, watchdog),
+        (FaultRecord::NOTHING, by_watchdog, watchdog),
     ] {
         let board = Board { kept, reset, ..Board::new() };
         let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();

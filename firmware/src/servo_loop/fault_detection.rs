@@ -4,13 +4,13 @@ use super::swap::ARMING;
 use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;
 
-impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
+impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// The code of a servo that is not simply running. Whatever the rest of the program thinks:
     /// without being armed there is no torque.
     #[cold]
@@ -28,7 +28,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         passed: u32,
         raw: RawCount,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) -> u32 {
         let periods = passed.max(1);
         if passed == BEGAN_LATE {
@@ -37,7 +37,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         self.energy.missed::<M>(self.rendering.servo().step_to(raw));
         let missed = periods - 1;
         self.missed = self.missed.wrapping_add(missed);
-        let tolerated = self.rendering.pace().tolerated;
+        let tolerated = self.rendering.timing_limits().tolerated;
         if missed > tolerated {
             self.fail(Fault::MissedTick { missed, tolerated }, hardware, inbox);
         } else if M::TIMING == OutputTiming::Latched {
@@ -53,14 +53,14 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         &mut self,
         periods: u32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
         let period = self.period as f32;
-        let late = hardware.elapsed();
+        let late = hardware.time_in_period();
         let follows = self.late.tick == self.tick.wrapping_sub(periods);
         let before = if follows { self.late.part } else { 0.0 };
-        let allowed = (self.rendering.pace().latest(periods, before) * period) as u32;
-        self.late = Late { tick: self.tick, part: late as f32 / period };
+        let allowed = (self.rendering.timing_limits().latest(periods, before) * period) as u32;
+        self.late = MissedUpdates { tick: self.tick, part: late as f32 / period };
         if late > allowed {
             self.fail(Fault::LateTick { late, allowed }, hardware, inbox);
         }
@@ -74,9 +74,9 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         passed: u32,
         step: i32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
-        let largest = self.rendering.pace().largest_step.saturating_mul(passed.max(1));
+        let largest = self.rendering.timing_limits().largest_step.saturating_mul(passed.max(1));
         let counts = step.unsigned_abs();
         if counts > largest {
             self.fail(Fault::EncoderJump { counts, largest }, hardware, inbox);
@@ -89,7 +89,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     pub(super) fn not_a_number(
         &mut self,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
@@ -103,7 +103,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         &mut self,
         elapsed: u32,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) -> u32 {
         if elapsed < self.period {
             self.longest = elapsed;
@@ -127,14 +127,14 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
             return;
         }
         // From here on every tick would come here; the next one that does is far away.
-        self.link_deadline = self.tick.wrapping_add(Pace::LONGEST);
+        self.link_deadline = self.tick.wrapping_add(TimingLimits::LONGEST);
         if self.link == LinkPolicy::Ignore {
             return;
         }
         self.link_lost = true;
         if self.link == LinkPolicy::Release && self.state.is_armed() {
             self.ramp = ARMING;
-            self.begin_fading_out(Goal::Stop(self.lost()));
+            self.begin_fading_out(AfterFade::Stop(self.lost()));
         }
     }
 
@@ -147,10 +147,10 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
-        self.trouble = Some(fault);
-        self.calm = 0;
+        self.fault_detection = Some(fault);
+        self.fault_free_ticks = 0;
         if self.state.is_armed() {
             self.stop(fault, hardware, inbox);
         }
@@ -161,7 +161,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,
-        inbox: &mut Inbox<'_, Rendering<E, N, M>>,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
         hardware.write(DacCode::MID_SCALE);
         hardware.amplifier(false);
@@ -169,7 +169,7 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         self.state = State::Faulted;
         self.fault = Some(fault);
         let count = self.rendering.servo().low_count();
-        hardware.keep(&Retained { fault, tick: self.tick, count }.encode());
+        hardware.store_fault(&FaultRecord { fault, tick: self.tick, count }.encode());
         inbox.tell(Notice::Stopped(fault));
     }
 
@@ -178,6 +178,6 @@ impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
         if self.link == LinkPolicy::Release && self.link_lost {
             return Some(self.lost());
         }
-        self.trouble.filter(|_| self.calm < CALM)
+        self.fault_detection.filter(|_| self.fault_free_ticks < CALM)
     }
 }

@@ -6,13 +6,13 @@ use core::mem::MaybeUninit;
 /// Holds what belongs to one interrupt. The main program fills it before it enables the interrupt,
 /// and leaves it alone from then on; so the interrupt needs no critical section to get at it, and
 /// no test whether it is there.
-pub struct Place<T>(UnsafeCell<MaybeUninit<T>>);
+pub struct IsrCell<T>(UnsafeCell<MaybeUninit<T>>);
 
 // SAFETY: both functions pass on to their callers that one owner at a time uses the place; what is in
 // it goes from the main program to the interrupt, which `Send` permits.
-unsafe impl<T: Send> Sync for Place<T> {}
+unsafe impl<T: Send> Sync for IsrCell<T> {}
 
-impl<T> Place<T> {
+impl<T> IsrCell<T> {
     /// An empty place.
     pub const fn empty() -> Self {
         Self(UnsafeCell::new(MaybeUninit::uninit()))
@@ -23,7 +23,7 @@ impl<T> Place<T> {
     /// # Safety
     /// The interrupt that uses the place must not be enabled yet, and nobody may hold what
     /// [`get`](Self::get) has given.
-    pub unsafe fn fill(&'static self, value: T) {
+    pub unsafe fn init(&'static self, value: T) {
         // SAFETY: nobody else uses the place, as the caller promises.
         unsafe { (*self.0.get()).write(value) };
     }
@@ -35,7 +35,7 @@ impl<T> Place<T> {
     /// uses it, which does not interrupt itself.
     #[inline(always)]
     #[expect(clippy::mut_from_ref, reason = "the caller is the only one, as it promises")]
-    pub unsafe fn get(&'static self) -> &'static mut T {
+    pub unsafe fn borrow_mut(&'static self) -> &'static mut T {
         // SAFETY: filled and not shared, as the caller promises.
         unsafe { (*self.0.get()).assume_init_mut() }
     }
@@ -45,13 +45,13 @@ impl<T> Place<T> {
     /// # Safety
     /// The place must have been filled, and nobody may use [`get`](Self::get) with it.
     #[inline(always)]
-    pub unsafe fn look(&'static self) -> &'static T {
+    pub unsafe fn borrow(&'static self) -> &'static T {
         // SAFETY: filled and never borrowed for more than looking, as the caller promises.
         unsafe { (*self.0.get()).assume_init_ref() }
     }
 }
 
-impl<T> Default for Place<T> {
+impl<T> Default for IsrCell<T> {
     fn default() -> Self {
         Self::empty()
     }

@@ -3,9 +3,9 @@
 use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
 use crate::encoder::RawCount;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
-use crate::servo::{Renders, Step};
+use crate::servo::{Step, SupportsTiming};
 use crate::tuning::Tunable;
 
 /// Timer counts in a period of every board here.
@@ -27,7 +27,7 @@ pub struct Board {
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
-    pub kept: [u32; Retained::WORDS],
+    pub kept: [u32; FaultRecord::WORDS],
     pub reset: ResetCause,
 }
 
@@ -38,7 +38,7 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
-            kept: Retained::NOTHING,
+            kept: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
         }
     }
@@ -72,16 +72,16 @@ impl Hardware for Board {
     fn amplifier(&mut self, on: bool) {
         self.events.push(Event::Amplifier(on));
     }
-    fn passed(&mut self) -> u32 {
+    fn periods_since_last(&mut self) -> u32 {
         core::mem::replace(&mut self.passed, 1)
     }
-    fn elapsed(&mut self) -> u32 {
+    fn time_in_period(&mut self) -> u32 {
         core::mem::replace(&mut self.elapsed, 300)
     }
-    fn feed(&mut self) {
+    fn feed_watchdog(&mut self) {
         self.events.push(Event::Feed);
     }
-    fn keep(&mut self, record: &[u32; Retained::WORDS]) {
+    fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
         self.kept = *record;
     }
 }
@@ -94,7 +94,7 @@ impl Startup for Board {
     fn guard(&mut self) {
         self.events.push(Event::Guard);
     }
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
         self.kept
     }
     fn reset_cause(&mut self) -> ResetCause {
@@ -106,19 +106,19 @@ impl Startup for Board {
 }
 
 /// A board with its cycle, and both ends of what connects it.
-pub struct Bench<E: Renderable<N> + 'static, N: Number, M: 'static> {
+pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub board: Board,
-    pub cycle: Cycle<E, N, M>,
-    pub inbox: Inbox<'static, Rendering<E, N, M>>,
-    pub requests: Requests<'static, Rendering<E, N, M>>,
+    pub cycle: ServoLoop<E, N, M>,
+    pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
+    pub requests: Requests<'static, PreparedServo<E, N, M>>,
     pub frames: Frames<'static, 8>,
     pub seen: FrameReader<'static, 8>,
     pub reset: ResetCause,
-    pub left: Option<Retained>,
+    pub left: Option<FaultRecord>,
     pub arms_because: Option<Reason>,
 }
 
-impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Bench<E, N, M> {
+impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M> {
     /// Boots the board.
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, Step> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();

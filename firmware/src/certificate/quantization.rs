@@ -15,7 +15,7 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
-use super::model::{Loop, Numbers, Washout, canceller, damper};
+use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
 use crate::environment::{Environment, Rational};
@@ -23,12 +23,12 @@ use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
-use crate::text::{AtMost, Written};
+use crate::text::{RoundUp3, ShortF64};
 use crate::transducers::Transducers;
 
 /// What a device is besides the numbers of a scene, as far as it was stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Steps {
+pub struct Resolution {
     /// Angle of one encoder count in rad.
     pub encoder: Option<f64>,
     /// Torque of the motor in N m at the converter's largest code.
@@ -37,7 +37,7 @@ pub struct Steps {
     pub friction: Option<f64>,
 }
 
-impl Steps {
+impl Resolution {
     /// Those of a program's transducers, and the friction of its device.
     pub fn of(transducers: &Transducers, friction: Option<f64>) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Steps {
 
 /// The most that each step moves the torque, in N m, and the friction against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct QuantizationBound {
     /// Of the encoder: half a count times the controller's peak torque a position. `K Delta / 2 +
     /// B Delta / T` for a wall without a coupling.
     pub encoder: Option<f64>,
@@ -70,10 +70,10 @@ pub struct Rest {
     pub in_any_motion: bool,
 }
 
-impl Rest {
+impl QuantizationBound {
     /// Of a scene that runs in a number format. `None` where the controller has no finite peak
     /// torque a position: where it is not stable, or so nearly that its response does not end.
-    pub fn of(scene: &Scene, format: Format, steps: &Steps) -> Option<Self> {
+    pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
         Some(Self {
             encoder: steps.encoder.map(|step| 0.5 * step * peak),
@@ -104,10 +104,10 @@ impl Rest {
     }
 }
 
-impl fmt::Display for Rest {
+impl fmt::Display for QuantizationBound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let hum = AtMost(self.hum());
-        match (self.friction.map(Written), self.comes_to_rest()) {
+        let hum = RoundUp3(self.hum());
+        match (self.friction.map(ShortF64), self.comes_to_rest()) {
             (None, _) => {
                 write!(
                     f,
@@ -150,7 +150,8 @@ struct Peak {
 /// one, which for `V e < 1` adds up to `e / (1 - V e)`; where that is not so, the norm is the one
 /// in contact.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
-    let Loop { controller, environment, .. } = Loop::in_format(scene, format).ok()?;
+    let LoopTransfers { controller, environment, .. } =
+        LoopTransfers::in_format(scene, format).ok()?;
     let linear = l1_norm(&controller)?;
     if !is_nonlinear(scene) {
         return Some(Peak { norm: linear, in_any_motion: true });
@@ -166,7 +167,7 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
 }
 
 fn compliance(scene: &Scene, format: Format) -> f64 {
-    Numbers::of(scene, format).compliance.hi()
+    LoopIntervals::of(scene, format).compliance.hi()
 }
 
 /// Roundings of one kind in a tick: fixed point rounds products, floating point also sums.
@@ -183,7 +184,7 @@ fn roundings(format: Format, products: f64, sums: f64) -> f64 {
 /// Positions are rounded as the count becomes an angle and behind the coupling, and differ from a
 /// face and from a state; torques by stiffness, damper and the two gains of the coupling. These
 /// come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times the controller's.
-fn numbers(scene: &Scene, format: Format, steps: &Steps, peak: f64) -> Option<f64> {
+fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Option<f64> {
     // Torques where none is stated are small beside the positions that they come from.
     let torque = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
     let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(torque));
@@ -202,7 +203,7 @@ fn numbers(scene: &Scene, format: Format, steps: &Steps, peak: f64) -> Option<f6
 /// Torque in N m by which the states of filter and canceller are off: each moves by a share of what
 /// is left of its way, and stops where that share is rounded away.
 fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
-    let n = Numbers::of(scene, format);
+    let n = LoopIntervals::of(scene, format);
     let stops = |state: Washout| {
         let gain = state.gain.magnitude() / scene.timing.period;
         gain * angle * roundings(format, 1.0, 2.0) / (1.0 - state.pole.magnitude())

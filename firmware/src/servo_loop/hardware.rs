@@ -2,11 +2,11 @@
 
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 #[cfg(doc)]
 use crate::output_timing::READ_WITHIN;
 
-/// What [`Hardware::passed`] gives for one period whose tick began later than [`READ_WITHIN`].
+/// What [`Hardware::periods_since_last`] gives for one period whose tick began later than [`READ_WITHIN`].
 pub const BEGAN_LATE: u32 = 0;
 
 /// The board in the servo's interrupt: each method is an access or two to a register.
@@ -20,12 +20,12 @@ pub trait Hardware {
     /// Whole periods that began since the last call: 1 in time, more where ticks were missed, and
     /// [`BEGAN_LATE`] for one whose tick is late. A simulated board whose count is the one at its
     /// period's beginning however late the tick is has no such thing.
-    fn passed(&mut self) -> u32;
+    fn periods_since_last(&mut self) -> u32;
     /// Timer counts since the period of this tick began; at least a period once the next one has
     /// begun.
-    fn elapsed(&mut self) -> u32;
+    fn time_in_period(&mut self) -> u32;
     /// Feeds the watchdog.
-    fn feed(&mut self);
-    /// Keeps a [`Retained`] record in memory that outlives a reset, or clears it. Rare.
-    fn keep(&mut self, _record: &[u32; Retained::WORDS]) {}
+    fn feed_watchdog(&mut self);
+    /// Keeps a [`FaultRecord`] record in memory that outlives a reset, or clears it. Rare.
+    fn store_fault(&mut self, _record: &[u32; FaultRecord::WORDS]) {}
 }

@@ -1,14 +1,14 @@
 //! Boards that are simulated: whatever their program does, it is in time.
 
 use crate::boot::Startup;
-use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::Retained;
+use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
+use crate::servo_loop::Hardware;
 
 /// What a simulated board's program sees of its device.
-pub trait Lines {
+pub trait SimIo {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;
     /// The converter is given a code.
@@ -19,21 +19,21 @@ pub trait Lines {
 
 /// A board whose ticks take no time, which is fresh from power-on and needs no watchdog.
 #[derive(Clone, Debug)]
-pub struct InTime<L> {
+pub struct SimHardware<L> {
     /// Encoder, converter and amplifier.
     pub lines: L,
     /// Timer counts in a period.
     period: u32,
 }
 
-impl<L> InTime<L> {
+impl<L> SimHardware<L> {
     /// A board with so many timer counts in a period.
     pub const fn new(lines: L, period: u32) -> Self {
         Self { lines, period }
     }
 }
 
-impl<L: Lines> Hardware for InTime<L> {
+impl<L: SimIo> Hardware for SimHardware<L> {
     fn count(&mut self) -> RawCount {
         self.lines.count()
     }
@@ -46,24 +46,24 @@ impl<L: Lines> Hardware for InTime<L> {
         self.lines.amplifier(on);
     }
 
-    fn passed(&mut self) -> u32 {
+    fn periods_since_last(&mut self) -> u32 {
         1
     }
 
-    fn elapsed(&mut self) -> u32 {
+    fn time_in_period(&mut self) -> u32 {
         0
     }
 
-    fn feed(&mut self) {}
+    fn feed_watchdog(&mut self) {}
 }
 
-impl<L: Lines> Startup for InTime<L> {
+impl<L: SimIo> Startup for SimHardware<L> {
     fn zero(&mut self) {}
 
     fn guard(&mut self) {}
 
-    fn kept(&mut self) -> [u32; Retained::WORDS] {
-        Retained::NOTHING
+    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
+        FaultRecord::NOTHING
     }
 
     fn reset_cause(&mut self) -> ResetCause {
