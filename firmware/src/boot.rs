@@ -83,7 +83,7 @@ impl<E: Copy> Program<E> {
 #[derive(Clone, Debug)]
 pub struct Booted<E: Discretize<N>, N: Number, M> {
     /// What its interrupt runs.
-    pub cycle: ServoLoop<E, N, M>,
+    pub servo_loop: ServoLoop<E, N, M>,
     /// Damping in N m s/rad that the device may lose with this scene running.
     pub margin: Option<f64>,
     /// Why the board was reset.
@@ -120,13 +120,13 @@ where
     let reset = hardware.reset_cause();
     let left = left(hardware, reset);
     let fault = left.map(|left| left.fault);
-    let cycle = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
+    let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
     hardware.guard();
     let arms_because = reason_to_arm(&program.options, reset, left);
     if arms_because.is_some() {
         requests.arm();
     }
-    Ok(Booted { cycle, margin, reset, left, arms_because })
+    Ok(Booted { servo_loop, margin, reset, left, arms_because })
 }
 
 /// Why a servo may arm itself: only where its program says so, and only where the supply was switched

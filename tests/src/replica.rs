@@ -35,7 +35,7 @@ impl SimIo for Board {
 /// A cycle in f32 on a board that is in time, in the mode `M`.
 pub struct Replica<E: Tunable<f32>, M: 'static> {
     board: SimHardware<Board>,
-    cycle: ServoLoop<E, f32, M>,
+    servo_loop: ServoLoop<E, f32, M>,
     requests: Requests<'static, PreparedServo<E, f32, M>>,
     inbox: Inbox<'static, PreparedServo<E, f32, M>>,
     frames: Frames<'static, FRAMES>,
@@ -50,8 +50,9 @@ impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
         // A replica for a test: its memory lives as long as the test.
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, _) = Box::leak(Box::new(FrameQueue::new())).split();
-        let Booted { cycle, .. } = boot(&program, &mut board, &requests).expect("it is certified");
-        Self { board, cycle, requests, inbox, frames, program }
+        let Booted { servo_loop, .. } =
+            boot(&program, &mut board, &requests).expect("it is certified");
+        Self { board, servo_loop, requests, inbox, frames, program }
     }
 
     /// Asks for it to be armed in the next tick.
@@ -70,10 +71,10 @@ impl<E: Tunable<f32> + SupportsTiming<M>, M: OutputMode> Replica<E, M> {
     /// One tick: the code and the state.
     pub fn tick(&mut self, count: i32) -> (u16, State) {
         self.board.lines.count = count;
-        self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
+        self.servo_loop.run(&mut self.board, &mut self.inbox, &mut self.frames);
         while let Some(notice) = self.requests.notice() {
             assert!(matches!(notice, Notice::Armed | Notice::Applied), "{notice:?}");
         }
-        (self.board.lines.code.get(), self.cycle.state())
+        (self.board.lines.code.get(), self.servo_loop.state())
     }
 }

@@ -184,7 +184,7 @@ where
     let (mut frames, ticks) = queue.split();
     let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
         .map_err(|step| not_started::<E, N, M>(&program, step))?;
-    let (mut cycle, margin) = (booted.cycle, booted.margin);
+    let (mut servo_loop, margin) = (booted.servo_loop, booted.margin);
     let (reset, left) = (booted.reset, booted.left);
     let facts = BoardInfo { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };
     let mut session = Session::new(program, margin, facts, requests, ticks);
@@ -197,7 +197,7 @@ where
                 break;
             }
             next += period;
-            cycle.run(&mut board, &mut inbox, &mut frames);
+            servo_loop.run(&mut board, &mut inbox, &mut frames);
         }
         let was_busy = listener.exchange(&mut session);
         if clock == Clock::Real && !was_busy {

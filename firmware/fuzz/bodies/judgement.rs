@@ -141,7 +141,7 @@ impl SimIo for Still {
 
 /// A servo with what belongs to its interrupt.
 struct Running<'a, E: Tunable<f32>> {
-    cycle: ServoLoop<E, f32, Latched>,
+    servo_loop: ServoLoop<E, f32, Latched>,
     device: SimHardware<Still>,
     inbox: Inbox<'a, PreparedServo<E, f32, Latched>>,
     frames: Frames<'a, FRAMES>,
@@ -150,7 +150,7 @@ struct Running<'a, E: Tunable<f32>> {
 impl<E: Tunable<f32>> Running<'_, E> {
     fn tick(&mut self, count: i16) -> DacCode {
         self.device.lines.count = count;
-        self.cycle.run(&mut self.device, &mut self.inbox, &mut self.frames);
+        self.servo_loop.run(&mut self.device, &mut self.inbox, &mut self.frames);
         self.device.lines.code
     }
 }
@@ -169,8 +169,8 @@ where
     let ((requests, inbox), (frames, reader)) = (mailbox.split(), queue.split());
     requests.arm();
     let device = SimHardware::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
-    let cycle = ServoLoop::new(first, options, PERIOD, None);
-    let mut servo = Running { cycle, device, inbox, frames };
+    let servo_loop = ServoLoop::new(first, options, PERIOD, None);
+    let mut servo = Running { servo_loop, device, inbox, frames };
     let (reset, stack_left) = (ResetCause::PowerOn, || None);
     let facts = BoardInfo { name: "any", timer_counts: 1000, reset, left: None, stack_left };
     let mut session = Session::new(program, None, facts, requests, reader);
@@ -188,8 +188,8 @@ where
         session.receive(encode(&set, &mut buffer).expect("a set fits"));
         let (mut silent_mailbox, mut silent_queue) = (Mailbox::new(), FrameQueue::new());
         let ((_quiet, inbox), (frames, _unread)) = (silent_mailbox.split(), silent_queue.split());
-        let (cycle, device) = (servo.cycle.clone(), servo.device.clone());
-        let mut silent = Running { cycle, device, inbox, frames };
+        let (servo_loop, device) = (servo.servo_loop.clone(), servo.device.clone());
+        let mut silent = Running { servo_loop, device, inbox, frames };
         let told = changes.iter().find(|(name, _)| *name == Parameter::TorqueLimit);
         let new_limit = told.map_or(limit, |(_, value)| *value);
         let (mut differs, mut outcome) = (false, None);
@@ -202,7 +202,7 @@ where
             session.poll();
             outcome = outcome.or(answer(session.outgoing()));
             session.sent(session.outgoing().len());
-            assert_eq!(servo.cycle.fault(), None);
+            assert_eq!(servo.servo_loop.fault(), None);
         }
         match outcome.expect("a set is answered while it is swapped in") {
             true => limit = new_limit,

@@ -1,4 +1,4 @@
-//! Where an interrupt finds what it works with.
+//! State that belongs to one interrupt.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
@@ -8,30 +8,30 @@ use core::mem::MaybeUninit;
 /// no test whether it is there.
 pub struct IsrCell<T>(UnsafeCell<MaybeUninit<T>>);
 
-// SAFETY: both functions pass on to their callers that one owner at a time uses the place; what is in
+// SAFETY: both functions pass on to their callers that one owner at a time uses the cell; what is in
 // it goes from the main program to the interrupt, which `Send` permits.
 unsafe impl<T: Send> Sync for IsrCell<T> {}
 
 impl<T> IsrCell<T> {
-    /// An empty place.
+    /// An empty cell.
     pub const fn empty() -> Self {
         Self(UnsafeCell::new(MaybeUninit::uninit()))
     }
 
-    /// Fills the place.
+    /// Puts a value into the cell.
     ///
     /// # Safety
-    /// The interrupt that uses the place must not be enabled yet, and nobody may hold what
-    /// [`get`](Self::get) has given.
+    /// The interrupt that uses the cell must not be enabled yet, and nobody may hold what
+    /// [`borrow_mut`](Self::borrow_mut) has given.
     pub unsafe fn init(&'static self, value: T) {
-        // SAFETY: nobody else uses the place, as the caller promises.
+        // SAFETY: nobody else uses the cell, as the caller promises.
         unsafe { (*self.0.get()).write(value) };
     }
 
-    /// What is in the place.
+    /// The value.
     ///
     /// # Safety
-    /// The place must have been filled, and the caller must be the handler of the one interrupt that
+    /// The cell must have been filled, and the caller must be the handler of the one interrupt that
     /// uses it, which does not interrupt itself.
     #[inline(always)]
     #[expect(clippy::mut_from_ref, reason = "the caller is the only one, as it promises")]
@@ -40,10 +40,10 @@ impl<T> IsrCell<T> {
         unsafe { (*self.0.get()).assume_init_mut() }
     }
 
-    /// What is in the place, for those who only look at it.
+    /// The value, for shared use.
     ///
     /// # Safety
-    /// The place must have been filled, and nobody may use [`get`](Self::get) with it.
+    /// The cell must have been filled, and nobody may use [`borrow_mut`](Self::borrow_mut) with it.
     #[inline(always)]
     pub unsafe fn borrow(&'static self) -> &'static T {
         // SAFETY: filled and never borrowed for more than looking, as the caller promises.

@@ -1,4 +1,4 @@
-//! A servo in its place: what its interrupt works with, and nothing else.
+//! The state of the servo's interrupt, and the ends of what it shares with the task below it.
 
 use static_cell::StaticCell;
 
@@ -12,10 +12,10 @@ use crate::servo_loop::{
 /// Frames that may wait for the task that sends them, a power of two: 1.6 ms at 20 kHz.
 pub const FRAMES: usize = 32;
 
-/// What the servo's interrupt works with.
+/// State of the servo's interrupt.
 pub struct ServoIsr<H, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The servo, and what it is doing.
-    pub cycle: ServoLoop<E, N, M>,
+    pub servo_loop: ServoLoop<E, N, M>,
     /// The board's registers.
     pub hardware: H,
     /// Requests from below.
@@ -28,7 +28,7 @@ impl<H: Hardware, E: Discretize<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, 
     /// One tick.
     #[inline(always)]
     pub fn tick(&mut self) {
-        self.cycle.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
+        self.servo_loop.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
     }
 }
 

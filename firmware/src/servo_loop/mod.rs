@@ -137,6 +137,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
         frames: &mut impl FrameSink,
     ) {
+        // Sampling: the count and the time that belongs to it.
         let (passed, raw) = (hardware.periods_since_last(), hardware.count());
         let mut tick = self.tick.wrapping_add(passed);
         self.tick = tick;
@@ -146,6 +147,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if passed != 1 {
             tick = self.begin_late(passed, raw, hardware, inbox);
         }
+        // Control: from the count to the code of this tick.
         let before = self.rendering.servo().low_count();
         let output = self.rendering.tick(raw, &self.energy);
         let count = self.rendering.servo().low_count();
@@ -162,7 +164,9 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             code = self.unless_disarmed(code);
             attend = u32::MAX;
         }
+        // Output: latched by the timer at the beginning of the next period, where torques are.
         hardware.write(code);
+        // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
         let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
         if attend != 0 || link_due {

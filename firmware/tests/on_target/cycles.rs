@@ -118,14 +118,14 @@ pub fn measure() -> Result<(), Failure> {
     let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
     let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;
-    let cycle = ServoLoop::new(rendering, &Options::DEFAULT, hardware.period(), None);
+    let servo_loop = ServoLoop::new(rendering, &Options::DEFAULT, hardware.period(), None);
     requests.arm();
     let mut hardware = Muted(hardware);
     hardware.0.zero();
     begin(&mut hardware.0);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {
-        PLACE.init(ServoIsr { cycle, hardware, inbox, frames });
+        PLACE.init(ServoIsr { servo_loop, hardware, inbox, frames });
         NVIC::unmask(embassy_stm32::interrupt::TIM6_DAC);
     }
     defmt::info!("move the handle, if you like, for a minute: the amplifier is off");

@@ -95,7 +95,7 @@ impl Outcome {
 /// A booted servo and the sets that may be swapped in.
 pub struct Machine<N: Number, M> {
     /// The servo as it booted.
-    pub cycle: ServoLoop<Environment, N, M>,
+    pub servo_loop: ServoLoop<Environment, N, M>,
     /// The sets: its own and the other one.
     pub sets: Vec<PreparedServo<Environment, N, M>>,
     /// When its codes reach the motor.
@@ -214,11 +214,11 @@ where
 {
     /// A booted servo and its sets.
     pub fn new(
-        cycle: ServoLoop<Environment, N, M>,
+        servo_loop: ServoLoop<Environment, N, M>,
         sets: Vec<PreparedServo<Environment, N, M>>,
         output: Output,
     ) -> Self {
-        Self { cycle, sets, output, mode: PhantomData }
+        Self { servo_loop, sets, output, mode: PhantomData }
     }
 
     /// Runs a plan. `audited`: with the energy of device and hand beside the account.
@@ -242,7 +242,7 @@ where
     ) -> Outcome {
         let mut mailbox = Mailbox::new();
         let (mut requests, mut inbox) = mailbox.split();
-        let mut cycle = self.cycle.clone();
+        let mut servo_loop = self.servo_loop.clone();
         let mut board = Board::new(subject.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
         board.angle = plan.zero;
@@ -326,7 +326,7 @@ where
                     0
                 };
                 skipped = 0;
-                cycle.run(&mut board, &mut inbox, &mut last);
+                servo_loop.run(&mut board, &mut inbox, &mut last);
                 if board.late {
                     in_a_row += 1;
                     overdue = Some((board.offset, board.amplifier));

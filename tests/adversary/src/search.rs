@@ -195,9 +195,9 @@ where
     let mut board = Board::new(subject.counts_per_radian, true);
     let mut mailbox = Mailbox::new();
     let (requests, _inbox) = mailbox.split();
-    let Booted { cycle, .. } =
+    let Booted { servo_loop, .. } =
         boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
-    let machine = Machine::new(cycle, sets, output.unwrap_or(Output::of::<M>()));
+    let machine = Machine::new(servo_loop, sets, output.unwrap_or(Output::of::<M>()));
     Ok(task.with(machine, subject, &program))
 }
 

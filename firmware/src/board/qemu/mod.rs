@@ -58,7 +58,7 @@ macro_rules! board_program {
         extern "C" fn tick() {
             // SAFETY: called by the handler of the interrupt that `run` enables once it has filled
             // the place, and no interrupt interrupts itself.
-            unsafe { PLACES.seat.borrow_mut() }.tick();
+            unsafe { PLACES.isr.borrow_mut() }.tick();
         }
 
         /// A tick, with the world around it.
@@ -66,9 +66,9 @@ macro_rules! board_program {
         unsafe extern "C" fn sys_tick() {
             // SAFETY: the place is filled before the interrupt is enabled, and these are called
             // before and after a tick, when nobody holds what is in it.
-            let state = || unsafe { PLACES.seat.borrow_mut() }.cycle.state();
+            let state = || unsafe { PLACES.isr.borrow_mut() }.servo_loop.state();
             // SAFETY: as above.
-            let lose = |missed| unsafe { PLACES.seat.borrow_mut() }.hardware.lose(missed);
+            let lose = |missed| unsafe { PLACES.isr.borrow_mut() }.hardware.lose(missed);
             // SAFETY: the pipes are open before the interrupt is enabled.
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }

@@ -34,8 +34,8 @@ pub type Mode = crate::servo::Simultaneous;
 
 /// A program's places in memory, which have its scene's types.
 pub struct Places<E: Tunable<N>, N: Number> {
-    /// Where the servo's interrupt finds its seat.
-    pub seat: IsrCell<ServoIsr<Registers, E, N, Mode>>,
+    /// Where the servo's interrupt finds its state.
+    pub isr: IsrCell<ServoIsr<Registers, E, N, Mode>>,
     mailbox: MailboxCell<E, N, Mode>,
     link: StaticCell<Link<Serial, E, N, Mode>>,
     #[cfg(feature = "log")]
@@ -46,7 +46,7 @@ impl<E: Tunable<N>, N: Number> Places<E, N> {
     /// Empty places.
     pub const fn empty() -> Self {
         Self {
-            seat: IsrCell::empty(),
+            isr: IsrCell::empty(),
             mailbox: StaticCell::new(),
             link: StaticCell::new(),
             #[cfg(feature = "log")]
@@ -109,7 +109,7 @@ where
 {
     let mut hardware = Registers::new(period);
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(&places.mailbox);
-    let Booted { cycle, margin, reset, left, .. } =
+    let Booted { servo_loop, margin, reset, left, .. } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     #[cfg(feature = "log")]
     defmt::info!("reset={=str}", reset.as_str());
@@ -120,7 +120,7 @@ where
     }
     hardware.start();
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.seat.init(ServoIsr { cycle, hardware, inbox, frames }) };
+    unsafe { places.isr.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     let timer_counts = period.clock_counts();
     let facts = BoardInfo { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
     places.link.init_with(|| Link {

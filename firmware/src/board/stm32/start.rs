@@ -31,7 +31,7 @@ use crate::servo_loop::Reason;
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Session};
 
-/// Where the servo's interrupt finds its seat.
+/// Where the servo's interrupt finds its state.
 pub type ServoPlace<E, N> = IsrCell<ServoIsr<Registers, E, N, Mode>>;
 
 /// The host's end of the board, for the task below the servo.
@@ -107,11 +107,11 @@ where
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(places.mailbox);
-    let Booted { cycle, margin, reset, left, arms_because } =
+    let Booted { servo_loop, margin, reset, left, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
     begin(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.servo.init(ServoIsr { cycle, hardware, inbox, frames }) };
+    unsafe { places.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     greet(name);

@@ -74,7 +74,7 @@ const FRAMES: usize = 32;
 /// A session, the servo behind it, and the host's ear.
 struct Bench {
     session: Session<'static, Wall, f32, Latched, FRAMES>,
-    cycle: ServoLoop<Wall, f32, Latched>,
+    servo_loop: ServoLoop<Wall, f32, Latched>,
     hardware: Still,
     inbox: Inbox<'static, PreparedServo<Wall, f32, Latched>>,
     frames: Frames<'static, FRAMES>,
@@ -89,14 +89,14 @@ impl Bench {
         let Program { scene, transducers, rendering, options } = &program;
         let prepared =
             tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
-        let cycle = ServoLoop::new(prepared.rendering, options, 1000, None);
+        let servo_loop = ServoLoop::new(prepared.rendering, options, 1000, None);
         let reset = ResetCause::Pin;
         let facts =
             BoardInfo { name: "wall", timer_counts: 1000, reset, left, stack_left: || Some(77) };
         requests.arm();
         let session = Session::new(program, prepared.margin, facts, requests, queue);
         let hardware = Still { code: DacCode::MID_SCALE };
-        Self { session, cycle, hardware, inbox, frames, ear: Decoder::new() }
+        Self { session, servo_loop, hardware, inbox, frames, ear: Decoder::new() }
     }
 
     fn tell(&mut self, message: &ToBoard) {
@@ -105,7 +105,7 @@ impl Bench {
     }
 
     fn tick(&mut self) {
-        self.cycle.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
+        self.servo_loop.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
     }
 
     /// So many ticks with the wire served after each; gives what the board said.
@@ -422,7 +422,7 @@ proptest! {
             bench.run(1);
             silent.run(1);
             prop_assert_eq!(bench.hardware.code, silent.hardware.code);
-            prop_assert_eq!(bench.cycle.state(), silent.cycle.state());
+            prop_assert_eq!(bench.servo_loop.state(), silent.servo_loop.state());
         }
         bench.tell(&ToBoard::Stream(None));
         bench.run(100);
