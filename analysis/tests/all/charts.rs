@@ -140,6 +140,21 @@ fn axes_end_where_they_are_told_to() {
 }
 
 #[test]
+fn the_ripple_is_that_of_the_scenes_encoder() {
+    let folder = folder();
+    let step = "[limits]\nencoder_step = 0.00153398\n";
+    std::fs::write(folder.path().join("coarse.toml"), format!("{WALL}{step}")).unwrap();
+    for (arguments, counts) in [
+        (&["limits", "wall.toml"][..], "65536"),
+        (&["limits", "coarse.toml"], "4096"),
+        (&["limits", "coarse.toml", "--counts-per-rev", "1000"], "1000"),
+    ] {
+        let note = format!("ripple of half a count of {counts} a turn");
+        assert!(svg(folder.path(), arguments).contains(&note), "{arguments:?}");
+    }
+}
+
+#[test]
 fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     let folder = folder();
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
