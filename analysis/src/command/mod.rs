@@ -279,6 +279,15 @@ pub enum CommandError {
         /// What there is.
         there: String,
     },
+    /// A table that is to be drawn has not been measured.
+    #[error(
+        "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
+         ones without -o", table.display()
+    )]
+    NothingKept {
+        /// The table's file.
+        table: PathBuf,
+    },
     /// A picture that does not show all of a run; exit status 1, for it shows the rest.
     #[error(
         "the run grows beyond what a picture can show: sample {sample} and all after it are left \

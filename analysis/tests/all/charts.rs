@@ -169,13 +169,18 @@ fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     assert!(drawn.contains("free_mode") && !drawn.contains("delayed_spring"));
     assert!(drawn.contains("limit cycle (rad)") && !drawn.contains("error of the torque"));
     for (more, words) in [
-        (&["--case", "none"][..], "there is no case `none`; there are delayed_spring, damper_wall"),
-        (&["--error", "noise"], "there is no error `noise`; there are error, error_at_1_rad"),
+        (&["--case", "none"][..], "there is no case `none`; there are `delayed_spring`, `damper_wall`"),
+        (&["--error", "noise"], "there is no error `noise`; there are `error`, `error_at_1_rad`"),
     ] {
         let run = chosen(more);
         let said = String::from_utf8(run.stderr).unwrap();
         assert!(run.status.code() == Some(2) && said.contains(words), "{said}");
     }
+    let nothing = chart(folder.path(), &["tradeoff", "servo", "--draw-only", "-o", "new"]);
+    let said = String::from_utf8(nothing.stderr).unwrap();
+    let words = "new/servo.csv: there is no such table; --draw-only reads the tables from the folder of -o";
+    assert!(nothing.status.code() == Some(2) && said.contains(words), "{said}");
+    assert!(!folder.path().join("new").exists());
     let all = chart(folder.path(), &["tradeoff", "--draw-only", "-o", kept, "--picture", "a.svg"]);
     assert!(String::from_utf8(all.stderr).unwrap().contains("one picture shows one topic"));
     let alone = chart(folder.path(), &["tradeoff", "servo", "--case", "damper_wall"]);

@@ -27,7 +27,8 @@ pub struct Arguments {
     /// Draw the tables that are kept instead of measuring
     #[arg(long)]
     pub draw_only: bool,
-    /// Folder of the tables and pictures; that of this repository's unless it is given
+    /// Folder of the tables and pictures, with --draw-only also that in which the tables are looked
+    /// for; that of this repository's unless it is given
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Draw into this file only, .svg, .png or .pdf, the panels of these cases and errors
@@ -112,7 +113,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         return Err(CommandError::NoTopic { picture: picture.clone(), topics });
     }
     let picture = arguments.picture.as_deref().map(Output::new).transpose()?;
-    std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    if !arguments.draw_only {
+        std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    }
     for topic in arguments.topic.topics() {
         let file = |extension| folder.join(topic.subject().name).with_extension(extension);
         let table = file("csv");
@@ -125,6 +128,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
                 let out = File::create(&table).map_err(unwritable(&table))?;
                 all_ticks()?.write(out).map_err(unwritable(&table))?;
             }
+        }
+        if arguments.draw_only && !table.exists() {
+            return Err(CommandError::NothingKept { table });
         }
         let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
         match &picture {
@@ -163,6 +169,7 @@ impl Arguments {
             .find(|word| !there.contains(&word.as_str()))
         {
             Some(word) => {
+                let there: Vec<_> = there.iter().map(|name| format!("`{name}`")).collect();
                 Err(CommandError::NoPanel { what, word: word.clone(), there: there.join(", ") })
             }
             None => Ok(()),
