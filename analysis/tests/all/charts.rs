@@ -243,6 +243,24 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
     assert!(svg(folder.path(), &["trace", "simulated.csv"]).contains("tick missed"));
 }
 
+#[test]
+fn a_line_that_a_trace_does_not_show_is_not_in_its_key() {
+    let folder = folder();
+    let small = "[simulation]\nsamples = 50\nvelocity = 0.01\n[limits]\ntorque = 0.1\n";
+    let text = format!("{WALL}one_sided = true\nface = 9.0\n{small}");
+    std::fs::write(folder.path().join("small.toml"), text).unwrap();
+    let drawn = svg(folder.path(), &["trace", "small.toml"]);
+    for words in ["torque limit 0.1 N m is outside of the picture", "face of the wall, 9 rad, is"] {
+        assert!(drawn.contains(words), "{words}");
+    }
+    assert!(!drawn.contains("dash-dotted") && !drawn.contains("dotted: face"));
+    let report = program(&["report", "small.toml", "-o", "small.html"]);
+    let report = { report }.current_dir(folder.path()).output().unwrap();
+    assert!(report.status.code().is_some_and(|status| status < 2), "{report:?}");
+    let page = std::fs::read_to_string(folder.path().join("small.html")).unwrap();
+    assert!(page.contains("torque limit 0.1 N m is outside of the picture"));
+}
+
 /// Numbers that a file may have and no machine has: a picture, or a sentence that names what is out
 /// of range; never a computation without end.
 #[test]
