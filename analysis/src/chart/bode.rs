@@ -40,7 +40,8 @@ pub fn bode(
         return Err(ChartError::TooFewPoints);
     }
     let x = wanted.x.clone().unwrap_or_else(|| interesting(loops, &all));
-    let seen = || points().filter(|point| x.contains(&point.hertz));
+    // The last one is at half the sample rate, where the phase falls fastest.
+    let seen = || points().filter(|point| (x.start..=x.end).contains(&point.hertz));
     let far = 10_f64.powf(DECADES);
     let gains = seen().map(|point| point.gain.clamp(1.0 / far, far));
     let gains = span(gains.chain([1.0]));
