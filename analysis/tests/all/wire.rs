@@ -202,6 +202,7 @@ fn a_bad_question_is_status_2() {
         (["tune", "stiffness"], "NAME=VALUE"),
         (["tune", "damping=nan"], "no finite number"),
         (["scope", "--for=-1"], "greater than 0"),
+        (["scope", "--every=0"], "`0` must be a whole number from 1 to 4294967295"),
     ] {
         let output = rig.haptic(&arguments);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
