@@ -306,6 +306,15 @@ fn failures_are_rows_and_objects_by_name() {
 }
 
 #[test]
+fn the_usage_of_advice_has_what_it_cannot_do_without() {
+    let help = haptic(&["advise", "--help"], b"");
+    let help = String::from_utf8(help.stdout).unwrap();
+    for usage in ["<SCENE> --hum <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"] {
+        assert!(help.contains(&format!("haptic advise {usage}\n")), "{help}");
+    }
+}
+
+#[test]
 fn advice_names_the_cheapest_format_and_why_not_the_others() {
     let advise = |more: &[&str]| {
         let question = [&["advise", "-", "--rate", "2000", "--json"], more].concat();
