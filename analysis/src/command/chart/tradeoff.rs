@@ -1,6 +1,7 @@
 //! `haptic chart tradeoff`: speed against accuracy, measured, kept as a table and drawn.
 
 use std::fs::File;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -140,7 +141,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             }
             None => draw(&tradeoff, folder)?,
         }
-        print!("{}", fronts(&tradeoff));
+        write!(io::stdout(), "{}", fronts(&tradeoff))?;
     }
     Ok(Answer::Yes)
 }
