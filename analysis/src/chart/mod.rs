@@ -29,6 +29,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use thiserror::Error;
 
+use crate::quantity::significant;
 pub use data::{Cell, Chart, Data};
 pub use picture::{Output, Picture};
 
@@ -146,9 +147,40 @@ pub enum ChartError {
         /// Why.
         why: Unbuildable,
     },
+    /// An axis was asked for where nothing is.
+    #[error(
+        "there is nothing to draw from {} to {} on the {axis} axis: what there is goes from {} to {}",
+        number(wanted.start), number(wanted.end), number(there.start), number(there.end)
+    )]
+    NothingThere {
+        /// Horizontal or vertical.
+        axis: &'static str,
+        /// What was asked for.
+        wanted: Range<f64>,
+        /// What there is.
+        there: Range<f64>,
+    },
     /// There is nothing to draw.
     #[error("a picture needs at least two points")]
     TooFewPoints,
+}
+
+fn number(value: f64) -> String {
+    significant(value, 6)
+}
+
+/// Refuses an axis, if one is asked for, on which nothing of this range would be seen.
+fn meets(
+    axis: &'static str,
+    wanted: Option<&Range<f64>>,
+    there: &Range<f64>,
+) -> Result<(), ChartError> {
+    match wanted {
+        Some(wanted) if wanted.end < there.start || there.end < wanted.start => {
+            Err(ChartError::NothingThere { axis, wanted: wanted.clone(), there: there.clone() })
+        }
+        _ => Ok(()),
+    }
 }
 
 fn unbuildable(why: Unbuildable) -> &'static str {

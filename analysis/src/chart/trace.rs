@@ -228,7 +228,10 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
         return Err(ChartError::TooFewPoints);
     }
     let reasons = trace.reasons();
+    meets("horizontal", wanted.x.as_ref(), &trace.times())?;
     let times = wanted.x.clone().unwrap_or(trace.times());
+    let seen = seen(&trace.position, trace, &times).chain(seen(&trace.hand, trace, &times));
+    meets("vertical", wanted.y.as_ref(), &span(seen))?;
     let angles = wanted.y.clone().unwrap_or(angle_axis(trace, &times));
     let words = wrapped(&words(trace, &times, &angles));
     let key = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
@@ -355,7 +358,9 @@ fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> 
     if let Some(face) = trace.face {
         words.push(match angles.contains(&face) {
             true => "dotted: face of the wall".to_owned(),
-            false => format!("face of the wall, {} rad, is outside of the picture", significant(face, 4)),
+            false => {
+                format!("face of the wall, {} rad, is outside of the picture", significant(face, 4))
+            }
         });
     }
     if !trace.hand.is_empty() {

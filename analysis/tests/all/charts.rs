@@ -169,7 +169,10 @@ fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     assert!(drawn.contains("free_mode") && !drawn.contains("delayed_spring"));
     assert!(drawn.contains("limit cycle (rad)") && !drawn.contains("error of the torque"));
     for (more, words) in [
-        (&["--case", "none"][..], "there is no case `none`; there are `delayed_spring`, `damper_wall`"),
+        (
+            &["--case", "none"][..],
+            "there is no case `none`; there are `delayed_spring`, `damper_wall`",
+        ),
         (&["--error", "noise"], "there is no error `noise`; there are `error`, `error_at_1_rad`"),
     ] {
         let run = chosen(more);
@@ -178,7 +181,8 @@ fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     }
     let nothing = chart(folder.path(), &["tradeoff", "servo", "--draw-only", "-o", "new"]);
     let said = String::from_utf8(nothing.stderr).unwrap();
-    let words = "new/servo.csv: there is no such table; --draw-only reads the tables from the folder of -o";
+    let words =
+        "new/servo.csv: there is no such table; --draw-only reads the tables from the folder of -o";
     assert!(nothing.status.code() == Some(2) && said.contains(words), "{said}");
     assert!(!folder.path().join("new").exists());
     let all = chart(folder.path(), &["tradeoff", "--draw-only", "-o", kept, "--picture", "a.svg"]);
@@ -309,7 +313,7 @@ fn extreme_numbers_come_to_an_end() {
 fn what_cannot_be_drawn_is_a_bad_question() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("taken.svg")).unwrap();
-    let questions: [(&[&str], &str); 24] = [
+    let questions: [(&[&str], &str); 31] = [
         (&["nyquist", "wall.toml", "-o", "a.eps"], "a.eps: the name of a picture must end in"),
         (
             &["nyquist", "wall.toml", "-o", "a.svg", "--csv", "b.txt"],
@@ -341,6 +345,17 @@ fn what_cannot_be_drawn_is_a_bad_question() {
         (&["limits", "damped.toml", "-o", "a.svg"], "no stiffness is certified"),
         (&["limits", "wall.toml", "--rates", "0:10", "-o", "a.svg"], "0 must be above 0"),
         (&["trace", "moving.toml", "--period", "1", "-o", "a.svg"], "its times are in seconds"),
+        (
+            &["trace", "moving.toml", "--x=-5..-1", "-o", "a.svg"],
+            "there is nothing to draw from -5 to -1 on the horizontal axis: what there is goes from 0 \
+             to 0.05",
+        ),
+        (&["trace", "moving.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
+        (&["nyquist", "wall.toml", "--x=-5..-1", "-o", "a.svg"], "goes from -0.022 to -0.001"),
+        (&["nyquist", "free.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
+        (&["bode", "wall.toml", "--x=1e6..1e7", "-o", "a.svg"], "goes from 0.005 to 500"),
+        (&["bode", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
+        (&["limits", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
         (&["trace", "none.csv", "-o", "a.svg"], "none.csv: cannot be read"),
         (&["trace", "wall.toml", "-o", "a.svg"], "a simulation needs a [simulation] table"),
     ];

@@ -69,6 +69,13 @@ pub fn nyquist(
         return Err(ChartError::TooFewPoints);
     }
     let scenes = judged(scenes)?;
+    let values = || scenes.iter().flat_map(|scene| &scene.curves).flat_map(Curve::values);
+    let lines = critical_lines(&scenes).into_iter().map(|line| line.0);
+    let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
+    let real = span(values().map(|value| value.0).chain(lines).chain(bounds));
+    let tallest = span(values().map(|value| value.1.abs())).end;
+    meets("horizontal", wanted.x.as_ref(), &real)?;
+    meets("vertical", wanted.y.as_ref(), &(-tallest..tallest))?;
     let key = key::height(&scenes);
     let size = (SIZE.0, SIZE.1 + key as u32 / UNITS);
     draw_sized(size, |area| {
