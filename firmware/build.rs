@@ -1,36 +1,37 @@
-//! Linker scripts of the programs that run on a board. The library and host builds need none.
+//! Linker scripts of the programs that run on a board: the firmware's own and those of its harness. The
+//! libraries and host builds need none.
 
 use std::env;
 use std::path::Path;
 
 fn main() {
-    println!("cargo:rerun-if-changed=build.rs");
+    // Not for every file of the package; cargo itself knows of this one, wherever it is.
+    println!("cargo:rerun-if-changed=Cargo.toml");
     // The tests on a board ask for it, which is no mistake.
     println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     if env::var_os("CARGO_CFG_TARGET_OS").is_none_or(|os| os != "none") {
         return;
     }
     let manifest = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
-    let Some(root) = Path::new(&manifest).parent() else { return };
     // All boards share the map in the workspace's root; a package without it (the library taken
     // by somebody else) links nothing here.
-    let map = root.join("memory.x");
-    if !map.exists() {
-        return;
-    }
-    println!("cargo:rerun-if-changed={}", map.display());
+    let mut roots = Path::new(&manifest).ancestors().skip(1).take(2);
+    let Some(root) = roots.find(|root| root.join("memory.x").exists()) else { return };
+    println!("cargo:rerun-if-changed={}", root.join("memory.x").display());
     // Arguments of this package's own programs, so that a program that depends on the library
     // finds its own map and not this one.
     let has = |feature| env::var_os(feature).is_some();
     let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into(), "-Tlink.x".into()];
-    if has("CARGO_FEATURE_LOG") || has("CARGO_FEATURE_STM32") {
+    if ["LOG", "STM32", "EMULATED"].iter().any(|name| has(format!("CARGO_FEATURE_{name}"))) {
         arguments.push("-Tdefmt.x".into());
     }
     for argument in &arguments {
         println!("cargo:rustc-link-arg-bins={argument}");
-        println!("cargo:rustc-link-arg-tests={argument}");
     }
-    if has("CARGO_FEATURE_ON_TARGET") {
+    if has("CARGO_FEATURE_ON_TARGET".into()) {
+        for argument in &arguments {
+            println!("cargo:rustc-link-arg-tests={argument}");
+        }
         println!("cargo:rustc-link-arg-tests=-Tembedded-test.x");
     }
 }

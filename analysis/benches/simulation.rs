@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use analysis::bench::steps::{STEPS, by_hand, experiment};
 use analysis::simulation::{Simulator, Stride, Trajectory};
+use analysis::studies::bench::steps::{STEPS, by_hand, experiment};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn steps(criterion: &mut Criterion) {

@@ -6,7 +6,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use firmware::certificate::assess;
 
 fn verdict(criterion: &mut Criterion) {
-    let scenes = analysis::bench::scenes();
+    let scenes = analysis::studies::bench::scenes();
     let mut group = criterion.benchmark_group("verdict");
     group.throughput(Throughput::Elements(scenes.len() as u64));
     group.bench_function("rational, degrees 0 to 8", |bencher| {

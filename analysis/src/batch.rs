@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::command::CommandError;
 use crate::file::{self, FileError, Problem};
 use crate::number::{self, DoesNotFit};
 use crate::verdict;
@@ -30,6 +29,17 @@ enum Line {
     TooLong,
 }
 
+/// Why lines could not be read or answered.
+#[derive(Debug, Error)]
+pub enum BatchError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An answer could not be written.
+    #[error("cannot write the answer: {0}")]
+    Output(#[from] std::io::Error),
+}
+
 /// Why a line could not be judged.
 #[derive(Debug, Error)]
 enum BadScene {
@@ -47,7 +57,7 @@ struct BadLine {
 
 /// Reads scenes from a JSON-lines file (`-` is standard input) and writes a result for each: as many
 /// lines as came in, in their order.
-pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), CommandError> {
+pub fn certify(file: &str, format: Format, out: &mut impl Write) -> Result<(), BatchError> {
     if file == "-" {
         return certify_lines("<stdin>", format, std::io::stdin().lock(), out);
     }
@@ -67,7 +77,7 @@ pub fn certify_lines(
     format: Format,
     source: impl Read,
     out: &mut impl Write,
-) -> Result<(), CommandError> {
+) -> Result<(), BatchError> {
     let mut source = BufReader::with_capacity(BUFFER, source);
     let mut first_line = 1;
     loop {
@@ -92,7 +102,7 @@ fn read_chunk(
     file: &str,
     first_line: usize,
     source: &mut BufReader<impl Read>,
-) -> Result<Vec<Line>, CommandError> {
+) -> Result<Vec<Line>, BatchError> {
     let mut lines = Vec::new();
     // Only what has already arrived joins the first line: whoever writes one scene and waits for
     // its answer gets it.

@@ -1,70 +1,72 @@
 //! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
 //! A [`mod@file`] says what is asked, [`verdict`] what the certificate answers, [`batch`] both for
-//! many scenes. The other modules are in groups by what they are about, with a line above each group. "Theory" and "equation" are those
-//! of `firmware/THEORY.md`.
+//! many scenes; [`simulation`] says what a scene would do, certified or not. The modules below are in
+//! layers: each uses those of its own layer and of the layers under it, and none above it. "Theory" and
+//! "equation" are those of `firmware/THEORY.md`.
 
+// The program `haptic`.
 pub mod command;
 
-pub mod file;
+// What is shown: pictures, and pages with pictures.
+pub mod chart;
+pub mod report;
 
-pub mod batch;
-pub mod verdict;
+// What is measured once and kept: methods, formats and models against each other.
+pub mod studies;
 
-// The device: a chain of masses, its passivity as the certificate and as the paper see it, and
-// the identification of a real one.
-pub mod chain;
+// What runs: a program's scene in a servo, with a simulated device, a recording or a board around
+// it; and the device that was measured so.
 pub mod identify;
-pub mod mu;
-
-// What runs: a program's scene in a servo, with a simulated device or a recording around it.
-pub mod arithmetic;
-pub mod controller;
-pub mod device;
-pub mod hand;
 pub mod program;
-pub mod recorded;
 pub mod replay;
-pub mod rig;
 pub mod scenario;
-pub mod table;
 
-// The board, emulated or virtual, what builds for it, and what was built.
-pub mod anatomy;
+// The board, emulated or virtual, what builds for it, and a board without hardware.
 pub mod emulator;
+pub mod rig;
 pub mod toolchain;
+pub mod twin;
 pub mod virtual_board;
 
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;
-pub mod listing;
 pub mod scope;
-pub mod twin;
 
-// What scenes would do, certified or not, and how far one may go.
+// What scenes are worth and would do, and how far one may go.
+pub mod batch;
+pub mod circle;
+pub mod closed_form;
 pub mod design;
-pub mod failures;
 pub mod limits;
 pub mod map;
-pub mod model;
+pub mod mu;
 pub mod open_loop;
+pub mod recorded;
 pub mod response;
 pub mod simulation;
 pub mod stability;
+pub mod trace;
+pub mod verdict;
 pub mod worst_hand;
 
-// What is shown and measured.
-pub mod bench;
-pub mod chart;
-pub mod circle;
+// What is asked: a scene, its device, its hand and its servo.
+pub mod chain;
+pub mod controller;
+pub mod device;
+pub mod file;
+pub mod hand;
+pub mod missed;
+pub mod table;
+
+// Numbers and words.
 pub mod date;
+pub mod listing;
 pub mod minimum;
 pub mod number;
 pub mod progress;
 pub mod quantity;
-pub mod report;
 pub mod terminal;
-pub mod tradeoff;
 
 /// The scene file of the README, as this library reads it.
 ///

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::chart::trace::{Clock, Trace};
 use crate::simulation::served::Served;
 use crate::table::{Column, Place, Row, Table, TableError};
+use crate::trace::{Clock, Trace};
 
 /// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
@@ -46,7 +46,7 @@ pub fn is_recorded(path: &Path) -> bool {
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
 pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RecordedError> {
     let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Trace { title, ..read(Table::open(path)?, period)? }.as_far_as_drawable())
+    Ok(Trace { title, ..read(Table::open(path)?, period)? })
 }
 
 fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RecordedError> {

@@ -82,13 +82,6 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Multiplies the state: a linear loop that is scaled as a whole goes on as before.
-    pub fn scale(&mut self, factor: f64) {
-        for value in &mut self.state {
-            *value *= factor;
-        }
-    }
-
     /// What multiplies the input of now, of one tick ago, and so on.
     pub fn numerator(&self) -> &[f64] {
         &self.numerator

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::chart::trace::{Clock, Trace};
 use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, Report, Stats};
@@ -12,6 +11,7 @@ use crate::hand::Script;
 use crate::rig::{Alone, Plant, Recording, Run, SimulatedDevice, Twin, run};
 use crate::simulation::served::Served;
 use crate::toolchain;
+use crate::trace::{Clock, Trace};
 use crate::virtual_board::{self, VirtualBoard, VirtualBoardError};
 
 /// What comes into a servo.

@@ -4,17 +4,19 @@
 
 use core::hint::black_box;
 
-use crate::board::period;
+use crate::build_error::BuildError;
 use crate::cycle::{Arming, Cycle, Hardware, Options, Reason, Requests};
 use crate::dac::DacCode;
-use crate::environment::Renderable;
+use crate::environment::{Renderable, Renders};
 use crate::fault::{Fault, Retained};
 use crate::number::Number;
+use crate::output_timing::OutputMode;
+use crate::period;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
-use crate::servo::{
-    BuildError, OutputMode, Rendering, RenderingOptions, Renders, Step, Transducers,
-};
+use crate::servo::{Rendering, RenderingOptions};
+use crate::step::Step;
+use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
 
 /// What a board has besides, before its servo runs.

@@ -11,9 +11,21 @@
 //! and that gain is known before the servo starts. The environment is always asked for the value
 //! at `x`, never for an intercept: near the state where it rests no large numbers cancel.
 
+use crate::build_error::BuildError;
 use crate::number::{Number, Rounding};
-use crate::scene::Coupling;
-use crate::servo::BuildError;
+
+/// The virtual coupling `V` between device and environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum Coupling {
+    /// No compliance: the environment sees the device's position.
+    Rigid,
+    /// A spring, `V = 1 / stiffness`.
+    Spring {
+        /// Stiffness `K_vc` in N m/rad. The standard coupling is `2 delta / T`.
+        stiffness: f64,
+    },
+}
 
 /// What an environment offers to the coupling in one tick.
 #[derive(Clone, Copy, Debug)]

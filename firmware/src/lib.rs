@@ -20,6 +20,9 @@ pub mod torque;
 
 pub mod dac;
 
+// Sensor and motor, as a servo is told of them.
+pub mod transducers;
+
 // What a device is measured with, before anything is certified for it.
 pub mod excitation;
 
@@ -35,7 +38,12 @@ pub mod passivity;
 pub mod scene;
 pub mod servo;
 
+// What the modules above share.
+pub mod build_error;
 pub mod number;
+pub mod output_timing;
+pub mod period;
+pub mod step;
 pub mod text;
 
 // What a board says to its host, and what it hears.

@@ -3,7 +3,10 @@
 //! Nothing here is checked. [`crate::certificate`] turns a [`Scene`] into a `Certified<Scene>`,
 //! and only that can become a servo.
 
-use crate::environment::Environment;
+use crate::build_error::BuildError;
+use crate::environment::{Environment, Setting};
+
+pub use crate::coupling::Coupling;
 
 /// A haptic scene: everything the certificate and the servo need to know.
 ///
@@ -49,15 +52,14 @@ pub struct Timing {
     pub worst_period: Option<f64>,
 }
 
-/// The virtual coupling `V` between device and environment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub enum Coupling {
-    /// No compliance: the environment sees the device's position.
-    Rigid,
-    /// A spring, `V = 1 / stiffness`.
-    Spring {
-        /// Stiffness `K_vc` in N m/rad. The standard coupling is `2 delta / T`.
-        stiffness: f64,
-    },
+impl<E> Scene<E> {
+    /// What the environment's coefficients depend on.
+    pub(crate) fn setting(&self) -> Result<Setting, BuildError> {
+        let (period, coupling) = (self.timing.period, self.coupling);
+        BuildError::unless_positive("period", period)?;
+        if let Coupling::Spring { stiffness } = coupling {
+            BuildError::unless_positive("coupling stiffness", stiffness)?;
+        }
+        Ok(Setting { period, damping: self.device.damping, coupling })
+    }
 }

@@ -10,6 +10,9 @@ pub struct Text<const N: usize> {
     len: usize,
 }
 
+/// A sentence about a scene.
+pub type Sentence = Text<640>;
+
 impl<const N: usize> Text<N> {
     /// Bytes that fit.
     pub const CAPACITY: usize = N;

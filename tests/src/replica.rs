@@ -1,10 +1,9 @@
 //! The board's cycle on this machine, which has to do in every tick what the emulated board does.
 
+use firmware::board::in_time::{InTime, Lines};
 use firmware::boot::{Booted, Program, boot};
 use firmware::certificate::Parameter;
-use firmware::cycle::{
-    Cycle, FrameQueue, Frames, InTime, Inbox, Lines, Mailbox, Notice, Requests, State,
-};
+use firmware::cycle::{Cycle, FrameQueue, Frames, Inbox, Mailbox, Notice, Requests, State};
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::servo::{OutputMode, Rendering, Renders};

@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::{ChartError, Picture};
+use super::error::ChartError;
+use super::picture::Picture;
 
 /// A number or a word of a table.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::axes::Axes;
 use super::dash::{Dash, SOLID};
 use super::*;
-use crate::failures::region::{METHODS, Region};
 use crate::simulation::method::Method;
+use crate::studies::failures::region::{METHODS, Region};
 
 /// Height of a line of the key in pixels.
 const ROW: i32 = 22;

@@ -5,6 +5,7 @@ pub mod axes;
 pub mod bode;
 pub mod dash;
 pub mod data;
+mod error;
 pub mod failures;
 pub mod growth;
 pub mod hatch;
@@ -20,17 +21,14 @@ pub mod trace;
 pub mod tradeoff;
 
 use std::ops::Range;
-use std::path::PathBuf;
 
-use firmware::passivity::transfer::Unbuildable;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use thiserror::Error;
 
-use crate::quantity::significant;
 pub use data::{Cell, Chart, Data};
+pub use error::ChartError;
 pub use picture::{Output, Picture};
 
 /// Width and height of a picture in pixels.
@@ -95,80 +93,6 @@ pub struct Window {
     pub y: Option<Range<f64>>,
 }
 
-/// Why a picture could not be drawn.
-#[derive(Debug, Error)]
-pub enum ChartError {
-    /// The file could not be written.
-    #[error("{path}: the picture cannot be written: {source}")]
-    Output {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The numbers could not be written.
-    #[error("{path}: the numbers cannot be written: {source}")]
-    Data {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file's name does not say what kind of picture it is.
-    #[error(
-        "{path}: the name of a picture must end in .svg, .png or .pdf, that of its numbers in .csv"
-    )]
-    Extension {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file of the numbers has another name.
-    #[error("{path}: the name of a picture's numbers must end in .csv")]
-    DataExtension {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Both files are to have the numbers.
-    #[error("{output}: it has the numbers already; --csv {csv} goes with a picture")]
-    TwoTables {
-        /// The file of the picture.
-        output: PathBuf,
-        /// The file of the numbers.
-        csv: PathBuf,
-    },
-    /// The drawing failed.
-    #[error("the picture cannot be drawn: {0}")]
-    Drawing(String),
-    /// The scene has no transfer function to draw.
-    #[error("{scene}: the environment has no transfer function to draw: {}", unbuildable(*.why))]
-    NoTransfer {
-        /// Name of the scene.
-        scene: String,
-        /// Why.
-        why: Unbuildable,
-    },
-    /// An axis was asked for where nothing is.
-    #[error(
-        "there is nothing to draw from {} to {} on the {axis} axis: what there is goes from {} to {}",
-        number(wanted.start), number(wanted.end), number(there.start), number(there.end)
-    )]
-    NothingThere {
-        /// Horizontal or vertical.
-        axis: &'static str,
-        /// What was asked for.
-        wanted: Range<f64>,
-        /// What there is.
-        there: Range<f64>,
-    },
-    /// There is nothing to draw.
-    #[error("a picture needs at least two points")]
-    TooFewPoints,
-}
-
-fn number(value: f64) -> String {
-    significant(value, 6)
-}
-
 /// Refuses an axis, if one is asked for, on which nothing of this range would be seen.
 fn meets(
     axis: &'static str,
@@ -180,14 +104,6 @@ fn meets(
             Err(ChartError::NothingThere { axis, wanted: wanted.clone(), there: there.clone() })
         }
         _ => Ok(()),
-    }
-}
-
-fn unbuildable(why: Unbuildable) -> &'static str {
-    match why {
-        Unbuildable::Improper => "it needs samples from the future",
-        Unbuildable::IllPosed => "coupling and environment have no unique solution",
-        Unbuildable::OutOfRange => "a number of it is out of range",
     }
 }
 

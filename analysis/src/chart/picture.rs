@@ -6,7 +6,7 @@ use std::sync::Arc;
 use resvg::tiny_skia::{Pixmap, Transform};
 use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
 
-use super::ChartError;
+use super::error::ChartError;
 
 /// Pixels of a PNG for each pixel of the drawing: sharp in print and on dense screens.
 const SCALE: f32 = 2.0;
@@ -48,11 +48,6 @@ impl Output {
             _ => return Err(ChartError::Extension { path: path.to_owned() }),
         };
         Ok(Self { path: path.to_owned(), format })
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Writes the picture.

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::*;
-use crate::tradeoff::{Axis, Method, Tradeoff};
+use crate::studies::tradeoff::{Axis, Method, Tradeoff};
 
 mod marks;
 

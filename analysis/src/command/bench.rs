@@ -10,17 +10,17 @@ use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
-use crate::bench::live::live_set;
-use crate::bench::parts::{self, Inventory};
-use crate::bench::{self, CORE_CLOCK, Figure};
 use crate::emulator::Report;
 use crate::listing::listing;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Beside, Input, play};
+use crate::studies::bench::live::live_set;
+use crate::studies::bench::parts::{self, Inventory};
+use crate::studies::bench::{self, CORE_CLOCK, Figure};
 use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.

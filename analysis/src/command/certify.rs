@@ -4,8 +4,8 @@ use std::io;
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::{Arithmetic, ForWhom, SceneArgument};
-use super::{Answer, CommandError};
 use crate::batch;
 use crate::quantity::significant;
 use crate::terminal;
@@ -23,7 +23,8 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub arithmetic: Arithmetic,
-    /// FILE has a scene as JSON on each line; print a result a line, in the same order
+    /// FILE has a scene as JSON on each line; print a result a line, in the same order. The exit status
+    /// is 0 where all lines were answered, whatever the verdicts and errors in them
     #[arg(long)]
     pub batch: bool,
 }

@@ -1,18 +1,19 @@
-//! What several commands have in common: a scene as their argument, a method and its steps, and
-//! an answer that is text for a person or one JSON object for a program.
+//! What several commands have in common: a scene as their argument, a method and its steps, a
+//! number format and so many ticks, and an answer that is text for a person or one JSON object for a program.
 
 use std::io::{self, Write};
 use std::path::Path;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use firmware::number::Format;
 use serde::Serialize;
 
-use super::CommandError;
+use super::answer::CommandError;
 use crate::file::{self, Purpose, SceneFile};
 use crate::number;
 use crate::simulation::Stride;
 use crate::simulation::method::Method;
+use crate::toolchain::NumberFormat;
 use crate::verdict::{Report, judge_in};
 
 /// The scene that a command is about.
@@ -80,6 +81,30 @@ impl Arithmetic {
         Ok(judge_in(&file.name, &file.scene, self.format, &file.steps()))
     }
 }
+
+/// Number format of the servo, as the command line names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatArgument {
+    /// Single-precision floating point.
+    F32,
+    /// The scene's fixed-point format; a scene file's is I8F24.
+    Fixed,
+}
+
+impl From<FormatArgument> for NumberFormat {
+    fn from(format: FormatArgument) -> Self {
+        match format {
+            FormatArgument::F32 => Self::F32,
+            FormatArgument::Fixed => Self::Fixed,
+        }
+    }
+}
+
+/// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
+pub const TICKS: usize = 5000;
+
+/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
+pub const MOST_TICKS: u64 = 10_000_000;
 
 /// For whom an answer is.
 #[derive(Debug, Args)]

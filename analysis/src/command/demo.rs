@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use firmware::certificate::certify;
-use firmware::dac::DacCode;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 
-use super::run::{FormatArgument, MOST_TICKS};
-use super::{Answer, CommandError};
+use super::answer::{Answer, CommandError};
+use super::common::{FormatArgument, MOST_TICKS, TICKS};
+use super::outcome::section;
 use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
@@ -24,7 +24,7 @@ use crate::quantity::significant;
 use crate::scenario::{self, Beside, Input, Outcome, play};
 use crate::simulation::{Experiment, Stride, simulate};
 use crate::toolchain::{self, Tools};
-use crate::verdict::{self, Report, Verdict};
+use crate::verdict::{self, Verdict};
 use crate::worst_hand::{self, Held};
 
 /// Arguments of `haptic demo`.
@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
     pub format: FormatArgument,
     /// Ticks of each run; a picture needs two
-    #[arg(long, value_name = "N", default_value_t = super::run::TICKS,
+    #[arg(long, value_name = "N", default_value_t = TICKS,
           value_parser = RangedU64ValueParser::<usize>::new().range(2..=MOST_TICKS))]
     pub ticks: usize,
 }
@@ -135,48 +135,6 @@ fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outco
     )?;
     bar.finish_and_clear();
     Ok(outcome)
-}
-
-/// What is shown of a scene that ran on a board: its verdict, and what it did.
-pub(super) fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
-    let damping = |value: Option<f64>| {
-        value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
-    };
-    let verdict = format!("{:?}", report.verdict).to_lowercase();
-    let rows = [
-        ("verdict", verdict),
-        ("alpha", damping(report.alpha.hi)),
-        ("delta", damping(Some(report.delta))),
-        ("margin", damping(report.margin_on_board)),
-    ];
-    let mut text = format!("{}\n", report.name);
-    for (label, value) in rows {
-        text += &format!("  {label}: {value}\n");
-    }
-    for line in super::run::text(outcome).lines() {
-        text += &format!("  {line}\n");
-    }
-    text + &coasting(program, outcome)
-}
-
-/// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
-const AT_REST: f64 = 1e-3;
-
-/// What keeps a device turning that the hand has let go of: nothing in the linear theory, but the
-/// converter rounds, and the simulated device has no friction at all.
-fn coasting(program: &Program, outcome: &Outcome) -> String {
-    let speed = outcome.final_speed.unwrap_or(0.0);
-    let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
-    if speed < AT_REST || ended < (program.script)().release {
-        return String::new();
-    }
-    let full_scale = program.transducers.full_scale_torque;
-    let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
-    format!(
-        "  still turning at the end: {} rad/s; friction of half a converter step, {} N m, stops it\n",
-        significant(speed, 2),
-        significant(half_step, 2)
-    )
 }
 
 fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), CommandError> {

@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use firmware::scene::Coupling;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, folder, json};
-use super::{Answer, CommandError};
 use crate::design::{self, Choice, Quantity, SAMPLES, Terms};
 use crate::file::simulation::HandTorque;
 use crate::file::{self, SceneFile, write};

@@ -3,8 +3,8 @@
 use clap::Args;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
 use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
 use crate::file::{self, DeviceFile};
 use crate::mu::Check;

@@ -7,15 +7,15 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
 use crate::emulator::Player;
-use crate::failures::claim::{Claim, Failure};
-use crate::failures::report::{CaseReport, Seen, WallReport, walls};
-use crate::failures::trial::Played;
-use crate::failures::{ALL, Case};
 use crate::progress;
 use crate::quantity::significant;
+use crate::studies::failures::claim::{Claim, Failure};
+use crate::studies::failures::report::{CaseReport, Seen, WallReport, walls};
+use crate::studies::failures::trial::Played;
+use crate::studies::failures::{ALL, Case};
 use crate::toolchain::{Tools, prepare};
 
 /// Arguments of `haptic failures`.

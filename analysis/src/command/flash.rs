@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::run::FormatArgument;
-use super::{Answer, CommandError};
+use super::answer::{Answer, CommandError};
+use super::common::FormatArgument;
 use crate::progress;
 use crate::toolchain::{self, Board, Memory, Tools, probe};
 

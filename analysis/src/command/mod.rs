@@ -1,6 +1,7 @@
 //! The program's commands, one module each.
 
 pub mod advise;
+pub mod answer;
 pub mod bench;
 pub mod certify;
 pub mod chart;
@@ -9,9 +10,12 @@ pub mod demo;
 pub mod design;
 pub mod device;
 pub mod failures;
+mod file_scene;
 pub mod flash;
+mod flashed;
 pub mod identify;
 pub mod new;
+mod outcome;
 mod own;
 pub mod report;
 pub mod run;
@@ -21,32 +25,16 @@ pub mod simulate;
 pub mod stability;
 pub mod tune;
 pub mod twin;
+mod values;
 pub mod worst_hand;
 
 use std::io::{self, IsTerminal, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
+use answer::{Answer, CommandError};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use firmware::certificate::Rejection;
-use thiserror::Error;
 
-use crate::chart::ChartError;
-use crate::emulator::EmulatorError;
-use crate::file::FileError;
-use crate::identify::IdentifyError;
-use crate::identify::port::PortError;
-use crate::link::{Address, LinkError};
-use crate::quantity::significant;
-use crate::recorded::RecordedError;
-use crate::scenario::ScenarioError;
-use crate::simulation::SimulationError;
-use crate::table::TableError;
 use crate::terminal;
-use crate::toolchain::{BuildError, SetupError};
-use crate::twin::TwinError;
-use crate::virtual_board::VirtualBoardError;
 
 /// Certifies haptic scenes, runs them, and shows what they do.
 #[derive(Debug, Parser)]
@@ -151,264 +139,24 @@ pub enum Command {
     Failures(failures::Arguments),
 }
 
-/// The answer of a command that could be asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// Exit status 0.
-    Yes,
-    /// Exit status 1: rejected, undecided, unstable, different.
-    No,
-}
-
-/// Why a command has no answer; exit status 2.
-#[derive(Debug, Error)]
-pub enum CommandError {
-    /// A bad scene file.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A record that identifies nothing.
-    #[error(transparent)]
-    Identify(#[from] IdentifyError),
-    /// A board whose sweep gives no record.
-    #[error(transparent)]
-    Sweep(#[from] PortError),
-    /// No program and no file of that name.
-    #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
-    NoScene {
-        /// What was asked for.
-        name: String,
-        /// The programs that there are.
-        programs: String,
-    },
-    /// No program of that name, where only a program will do.
-    #[error("there is no scene {name}: the programs are {programs}")]
-    NoProgram {
-        /// What was asked for.
-        name: String,
-        /// The programs that there are.
-        programs: String,
-    },
-    /// A scene file has no program for a twin.
-    #[error(
-        "{file} is a file, and a twin runs a scene's program by its name: the programs are {programs}; \
-         `cargo haptic new NAME` begins one"
-    )]
-    FileOnTwin {
-        /// The file.
-        file: String,
-        /// The programs that there are.
-        programs: String,
-    },
-    /// A scene file has no program for the board.
-    #[error(
-        "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
-         of its own, in firmware/src/bin: `cargo haptic new NAME` begins one"
-    )]
-    FileOnBoard {
-        /// The scene.
-        scene: String,
-    },
-    /// A program for the board has its transducers built in.
-    #[error(
-        "the program {program} is built for {counts_per_turn} counts a turn and {full_scale} N m \
-         at full scale; change its TRANSDUCERS, or run it on the host"
-    )]
-    OtherTransducers {
-        /// The program.
-        program: &'static str,
-        /// Its encoder's counts a turn.
-        counts_per_turn: f64,
-        /// Its motor's torque at full scale in N m.
-        full_scale: f64,
-    },
-    /// The certificate refuses the scene; exit status 1, for the question was good.
-    #[error("{0}")]
-    Refused(Box<Rejection>),
-    /// The servo cannot be built of the certified scene.
-    #[error(transparent)]
-    Servo(#[from] firmware::servo::BuildError),
-    /// An angle does not fit the servo's number format.
-    #[error("the device's angle: {0}")]
-    Angle(#[from] firmware::number::OutOfRange),
-    /// A number of the scene does not fit the number format.
-    #[error(transparent)]
-    Number(#[from] crate::number::DoesNotFit),
-    /// A bad recording.
-    #[error(transparent)]
-    Replay(#[from] TableError),
-    /// A bad record of a run.
-    #[error(transparent)]
-    Recorded(#[from] RecordedError),
-    /// The machine cannot build or run programs for the board.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// A program does not build.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// A program could not be flashed.
-    #[error(transparent)]
-    Probe(#[from] crate::toolchain::probe::ProbeError),
-    /// A run failed.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The emulated board failed.
-    #[error(transparent)]
-    Emulator(#[from] EmulatorError),
-    /// The emulated board computes something else.
-    #[error(
-        "in {format} the torque of the emulated board is not that of this machine at tick {tick}: \
-         its program is of another version"
-    )]
-    Differs {
-        /// The number format.
-        format: &'static str,
-        /// The tick, counted from 0.
-        tick: usize,
-    },
-    /// A set could not be measured on the emulated board.
-    #[error(transparent)]
-    Live(#[from] crate::bench::live::LiveError),
-    /// A picture could not be drawn.
-    #[error(transparent)]
-    Chart(#[from] ChartError),
-    /// No map can be drawn.
-    #[error(transparent)]
-    Map(#[from] crate::map::MapError),
-    /// The scene is certified at no sample rate, however soft its wall.
-    #[error(
-        "{scene}: no stiffness is certified at any of these sample rates; its damping alone, or \
-         what its canceller takes away, is more than the device has"
-    )]
-    NoStiffness {
-        /// Name of the scene.
-        scene: String,
-    },
-    /// One file cannot have the pictures of all topics.
-    #[error("{}: one picture shows one topic; name one of {topics}", picture.display())]
-    NoTopic {
-        /// The file.
-        picture: PathBuf,
-        /// What there is.
-        topics: String,
-    },
-    /// A table has no such panel.
-    #[error("there is no {what} `{word}`; there are {there}")]
-    NoPanel {
-        /// Case or error.
-        what: &'static str,
-        /// What was asked for.
-        word: String,
-        /// What there is.
-        there: String,
-    },
-    /// A table that is to be drawn has not been measured.
-    #[error(
-        "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
-         ones without -o", table.display()
-    )]
-    NothingKept {
-        /// The table's file.
-        table: PathBuf,
-    },
-    /// A picture that does not show all of a run; exit status 1, for it shows the rest.
-    #[error(
-        "the run grows beyond what a picture can show: sample {sample} and all after it are left \
-         out"
-    )]
-    LeftOut {
-        /// The first sample, counted from 0, that is not shown.
-        sample: usize,
-    },
-    /// The date of a page is none.
-    #[error(transparent)]
-    Date(#[from] crate::date::NoDate),
-    /// A page's file must be called one.
-    #[error("{path}: the name of a page must end in .html")]
-    NoPage {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A file or folder could not be written.
-    #[error("{path}: {source}")]
-    Unwritable {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A scene that cannot be simulated.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// A simulated device that leaves; exit status 1, for what it does is the answer.
-    #[error(
-        "the motion runs away: from sample {sample} on, at {} s, the device is more than {} rad from \
-         its zero; the loop is most likely not stable (`haptic stability`)",
-        significant(*.time, 6), significant(*.farthest, 6)
-    )]
-    RanAway {
-        /// The angle in rad that it has left behind.
-        farthest: f64,
-        /// The first sample, counted from 0, that is farther.
-        sample: usize,
-        /// When that is in s.
-        time: f64,
-    },
-    /// A case of failure could not be shown.
-    #[error(transparent)]
-    Failure(#[from] crate::failures::FailureError),
-    /// Models of a device that cannot be compared.
-    #[error(transparent)]
-    Model(#[from] crate::model::ModelError),
-    /// A design asks for what the environment does not have.
-    #[error("the environment of {scene} has no {quantity}")]
-    NoSuchQuantity {
-        /// Name of the scene.
-        scene: String,
-        /// What was asked for.
-        quantity: &'static str,
-    },
-    /// A parameter was given two values.
-    #[error(transparent)]
-    Twice(#[from] crate::link::change::Twice),
-    /// A board cannot be talked to.
-    #[error(transparent)]
-    Link(#[from] LinkError),
-    /// Nobody can be listened to there.
-    #[error("cannot listen on {address}: {source}")]
-    Listen {
-        /// The address.
-        address: Address,
-        /// Why.
-        source: io::Error,
-    },
-    /// A board without hardware has ended by itself.
-    #[error(transparent)]
-    Twin(#[from] TwinError),
-    /// A virtual board that did not start.
-    #[error(transparent)]
-    VirtualBoard(#[from] VirtualBoardError),
-    /// The answer could not be written.
-    #[error("cannot write the answer: {0}")]
-    Output(#[from] io::Error),
-}
-
-impl CommandError {
-    /// Whether the question was good and this is its answer.
-    fn is_a_no(&self) -> bool {
-        matches!(
-            self,
-            Self::Refused(_)
-                | Self::LeftOut { .. }
-                | Self::RanAway { .. }
-                | Self::Simulation(SimulationError::Overflow { .. })
-        )
+impl Command {
+    /// The name by which it may want a scene's program.
+    fn program(&self) -> Option<&str> {
+        match self {
+            Self::Run(arguments) => Some(&arguments.scene),
+            Self::Twin(arguments) => Some(&arguments.scene),
+            Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
+            _ => None,
+        }
     }
 }
 
 /// Runs one command and turns its answer into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
-        ref command if let Some(scene) = own::scene_of(command) => own::hand_over(&scene),
+        ref command if let Some(scene) = command.program().filter(|scene| own::is_new(scene)) => {
+            own::hand_over(scene)
+        }
         Command::Certify(arguments) => certify::run(&arguments),
         Command::Device(arguments) => device::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
@@ -445,15 +193,6 @@ fn status(answer: Result<Answer, CommandError>) -> u8 {
             complain(&error);
             if error.is_a_no() { 1 } else { 2 }
         }
-    }
-}
-
-/// A time on the command line.
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().map_err(|_| format!("`{text}` is no number of seconds"))?;
-    match Duration::try_from_secs_f64(seconds) {
-        Ok(duration) if !duration.is_zero() => Ok(duration),
-        _ => Err(format!("`{text}` must be a number of seconds greater than 0")),
     }
 }
 

@@ -5,23 +5,16 @@
 use std::os::unix::process::CommandExt;
 use std::process;
 
-use super::{Answer, Command, CommandError};
+use super::answer::{Answer, CommandError};
 use crate::program::Program;
 use crate::progress;
 use crate::toolchain::{Sources, build_haptic_with};
 
-/// The scene that a command wants the program of, where this program was built without it.
-pub fn scene_of(command: &Command) -> Option<String> {
-    let name = match command {
-        Command::Run(arguments) => &arguments.scene,
-        Command::Twin(arguments) => &arguments.scene,
-        Command::Advise(arguments) if arguments.format.is_some() => &arguments.scene,
-        _ => return None,
-    };
+/// Whether a name is that of a scene that this program was built without.
+pub fn is_new(name: &str) -> bool {
     // Without its source this program has the scenes that it was built with.
     let is_there = || Sources::find().and_then(|sources| sources.scenes()).unwrap_or_default();
-    let is_new = Program::find(name).is_none() && is_there().contains(name);
-    is_new.then(|| name.clone())
+    Program::find(name).is_none() && is_there().iter().any(|scene| scene == name)
 }
 
 /// Builds what knows the scene, and becomes that, with the same arguments.

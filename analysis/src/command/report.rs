@@ -5,17 +5,18 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::chart::map;
 use super::common::{Arithmetic, SceneArgument};
-use super::{Answer, CommandError};
 use crate::chart::nyquist::nyquist;
-use crate::chart::trace::{Trace, trace};
+use crate::chart::trace::{drawable, trace};
 use crate::chart::{ChartError, Window};
 use crate::date;
 use crate::map::MapError;
 use crate::report::{Figure, Page};
 use crate::simulation::SimulationError;
 use crate::terminal;
+use crate::trace::Trace;
 use crate::verdict::Verdict;
 
 /// Arguments of `haptic report`.
@@ -45,10 +46,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let report = arguments.arithmetic.judge(&file)?;
     let named = [(file.name.clone(), file.scene)];
     let map = match map::of_file(&file, (None, None), SIDE) {
-        Err(MapError::NoWall { .. }) => {
+        Err(CommandError::Map(MapError::NoWall { .. })) => {
             missing("The environment has no wall, whose stiffness and damping a map would show.")
         }
-        Err(error @ (MapError::Device(_) | MapError::NoRange { .. })) => {
+        Err(CommandError::Map(error @ (MapError::Device(_) | MapError::NoRange { .. }))) => {
             missing(&error.to_string())
         }
         drawn => Figure::Drawn(drawn?.picture),
@@ -56,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let motion = if file.simulation.is_some() {
         match Trace::simulated(&file, arguments.scene.folder()) {
             Err(error @ SimulationError::TooFast { .. }) => missing(&error.to_string()),
-            moved => motion(&moved?)?,
+            moved => motion(&drawable(moved?))?,
         }
     } else {
         missing("The scene has no [simulation] table, which would say what to simulate.")

@@ -5,27 +5,27 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use clap::{Args, ValueEnum};
-use firmware::encoder::CounterWidth;
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 use serde::Serialize;
 
-use super::common::{ForWhom, json};
-use super::identify::positive;
-use super::{Answer, CommandError, demo, own};
+use super::answer::{Answer, CommandError};
+use super::common::{ForWhom, FormatArgument, MOST_TICKS, TICKS, json};
+use super::file_scene::{scene_file, script_of, transducers_of};
+use super::flashed::Flashed;
+use super::outcome::{section, text};
+use super::values::positive;
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
-use crate::file::{self, SceneFile};
+use crate::file::SceneFile;
 use crate::hand::Script;
 use crate::program::Program;
 use crate::progress;
-use crate::quantity::significant;
 use crate::rig::{Difference, SimulatedDevice};
 use crate::scenario::{Beside, Input, Outcome, play};
 use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
-use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 use crate::{replay, rig, verdict};
 
 /// Where a scene runs.
@@ -78,24 +78,6 @@ impl fmt::Display for Target {
     }
 }
 
-/// Number format of the servo, as the command line names it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FormatArgument {
-    /// Single-precision floating point.
-    F32,
-    /// The scene's fixed-point format; a scene file's is I8F24.
-    Fixed,
-}
-
-impl From<FormatArgument> for NumberFormat {
-    fn from(format: FormatArgument) -> Self {
-        match format {
-            FormatArgument::F32 => Self::F32,
-            FormatArgument::Fixed => Self::Fixed,
-        }
-    }
-}
-
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -133,18 +115,6 @@ pub struct Arguments {
     #[allow(missing_docs)]
     pub answer: ForWhom,
 }
-
-/// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
-pub const TICKS: usize = 5000;
-
-/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
-pub const MOST_TICKS: u64 = 10_000_000;
-
-/// Torque in N m at full scale for a scene file that has no limit of its own.
-const FULL_SCALE: f64 = 5.0;
-
-/// Counts a turn for a scene file that does not say its encoder's step.
-const COUNTS_PER_TURN: f64 = 65_536.0;
 
 /// What is to be run, whatever it came from.
 struct Question {
@@ -245,39 +215,6 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
     })
 }
 
-/// A scene file, or the sentence that there is neither such a file nor such a program.
-pub(super) fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
-    if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
-        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
-    }
-    Ok(file::load(name)?)
-}
-
-/// The sensor and the motor of a scene file, as it says them or as they are given.
-pub(super) fn transducers_of(
-    file: &SceneFile,
-    counts_per_turn: Option<f64>,
-    full_scale: Option<f64>,
-) -> Transducers {
-    let from_step = file.encoder_step.map(|step| std::f64::consts::TAU / step);
-    Transducers {
-        counts_per_turn: counts_per_turn.or(from_step).unwrap_or(COUNTS_PER_TURN),
-        counter: CounterWidth::Bits32,
-        full_scale_torque: full_scale
-            .or(file.full_scale)
-            .or(file.scene.torque_limit)
-            .unwrap_or(FULL_SCALE),
-        largest_speed: Transducers::NO_HAND_IS_FASTER,
-    }
-}
-
-/// What a hand does to show a scene file: the file's own hand, if it has one.
-pub(super) fn script_of(file: &SceneFile) -> Script {
-    let mut script = Script::push_and_let_go();
-    script.hand = file.hand.unwrap_or(script.hand);
-    script
-}
-
 fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
     let file = scene_file(&arguments.scene)?;
     let certified =
@@ -325,43 +262,12 @@ enum Built {
     Virtual(Flashed),
 }
 
-/// A virtual board, and what goes to its flash.
-pub(super) struct Flashed {
-    program: PathBuf,
-    board: Board,
-    elf: PathBuf,
-}
-
-impl Flashed {
-    /// Builds both, after setting up what is missing for that.
-    pub(super) fn build(
-        board: Board,
-        name: &str,
-        format: NumberFormat,
-    ) -> Result<Self, CommandError> {
-        let tools = Tools::CompilerAndVirtualBoard;
-        let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
-        let spinner = progress::spinner(&format!("building {name} and the virtual board"));
-        let elf = toolchain.build_for(board, &[name], format)?.swap_remove(0).path;
-        let program = toolchain.build_virtual_board()?;
-        spinner.finish_and_clear();
-        Ok(Self { program, board, elf })
-    }
-
-    /// Switches it on.
-    pub(super) fn boot(&self) -> Result<VirtualBoard, VirtualBoardError> {
-        VirtualBoard::boot(&self.program, self.board, &self.elf)
-    }
-}
-
 impl Built {
     fn beside(&self, period: f64) -> Option<Beside<'_>> {
         match self {
             Self::Nothing => None,
             Self::Emulated(elf) => Some(Beside::Emulator(elf)),
-            Self::Virtual(Flashed { program, board, elf }) => {
-                Some(Beside::VirtualBoard { program, board: *board, elf, period })
-            }
+            Self::Virtual(flashed) => Some(flashed.beside(period)),
         }
     }
 }
@@ -397,7 +303,7 @@ fn print(
         json(&mut out, &summary(arguments, &question.name, outcome))?;
     } else if let (Target::Board(_), Some(program)) = (arguments.target, question.program) {
         let report = verdict::judge(program.name, &question.scene);
-        write!(out, "{}", demo::section(program, &report, outcome))?;
+        write!(out, "{}", section(program, &report, outcome))?;
     } else {
         write!(out, "{}", text(outcome))?;
     }
@@ -450,33 +356,4 @@ fn rows(out: &mut impl Write, run: &rig::Run) -> csv::Result<()> {
         ])?;
     }
     Ok(writer.flush()?)
-}
-
-/// What a run gave, for a person.
-pub fn text(outcome: &Outcome) -> String {
-    let run = &outcome.run;
-    let mut rows = vec![
-        ("ticks", run.ticks.len().to_string()),
-        ("peak torque", format!("{} N m", significant(run.peak_torque(), 4))),
-    ];
-    if let Some(energy) = outcome.energy {
-        let millijoule = |joule: f64| format!("{} mJ", significant(1e3 * joule, 4));
-        rows.push(("energy the hand put in", millijoule(energy.given)));
-        rows.push(("energy the hand got back", millijoule(energy.got_back)));
-    }
-    if let Some(board) = &outcome.board {
-        rows.push(("codes equal", format!("{} of {}", run.equal, run.ticks.len())));
-        let (compute, whole) = (board.compute(), board.interrupt());
-        rows.push((
-            "instructions per tick",
-            format!(
-                "{} to {} from count to code, {} on average; {} on average in the whole interrupt",
-                compute.min,
-                compute.max,
-                significant(compute.mean, 3),
-                significant(whole.mean, 3)
-            ),
-        ));
-    }
-    rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
 }

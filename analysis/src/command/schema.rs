@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::{Answer, CommandError};
+use super::answer::{Answer, CommandError};
 use crate::file::{example, reference, schema};
 
 /// Arguments of `haptic schema`.

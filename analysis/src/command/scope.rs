@@ -12,7 +12,8 @@ use clap::Args;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input};
 
-use super::{Answer, CommandError, seconds};
+use super::answer::{Answer, CommandError};
+use super::values::seconds;
 use crate::link::{Address, Link};
 use crate::scope::control::Action;
 use crate::scope::feed::Feed;

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument, Steps, json};
-use super::{Answer, CommandError};
 use crate::quantity::{rounded, significant};
 use crate::simulation::served::Served;
 use crate::simulation::{Experiment, Simulator, Stride, Trajectory, simulate};

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument, Steps};
-use super::{Answer, CommandError};
 use crate::quantity::significant;
 use crate::simulation::Experiment;
 use crate::stability::{Stability, Verdict, judge};

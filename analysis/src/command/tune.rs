@@ -7,8 +7,8 @@ use firmware::certificate::Parameter;
 use firmware::wire::message::{Changes, Running, Status};
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, json};
-use super::{Answer, CommandError};
 use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
 use crate::scope::words;

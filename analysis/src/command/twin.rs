@@ -10,8 +10,10 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::run::Flashed;
-use super::{Answer, CommandError, own, seconds};
+use super::answer::{Answer, CommandError};
+use super::flashed::Flashed;
+use super::own;
+use super::values::seconds;
 use crate::link::Address;
 use crate::program::Program;
 use crate::rig::SimulatedDevice;

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument};
-use super::{Answer, CommandError};
 use crate::quantity::significant;
 use crate::worst_hand::{Search, search};
 
@@ -27,6 +27,15 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     Ok(if search.oscillates { Answer::No } else { Answer::Yes })
 }
 
+/// How a motion grows, over the time in which that is a number to read.
+fn growth(spectral_radius: f64, period: f64) -> String {
+    let in_a_second = spectral_radius.powf(1.0 / period);
+    match in_a_second < 1e6 {
+        true => format!("growing {}-fold in a second", significant(in_a_second, 6)),
+        false => format!("growing {}-fold in a sample", significant(spectral_radius, 6)),
+    }
+}
+
 fn text(name: &str, period: f64, search: &Search) -> String {
     let Search { worst, oscillates, lighter, tried } = search;
     let number = |value: f64| significant(value, 6);
@@ -42,13 +51,12 @@ fn text(name: &str, period: f64, search: &Search) -> String {
         }
         return text;
     }
-    let grows = worst.spectral_radius.powf(1.0 / period);
+    let grows = growth(worst.spectral_radius, period);
     text += &format!(
-        "result   OSCILLATES at {} Hz, growing {}-fold in a second, in this hand:\n\
+        "result   OSCILLATES at {} Hz, {grows}, in this hand:\n\
          \n[human]\ninertia = {}    # kg m^2\ndamping = {}    # N m s/rad\n\
          stiffness = {}    # N m/rad\n",
         number(worst.frequency),
-        number(grows),
         number(worst.hand.inertia),
         number(worst.hand.damping),
         number(worst.hand.stiffness)
@@ -61,4 +69,16 @@ fn text(name: &str, period: f64, search: &Search) -> String {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::growth;
+
+    #[test]
+    fn growth_is_over_a_time_in_which_it_can_be_read() {
+        assert_eq!(growth(1.001, 1e-3), "growing 2.71692-fold in a second");
+        assert_eq!(growth(1.5, 1e-3), "growing 1.5-fold in a sample");
+        assert_eq!(growth(1e9, 1e-5), "growing 1e9-fold in a sample");
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use firmware::board::question::{Question, Reply, ReplyWords, ask, reply};
 use firmware::scene::Scene;
+use firmware_harness::question::{Question, Reply, ReplyWords, ask, reply};
 
 use super::{EmulatorError, Guest, Transport};
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use firmware::board::play::{Curtain, Play};
+use firmware_harness::play::{Curtain, Play};
 
 use super::{EmulatorError, Guest, Transport};
 use crate::rig::Twin;

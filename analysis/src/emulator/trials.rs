@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use firmware::board::trial::{BLOCK, Inputs, Output, Outputs, READY, Trial, Words};
+use firmware_harness::trial::{BLOCK, Inputs, Output, Outputs, READY, Trial, Words};
 
 use super::{EmulatorError, Guest, Transport};
 

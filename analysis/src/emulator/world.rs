@@ -38,11 +38,6 @@ impl World {
         &self.port
     }
 
-    /// Whether the world has ended by itself, because of an error.
-    pub fn has_ended(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
-    }
-
     /// Ends the world and gives the board back.
     ///
     /// # Errors

@@ -1,13 +1,12 @@
-//! The device of a file: a rigid body, or a chain of masses, perhaps behind an amplifier that lags.
+//! The table of a device: a rigid body, or a chain of masses, perhaps behind an amplifier that lags.
 
 use firmware::scene::Device;
 
-use super::faults::{Faults, Read, Reported, all};
+use super::faults::{Read, Reported, all};
 use super::key::{self, Key};
 use super::problem::Problem;
-use super::scene;
 use super::section::{Found, Section};
-use super::tree::{Node, Span};
+use super::tree::Span;
 use crate::chain::{Chain, EncoderPlace, Link, MAX_MASSES, Mass, NoPassivity};
 
 /// What a file is read for.
@@ -18,32 +17,6 @@ pub enum Purpose {
     /// To look at: a device without passivity is one that no certificate is given for, so the
     /// scene's `passivity` is not a number.
     Simulate,
-}
-
-/// A file that describes a device.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DeviceFile {
-    /// What the person calls it, or the scene that it is part of.
-    pub name: Option<String>,
-    /// The device.
-    pub chain: Chain,
-}
-
-/// A file of a device is a table, like that of a scene.
-const ROOT: Key = Key::root("a table of [device] and perhaps `name`");
-
-/// Reads a device file, or the device of a scene file, which is checked as a whole.
-pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
-    let mut top = Section::new(source, "a device's file", &ROOT, root.clone())?;
-    if [key::SERVO, key::ENVIRONMENT].iter().any(|key| top.has(key)) {
-        let scene = scene::read(source, root, Purpose::Simulate)?;
-        return Ok(DeviceFile { name: Some(scene.name), chain: scene.chain });
-    }
-    let name = top.text(&key::NAME);
-    let table = top.needed_table(&key::DEVICE);
-    top.finish();
-    let (chain, ..) = table.and_then(|table| device(table, Purpose::Simulate))?;
-    Ok(DeviceFile { name: name?.map(|found| found.value), chain })
 }
 
 /// Reads `[device]`: the chain, the rigid body that stands for it in a certificate, and the dry

@@ -6,6 +6,7 @@
 //! ([`example`]). An unknown key is an error, and all errors of a file are said at once.
 
 pub mod device;
+mod device_file;
 pub mod example;
 pub mod key;
 pub mod kind;
@@ -24,7 +25,8 @@ mod tree;
 
 use std::path::Path;
 
-pub use device::{DeviceFile, Purpose};
+pub use device::Purpose;
+pub use device_file::DeviceFile;
 pub use problem::{FileError, Problem, excerpt};
 pub use scene::SceneFile;
 
@@ -69,12 +71,12 @@ pub fn load_for(purpose: Purpose, file: &str) -> Result<SceneFile, FileError> {
 
 /// Reads the device of a file, which has nothing else or is a scene; `-` is standard input.
 pub fn load_device(file: &str) -> Result<DeviceFile, FileError> {
-    load_with(file, |root, source| device::read(source, root))
+    load_with(file, |root, source| device_file::read(source, root))
 }
 
 /// Parses the text of a device file that is called `file`.
 pub fn parse_device(file: &str, format: Format, text: &str) -> Result<DeviceFile, FileError> {
-    parse_with(file, 1, format, text, |root, source| device::read(source, root))
+    parse_with(file, 1, format, text, |root, source| device_file::read(source, root))
 }
 
 /// The text of a file, and what is wrong with it.

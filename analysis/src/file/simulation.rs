@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use crate::device::Hand;
-use crate::simulation::missed::Missed;
+use crate::missed::Missed;
 
 use super::faults::Read;
 use super::key::{self, Key};

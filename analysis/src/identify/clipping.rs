@@ -3,10 +3,11 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::error::IdentifyError;
+use super::fit::Identification;
 use super::record::Record;
 use super::response::Correction;
 use super::step::Step;
-use super::{Identification, IdentifyError};
 
 /// Largest part of a sine's torque that may be in its second or third harmonic. A sine that is cut
 /// off at nine tenths of its peak has 3 % in its third; whole codes have less than 1 %.

@@ -3,8 +3,9 @@
 use nalgebra::{Complex, Matrix3, Vector3};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::error::IdentifyError;
 use super::response::{Response, images};
-use super::{IdentifyError, LeftOut};
+use super::step::LeftOut;
 use crate::quantity::significant;
 
 /// Passes between the fit and the images: each gains the square of what the images do.
@@ -84,11 +85,11 @@ impl Identification {
         self.misfit <= RIGID
     }
 
-    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device, of
-    /// the disk for any other; `None` where that is not positive.
+    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device. `None`
+    /// where that is not positive, and for a device that is not rigid: nobody held it, and what its
+    /// damping is in somebody's hand is not to be seen from the motor alone (theory, section 3.2).
     pub fn passivity(&self) -> Option<f64> {
-        let passivity = if self.is_rigid() { self.damping.lo } else { self.disk.lo };
-        (passivity > 0.0).then_some(passivity)
+        (self.is_rigid() && self.damping.lo > 0.0).then_some(self.damping.lo)
     }
 }
 

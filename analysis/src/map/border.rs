@@ -2,11 +2,11 @@
 
 use firmware::certificate::Posed;
 use firmware::environment::{Environment, Wall};
-use firmware::passivity::closed_form;
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Scene};
 
 use super::{Family, Map};
+use crate::closed_form;
 
 /// Points along the border.
 const POINTS: usize = 400;

@@ -81,9 +81,6 @@ pub enum MapError {
         /// The damping.
         damping: Range<f64>,
     },
-    /// The drawing failed.
-    #[error(transparent)]
-    Chart(#[from] crate::chart::ChartError),
 }
 
 /// The walls that differ from a scene's in stiffness and damping only.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use super::SimulationError;
+use super::error::SimulationError;
 use crate::file::simulation::HandTorque;
 
 /// Torque of the hand in N m, positive in the direction of the angle.

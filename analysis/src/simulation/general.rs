@@ -4,14 +4,16 @@ use firmware::torque::LimitReason;
 use nalgebra::DVector;
 
 use super::drive::Drive;
+use super::error::SimulationError;
+use super::experiment::{Experiment, Stride};
 use super::friction::Rubbing;
 use super::kernel::{DEAD, LOOK};
-use super::missed::Missed;
 use super::plant::{POSITION, VELOCITY};
 use super::rendering::Rendering;
 use super::served::Served;
 use super::tick::Tick;
-use super::{Columns, Experiment, SimulationError, Stride};
+use super::trajectory::Columns;
+use crate::missed::Missed;
 
 /// A loop in motion.
 #[derive(Debug)]

@@ -10,7 +10,7 @@
 use firmware::scene::Device;
 use nalgebra::{DMatrix, DVector};
 
-use super::SimulationError;
+use super::error::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
 use super::tick::{Stepping, Tick};

@@ -2,14 +2,11 @@
 
 use nalgebra::DVector;
 
-use super::Columns;
 use super::closed::ClosedLoop;
 use super::drive::Drive;
 use super::plant::{POSITION, VELOCITY};
 use super::tick::Tick;
-
-/// Most states that a loop may have to be run here.
-pub const MOST_STATES: usize = 12;
+use super::trajectory::Columns;
 
 /// Samples between two looks at whether the motion has died away.
 pub(super) const LOOK: usize = 256;

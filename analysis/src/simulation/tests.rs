@@ -5,7 +5,8 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::torque::LimitReason;
 
 use super::*;
-use crate::device::Hand;
+use crate::device::{Hand, Motion};
+use crate::missed::Missed;
 
 fn wall(stiffness: f64, damping: f64, delay: usize) -> Wall {
     Wall { stiffness, damping, filter: None, delay, face: 0.0, one_sided: false }

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::SimulationError;
+use super::error::SimulationError;
 use super::method::{Method, repeated, rotation, step};
 use super::plant::{Input, Plant};
 

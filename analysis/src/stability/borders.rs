@@ -2,15 +2,28 @@
 
 use std::f64::consts::PI;
 
-use firmware::scene::Coupling;
+use firmware::environment::Environment;
+use firmware::scene::{Coupling, Scene};
 use nalgebra::Complex;
 
-use super::{eigenvalues, with_stiffness};
+use super::eigenvalues::eigenvalues;
 use crate::response::Response;
 use crate::simulation::closed::transfers;
 use crate::simulation::plant::POSITION;
 use crate::simulation::tick::Tick;
 use crate::simulation::{Experiment, SimulationError, Stride};
+
+/// The same scene with another stiffness of its environment; `None` where that has none.
+pub fn with_stiffness(scene: &Scene, stiffness: f64) -> Option<Scene> {
+    let mut scene = *scene;
+    match &mut scene.environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => wall.stiffness = stiffness,
+        Environment::FreeMode { .. } | Environment::Rational(_) => return None,
+    }
+    Some(scene)
+}
 
 /// The stiffnesses at which some eigenvalue is on the unit circle.
 pub(super) struct Borders {

@@ -6,18 +6,18 @@
 //! deep inside its wall.
 
 mod borders;
+mod eigenvalues;
 
 use std::fmt;
 
-use firmware::environment::Environment;
-use firmware::scene::Scene;
-use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use crate::simulation::closed::ClosedLoop;
-use crate::simulation::method::balance;
 use crate::simulation::{Experiment, SimulationError, Stride};
+
+pub use borders::with_stiffness;
+pub use eigenvalues::{eigenvalues, radius};
 
 use borders::Borders;
 
@@ -82,25 +82,6 @@ pub fn closed_loop(experiment: &Experiment, stride: Stride) -> Result<ClosedLoop
     Ok(ClosedLoop::new(&experiment.tick(stride)?, &experiment.scene)?)
 }
 
-/// Eigenvalues of a matrix.
-///
-/// # Errors
-/// Where they are not found.
-pub fn eigenvalues(matrix: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, SimulationError> {
-    /// More than the iteration has ever been seen to take, and bounded.
-    const ITERATIONS: usize = 10_000;
-    let mut balanced = matrix.clone();
-    balance(&mut balanced).ok_or(SimulationError::Eigenvalues)?;
-    let schur = Schur::try_new(balanced, f64::EPSILON, ITERATIONS);
-    let schur = schur.ok_or(SimulationError::Eigenvalues)?;
-    Ok(schur.complex_eigenvalues().iter().copied().collect())
-}
-
-/// Largest modulus.
-pub fn radius(eigenvalues: &[Complex<f64>]) -> f64 {
-    eigenvalues.iter().map(|eigenvalue| eigenvalue.norm()).fold(0.0, f64::max)
-}
-
 fn verdict(matrix: &DMatrix<f64>, eigenvalues: &[Complex<f64>]) -> Verdict {
     let radius = radius(eigenvalues);
     if radius < 1.0 - ON_CIRCLE {
@@ -132,18 +113,6 @@ fn is_simple<'e>(
     let singular = shifted.singular_values();
     let small = TOGETHER * singular.amax();
     singular.iter().filter(|&&value| value <= small).count() >= count
-}
-
-/// The same scene with another stiffness of its environment; `None` where that has none.
-pub fn with_stiffness(scene: &Scene, stiffness: f64) -> Option<Scene> {
-    let mut scene = *scene;
-    match &mut scene.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.stiffness = stiffness,
-        Environment::FreeMode { .. } | Environment::Rational(_) => return None,
-    }
-    Some(scene)
 }
 
 /// Stiffness in N m/rad at which the loop stops being stable; see

@@ -3,9 +3,9 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 
 use super::*;
 use crate::device::{Hand, Motion};
+use crate::missed::Missed;
 use crate::simulation::drive::Drive;
 use crate::simulation::method::Method;
-use crate::simulation::missed::Missed;
 use crate::simulation::plant::Plant;
 
 /// The mass and damper of theory, section 5.

@@ -6,6 +6,8 @@ use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus, Output, Stdio};
 
+use super::output::last_lines;
+
 /// What an installation would change, each package by its name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
@@ -119,7 +121,7 @@ impl Apt {
         Err(AptError::Failed {
             command: [&["apt-get"], arguments, packages].concat().join(" "),
             status: output.status,
-            output: super::prepare::last_lines(&String::from_utf8_lossy(&said), 20),
+            output: last_lines(&String::from_utf8_lossy(&said), 20),
         })
     }
 }

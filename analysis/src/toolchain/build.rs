@@ -8,12 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::memory::{Memory, NoLength};
-use super::plan::Compiler;
-use super::prepare::last_lines;
+use super::output::last_lines;
 use super::size::{SizeError, Sizes};
-use super::sources::{BadName, Sources};
+use super::sources::{Sources, SourcesError, workspace_root};
 use super::{Board, TARGET};
-use crate::anatomy::{Anatomy, ListingError};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,9 +44,9 @@ impl fmt::Display for NumberFormat {
 /// Why a program could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// The source is not where it was when this program was built.
-    #[error("the workspace is no longer at {0}: run `haptic` from it by `cargo haptic`")]
-    NoWorkspace(PathBuf),
+    /// The source is not what it should be.
+    #[error(transparent)]
+    Sources(#[from] SourcesError),
     /// A file could not be read or written.
     #[error("{path}: {source}")]
     File {
@@ -57,25 +55,6 @@ pub enum BuildError {
         /// Why.
         source: io::Error,
     },
-    /// There is no such scene.
-    #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
-    NoScene {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        scenes: Vec<String>,
-    },
-    /// A new scene cannot have this name.
-    #[error("a scene cannot be called `{name}`: {why}")]
-    Name {
-        /// The name.
-        name: String,
-        /// Why not.
-        why: BadName,
-    },
-    /// A new scene's file is there.
-    #[error("{} is there already; it is left as it is", .0.display())]
-    Exists(PathBuf),
     /// Cargo could not be started.
     #[error("cargo could not be started: {0}")]
     NoCargo(#[source] io::Error),
@@ -95,14 +74,6 @@ pub enum BuildError {
         /// Why.
         source: NoLength,
     },
-    /// The program could not be taken apart.
-    #[error("{path}: {source}")]
-    Listing {
-        /// The program's file.
-        path: PathBuf,
-        /// Why.
-        source: ListingError,
-    },
     /// The program's size could not be read.
     #[error("{path}: {source}")]
     Size {
@@ -111,6 +82,15 @@ pub enum BuildError {
         /// Why.
         source: SizeError,
     },
+}
+
+/// The compiler that builds for the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compiler {
+    /// The one that builds everything else here.
+    Own,
+    /// Debian's, which builds `core` from source as well.
+    Debian,
 }
 
 /// What builds programs for the board; [`prepare`](super::prepare()) gives it.
@@ -138,8 +118,10 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
-/// Which build of a program: with which features, and what is added to its name for the file.
+/// Which build of a program: of which package, with which features, and what is added to its name for the
+/// file.
 struct Variant {
+    package: &'static str,
     features: String,
     suffix: String,
 }
@@ -151,7 +133,7 @@ impl Variant {
             NumberFormat::F32 => features.to_owned(),
             NumberFormat::Fixed => format!("{features},fixed-point"),
         };
-        Self { features, suffix: format!("-{format}{suffix}") }
+        Self { package: "firmware", features, suffix: format!("-{format}{suffix}") }
     }
 }
 
@@ -160,17 +142,12 @@ impl Toolchain {
         Self { compiler, workspace }
     }
 
-    /// The compiler that builds.
-    pub fn compiler(&self) -> Compiler {
-        self.compiler
-    }
-
     /// Names of the programs, in the alphabet's order.
     ///
     /// # Errors
     /// Where the source cannot be read.
     pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
-        Sources::of(&self.workspace.root).programs()
+        Ok(Sources::of(&self.workspace.root).programs()?)
     }
 
     /// Builds a scene's program for the emulated board, with its log, and gives its file.
@@ -317,7 +294,8 @@ impl Toolchain {
 
     /// Builds a program without a scene for the emulated board.
     fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
-        let variant = Variant { features: "board-qemu,log".into(), suffix: String::new() };
+        let (package, features) = ("firmware-harness", "emulated".into());
+        let variant = Variant { package, features, suffix: String::new() };
         Ok(self.build(&[name], &variant)?.swap_remove(0))
     }
 
@@ -328,7 +306,7 @@ impl Toolchain {
     ) -> Result<Vec<PathBuf>, BuildError> {
         let scenes = self.scenes()?;
         match names.iter().find(|name| !scenes.iter().any(|scene| scene == *name)) {
-            Some(name) => Err(BuildError::NoScene { name: (*name).into(), scenes }),
+            Some(name) => Err(SourcesError::NoScene { name: (*name).into(), scenes }.into()),
             None => self.build(names, variant),
         }
     }
@@ -338,9 +316,9 @@ impl Toolchain {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
         let _alone = self.workspace.lock("build")?;
-        let flash = ["--release", "--config", FLASH, "--package", "firmware", "--target", TARGET];
+        let flash = ["--release", "--config", FLASH, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
-        let with = ["--features", &variant.features];
+        let with = ["--package", variant.package, "--features", &variant.features];
         self.compile(
             &names.join(", "),
             &flash.into_iter().chain(programs).chain(with).collect::<Vec<_>>(),
@@ -445,24 +423,12 @@ impl Program {
             Err(source) => Err(BuildError::Size { path, source }),
         }
     }
-
-    /// What it has of each part of a tick.
-    ///
-    /// # Errors
-    /// Where its file cannot be read or taken apart.
-    pub fn anatomy(&self) -> Result<Anatomy, BuildError> {
-        let path = || self.path.clone();
-        let elf = fs::read(&self.path);
-        let elf = elf.map_err(|source| BuildError::File { path: path(), source })?;
-        Anatomy::of_elf(&elf).map_err(|source| BuildError::Listing { path: path(), source })
-    }
 }
 
 impl Workspace {
     /// The workspace that this program was built from.
     pub(super) fn find() -> Result<Self, BuildError> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let root = root.canonicalize().map_err(|_| BuildError::NoWorkspace(root))?;
+        let root = workspace_root()?;
         let target = variable("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
         // Relative to the workspace for cargo's own default, and to where cargo was started
         // otherwise; an absolute path replaces either.

@@ -1,122 +1,148 @@
-//! What there is on this machine.
+//! What is known of a machine: its compiler, its emulator, its packages.
 
-use std::ffi::OsStr;
-use std::fs::DirEntry;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use super::Version;
 
-use super::plan::{Debian, Facts, Native, Package, PackageState, Rust};
-use super::{TARGET, Version};
-use crate::emulator::QEMU;
+/// What was seen on the machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Facts {
+    /// The compiler that `cargo` runs here.
+    pub rust: Option<Rust>,
+    /// Whether there is a rustup to add a target with.
+    pub rustup: bool,
+    /// Whether the machine's owner forbids toolchains to be fetched.
+    pub fetching_forbidden: bool,
+    /// Version of the emulator.
+    pub qemu: Option<Version>,
+    /// Whether there is what the virtual board's processor is built with.
+    pub native: Native,
+    /// The packages, on a system that has Debian's.
+    pub debian: Option<Debian>,
+    /// Whether packages may be installed.
+    pub root: bool,
+}
 
-/// Looks at the machine. `lists_are_fresh`: the lists of packages have just been fetched.
-pub fn observe(lists_are_fresh: bool) -> Facts {
-    Facts {
-        rust: rust(),
-        rustup: says("rustup", &["--version"]).is_some(),
-        fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
-        qemu: says(QEMU, &["--version"]).as_deref().and_then(Version::find),
-        native: Native {
-            cmake: says("cmake", &["--version"]).is_some(),
-            make: says("make", &["--version"]).is_some(),
-            cxx: says("c++", &["--version"]).is_some(),
-            pkg_config: says("pkg-config", &["--version"]).is_some(),
-            libclang: has_libclang(),
-        },
-        debian: debian(lists_are_fresh),
-        root: nix::unistd::geteuid().is_root(),
+/// A compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rust {
+    /// Its version.
+    pub version: Version,
+    /// Whether it has `core` for the target.
+    pub has_target: bool,
+}
+
+/// What builds a library in C, and reads its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Native {
+    /// Whether there is cmake.
+    pub cmake: bool,
+    /// Whether there is make.
+    pub make: bool,
+    /// Whether there is a C++ compiler, which cmake asks for.
+    pub cxx: bool,
+    /// Whether there is pkg-config, without which the library's own configuration fails.
+    pub pkg_config: bool,
+    /// Whether there is libclang.
+    pub libclang: bool,
+}
+
+/// Debian's packages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Debian {
+    /// Whether the lists of packages have just been fetched, so that what they lack is not to be
+    /// had.
+    pub lists_are_fresh: bool,
+    /// Of each of [`Package::ALL`], in that order.
+    pub packages: [PackageState; Package::ALL.len()],
+}
+
+impl Debian {
+    pub(super) fn state(&self, package: Package) -> PackageState {
+        let index = Package::ALL.iter().position(|p| *p == package);
+        index.map_or(PackageState::Unknown, |index| self.packages[index])
     }
 }
 
-fn rust() -> Option<Rust> {
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let version = Version::find(&says(&rustc, &["--version"])?)?;
-    let folder = says(&rustc, &["--print", "target-libdir", "--target", TARGET]);
-    let has_target = folder.is_some_and(|folder| has_core(Path::new(folder.trim())));
-    Some(Rust { version, has_target })
+/// What is known of a package.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PackageState {
+    /// It is installed.
+    Installed(Version),
+    /// It could be installed.
+    Available(Version),
+    /// The lists do not have it.
+    Unknown,
 }
 
-/// Whether the library is where the build of bindings looks for it: where it was told to, among the
-/// system's libraries, or in an LLVM's folder.
-fn has_libclang() -> bool {
-    let listed = |libraries: String| {
-        libraries.lines().filter_map(|line| line.split_whitespace().next()).any(is_libclang)
-    };
-    std::env::var_os("LIBCLANG_PATH").is_some()
-        || says("ldconfig", &["-p"]).is_some_and(listed)
-        || llvm_has_libclang()
+/// A package that may be needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Package {
+    /// The compiler.
+    Rustc,
+    /// Cargo of the same version.
+    Cargo,
+    /// The source of `core`.
+    RustSource,
+    /// The linker.
+    Lld,
+    /// The emulator.
+    Qemu,
+    /// Builds the virtual board's processor.
+    Cmake,
+    /// Runs what cmake writes.
+    Make,
+    /// The compiler that cmake asks for.
+    Cxx,
+    /// Finds libraries for the library's own configuration.
+    PkgConfig,
+    /// Reads its header.
+    Libclang,
 }
 
-/// Whether a file is the library, by its name: `libclang.so`, `libclang-14.so`, and these with a
-/// version behind them. `libclang-cpp.so.14` is another one.
-fn is_libclang(file: &str) -> bool {
-    let Some((name, version)) = file.split_once(".so") else { return false };
-    let numbered = |text: &str| text.chars().all(|c| c.is_ascii_digit() || c == '.');
-    let is_named = name == "libclang" || name.strip_prefix("libclang-").is_some_and(numbered);
-    is_named && (version.is_empty() || version.starts_with('.'))
-}
+impl Package {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Rustc,
+        Self::Cargo,
+        Self::RustSource,
+        Self::Lld,
+        Self::Qemu,
+        Self::Cmake,
+        Self::Make,
+        Self::Cxx,
+        Self::PkgConfig,
+        Self::Libclang,
+    ];
+    /// Those that make a compiler for the target.
+    pub(super) const COMPILER: [Self; 4] = [Self::Rustc, Self::Cargo, Self::RustSource, Self::Lld];
 
-/// Debian keeps each version of LLVM in a folder of its own.
-fn llvm_has_libclang() -> bool {
-    let named = |entry: &DirEntry, start| entry.file_name().to_string_lossy().starts_with(start);
-    let entries = |folder: &Path| folder.read_dir().into_iter().flatten().flatten();
-    entries(Path::new("/usr/lib")).filter(|entry| named(entry, "llvm-")).any(|llvm| {
-        entries(&llvm.path().join("lib"))
-            .any(|library| is_libclang(&library.file_name().to_string_lossy()))
-    })
-}
-
-/// Whether a folder of libraries holds a compiled `core`.
-fn has_core(folder: &Path) -> bool {
-    let Ok(entries) = folder.read_dir() else { return false };
-    entries.flatten().any(|entry| {
-        let name = entry.file_name();
-        name.to_string_lossy().starts_with("libcore-") && name.to_string_lossy().ends_with(".rlib")
-    })
-}
-
-fn debian(lists_are_fresh: bool) -> Option<Debian> {
-    says("apt-get", &["--version"])?;
-    Some(Debian { lists_are_fresh, packages: Package::ALL.map(package) })
-}
-
-fn package(package: Package) -> PackageState {
-    let name = package.name();
-    let installed = says("dpkg-query", &["-W", "-f=${db:Status-Status} ${Version}", name])
-        .and_then(|state| Version::find(state.strip_prefix("installed ")?));
-    if let Some(version) = installed {
-        return PackageState::Installed(version);
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rustc => "rustc-web",
+            Self::Cargo => "cargo-web",
+            Self::RustSource => "rust-web-src",
+            Self::Lld => "lld",
+            Self::Qemu => "qemu-system-arm",
+            Self::Cmake => "cmake",
+            Self::Make => "make",
+            Self::Cxx => "g++",
+            Self::PkgConfig => "pkg-config",
+            Self::Libclang => "libclang-dev",
+        }
     }
-    let candidate = says("apt-cache", &["policy", name]).and_then(|policy| {
-        let line = policy.lines().find_map(|line| line.trim().strip_prefix("Candidate:"))?;
-        Version::find(line)
-    });
-    candidate.map_or(PackageState::Unknown, PackageState::Available)
-}
 
-/// What a program prints, if it is there and content.
-fn says(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program)
-        .args(arguments)
-        // What is read here is not to depend on the person's language.
-        .env("LC_ALL", "C")
-        .stdin(Stdio::null())
-        .output()
-        .ok()?;
-    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::is_libclang;
-
-    #[test]
-    fn a_library_with_a_longer_name_is_another_one() {
-        for file in ["libclang.so", "libclang-14.so", "libclang.so.1", "libclang-14.so.14.0.6"] {
-            assert!(is_libclang(file), "{file}");
+    /// Its oldest version that serves.
+    const fn oldest(self) -> Option<Version> {
+        match self {
+            Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),
+            Self::Qemu => Some(Version::QEMU),
+            Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::PkgConfig | Self::Libclang => {
+                None
+            }
         }
-        for file in ["libclang-cpp.so.14", "libclang-cpp.so", "libclangFormat.a", "libclang.a"] {
-            assert!(!is_libclang(file), "{file}");
-        }
+    }
+
+    pub(super) fn is_served_by(self, version: Version) -> bool {
+        self.oldest().is_none_or(|oldest| version >= oldest)
     }
 }

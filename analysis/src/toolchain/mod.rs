@@ -1,6 +1,6 @@
 //! How programs for the board are built: the one place that knows.
 //!
-//! [`prepare`] looks at the machine ([`facts`]), chooses a route ([`plan`], a pure function), takes
+//! [`prepare`] looks at the machine ([`observe`]), chooses a route ([`plan`], a pure function), takes
 //! it, and gives a [`Toolchain`]; everything else asks that.
 
 mod apt;
@@ -8,6 +8,8 @@ mod board;
 mod build;
 pub mod facts;
 mod memory;
+pub mod observe;
+mod output;
 pub mod plan;
 mod prepare;
 pub mod probe;
@@ -22,7 +24,7 @@ pub use memory::Memory;
 pub use plan::Tools;
 pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
-pub use sources::Sources;
+pub use sources::{Sources, SourcesError};
 pub use version::Version;
 
 /// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.

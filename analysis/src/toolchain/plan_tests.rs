@@ -1,5 +1,6 @@
 //! The routes, machine by machine.
 
+use super::super::facts::Debian;
 use super::*;
 
 const OLD: Version = Version { major: 1, minor: 85 };

@@ -5,7 +5,8 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use super::apt::{Apt, AptError, person_agrees};
 use super::build::{Toolchain, Workspace};
-use super::facts::observe;
+use super::observe::observe;
+use super::output::last_lines;
 use super::plan::{Plan, Request, Step, Tools, plan};
 use super::{BuildError, TARGET};
 
@@ -140,10 +141,4 @@ pub fn install(packages: &[&str], progress: impl Fn(&str)) -> Result<(), AptErro
         }
         result => result,
     }
-}
-
-/// The end of a long text.
-pub(super) fn last_lines(text: &str, count: usize) -> String {
-    let lines: Vec<_> = text.lines().collect();
-    lines[lines.len().saturating_sub(count)..].join("\n")
 }

@@ -4,8 +4,6 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::BuildError;
-
 /// The call that makes a scene's file a program; a file without it is another program.
 const SCENE: &str = "scene_program!";
 
@@ -13,6 +11,41 @@ const SCENE: &str = "scene_program!";
 #[derive(Clone, Debug)]
 pub struct Sources {
     folder: PathBuf,
+}
+
+/// What can be wrong with the programs' source.
+#[derive(Debug, thiserror::Error)]
+pub enum SourcesError {
+    /// The source is not where it was when this program was built.
+    #[error("the workspace is no longer at {0}: run `haptic` from it by `cargo haptic`")]
+    NoWorkspace(PathBuf),
+    /// A file could not be read or written.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is no such scene.
+    #[error("there is no scene {name}; there are {}", .scenes.join(", "))]
+    NoScene {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        scenes: Vec<String>,
+    },
+    /// A new scene cannot have this name.
+    #[error("a scene cannot be called `{name}`: {why}")]
+    Name {
+        /// The name.
+        name: String,
+        /// Why not.
+        why: BadName,
+    },
+    /// A new scene's file is there.
+    #[error("{} is there already; it is left as it is", .0.display())]
+    Exists(PathBuf),
 }
 
 /// Why a name is no name for a new scene.
@@ -36,14 +69,16 @@ pub enum BadName {
 const LONGEST: usize = 32;
 
 /// What else a scene's module or program could be mistaken for: words of the language, crates that a
-/// scene's file uses, the programs and tests of the firmware, and cargo's own folders.
-const TAKEN: [&str; 59] = [
+/// scene's file uses, the programs and tests of the workspace, and cargo's own folders.
+const TAKEN: &[&str] = &[
     "abstract",
+    "adversary",
     "analysis",
     "as",
     "async",
     "await",
     "become",
+    "board",
     "box",
     "break",
     "build",
@@ -68,6 +103,8 @@ const TAKEN: [&str; 59] = [
     "fn",
     "for",
     "gen",
+    "haptic",
+    "harness",
     "if",
     "impl",
     "in",
@@ -83,15 +120,32 @@ const TAKEN: [&str; 59] = [
     "mut",
     "on_target",
     "override",
+    "paddle",
     "player",
+    "priv",
     "program",
+    "pub",
+    "raw",
     "ref",
+    "refusals",
+    "return",
+    "safe",
+    "self",
+    "static",
     "std",
+    "struct",
+    "super",
     "survey",
     "test",
+    "tests",
+    "trait",
     "trial",
     "try",
     "type",
+    "typeof",
+    "union",
+    "unsafe",
+    "unsized",
     "use",
     "virtual",
     "where",
@@ -99,15 +153,19 @@ const TAKEN: [&str; 59] = [
     "yield",
 ];
 
+/// The root of the workspace that this program was built from.
+pub(super) fn workspace_root() -> Result<PathBuf, SourcesError> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    root.canonicalize().map_err(|_| SourcesError::NoWorkspace(root))
+}
+
 impl Sources {
     /// Those of the workspace that this program was built from.
     ///
     /// # Errors
     /// Where it is no longer there.
-    pub fn find() -> Result<Self, BuildError> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let root = root.canonicalize().map_err(|_| BuildError::NoWorkspace(root))?;
-        Ok(Self::of(&root))
+    pub fn find() -> Result<Self, SourcesError> {
+        Ok(Self::of(&workspace_root()?))
     }
 
     /// Those of a workspace.
@@ -124,8 +182,8 @@ impl Sources {
     ///
     /// # Errors
     /// Where the folder cannot be read.
-    pub fn programs(&self) -> Result<Vec<String>, BuildError> {
-        let failed = |source| BuildError::File { path: self.folder.clone(), source };
+    pub fn programs(&self) -> Result<Vec<String>, SourcesError> {
+        let failed = |source| SourcesError::File { path: self.folder.clone(), source };
         let mut programs = Vec::new();
         for entry in self.folder.read_dir().map_err(failed)? {
             let path = entry.map_err(failed)?.path();
@@ -143,7 +201,7 @@ impl Sources {
     ///
     /// # Errors
     /// Where the folder cannot be read.
-    pub fn scenes(&self) -> Result<Vec<String>, BuildError> {
+    pub fn scenes(&self) -> Result<Vec<String>, SourcesError> {
         let mut programs = self.programs()?;
         programs.retain(|name| {
             fs::read_to_string(self.file(name)).is_ok_and(|text| text.contains(SCENE))
@@ -156,28 +214,35 @@ impl Sources {
     ///
     /// # Errors
     /// Where the name is no good or taken, or there is no such other one.
-    pub fn begin(&self, name: &str, from: &str) -> Result<PathBuf, BuildError> {
-        check(name).map_err(|why| BuildError::Name { name: name.into(), why })?;
+    pub fn begin(&self, name: &str, from: &str) -> Result<PathBuf, SourcesError> {
+        check(name).map_err(|why| SourcesError::Name { name: name.into(), why })?;
         let scenes = self.scenes()?;
         if !scenes.iter().any(|scene| scene == from) {
-            return Err(BuildError::NoScene { name: from.into(), scenes });
+            return Err(SourcesError::NoScene { name: from.into(), scenes });
         }
-        let failed = |path: &Path, source| BuildError::File { path: path.into(), source };
+        let failed = |path: &Path, source| SourcesError::File { path: path.into(), source };
         let (other, path) = (self.file(from), self.file(name));
         let text = fs::read_to_string(&other).map_err(|source| failed(&other, source))?;
         let rest = text.lines().skip_while(|line| line.starts_with("//!"));
         let head = format!("//! The scene {name}, begun as a copy of {from}.");
         let text: String =
             std::iter::once(head.as_str()).chain(rest).flat_map(|line| [line, "\n"]).collect();
+        let text = on_own_device(&text);
         // Never over a file that is there, however it got there meanwhile.
         match File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes())) {
             Ok(()) => Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                Err(BuildError::Exists(path))
+                Err(SourcesError::Exists(path))
             }
             Err(source) => Err(failed(&path, source)),
         }
     }
+}
+
+/// The text of a scene that came with the project, with the device of whoever goes on with it: that is
+/// what the new scene is to be certified against.
+fn on_own_device(text: &str) -> String {
+    text.replace("mod paddle;", "mod device;").replace("paddle::", "device::")
 }
 
 /// Whether a scene may be called that.

@@ -1,6 +1,6 @@
 //! The simulated hardware of a board.
 
-use firmware::cycle::Lines;
+use firmware::board::in_time::Lines;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::servo::OutputTiming;

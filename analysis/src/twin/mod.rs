@@ -14,11 +14,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use firmware::board::in_time::InTime;
 use firmware::boot::{self, Program};
-use firmware::cycle::{FrameQueue, InTime, Mailbox};
+use firmware::cycle::{FrameQueue, Mailbox};
 use firmware::number::Number;
-use firmware::servo::{OutputMode, RenderError, Renders, Step};
-use firmware::tuning::{self, Tunable};
+use firmware::servo::{OutputMode, Renders, Step};
+use firmware::tuning::{self, RenderError, Tunable};
 use firmware::wire::{Facts, Session};
 
 use self::board::Board;

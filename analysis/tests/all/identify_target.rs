@@ -93,8 +93,14 @@ fn a_device_that_is_not_rigid_is_said_to_be_none() {
                  [[device.link]]\nstiffness = 2.0\ndamping = 0.001\n";
     std::io::Write::write_all(&mut file, chain.as_bytes()).unwrap();
     let path = file.path().to_str().unwrap();
-    let found = answer(&["identify", path, "--target", "host"]);
-    assert_eq!(found["rigid"], false, "{found}");
+    let table = tempfile::NamedTempFile::new().unwrap();
+    let into = ["-o", table.path().to_str().unwrap()];
+    let run = haptic(&[&["identify", path, "--target", "host", "--json"][..], &into].concat());
+    assert_eq!(run.status.code(), Some(1));
+    let found: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!((&found["rigid"], &found["passivity"]), (&false.into(), &Value::Null), "{found}");
+    assert!(found["notes"][0].as_str().unwrap().contains("a hand that holds its far end"));
+    assert!(std::fs::read_to_string(table.path()).unwrap().contains("# passivity: none"));
     let delta = number(&answer(&["device", path]), "/delta");
     let measured = number(&found, "/disk/delta");
     assert!((delta..1.1 * delta).contains(&measured), "{measured} {delta}");

@@ -107,14 +107,25 @@ fn a_name_that_cannot_be_one_is_refused() {
     }
 }
 
-/// So that whoever measures a device changes one file.
+/// So that whoever measures a device changes one file, and that no scene which comes with the project
+/// stops compiling for it.
 #[test]
-fn the_device_of_all_scenes_is_written_once() {
+fn a_device_is_written_once() {
     let folder = root().join("firmware/src/bin");
-    assert!(read(folder.join("device/mod.rs")).contains("DEVICE: Device = Device {"));
-    for name in ["damper_wall", "delayed_spring", "free_mode", "identify"] {
+    for device in ["device", "paddle"] {
+        let text = read(folder.join(device).join("mod.rs"));
+        assert!(text.contains("DEVICE: Device = Device {"), "{device}");
+    }
+    for (name, device) in [
+        ("damper_wall", "paddle"),
+        ("delayed_spring", "paddle"),
+        ("supervised_spring", "paddle"),
+        ("free_mode", "paddle"),
+        ("identify", "device"),
+    ] {
         let text = read(folder.join(name).with_extension("rs"));
-        assert!(text.contains("mod device;") && text.contains("device::TRANSDUCERS"), "{name}");
+        let from_there = [format!("mod {device};"), format!("{device}::TRANSDUCERS")];
+        assert!(from_there.iter().all(|part| text.contains(part)), "{name}");
         assert!(!text.contains("inertia:") && !text.contains("counts_per_turn"), "{name}");
     }
 }

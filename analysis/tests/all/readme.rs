@@ -11,7 +11,7 @@ const DOCUMENTS: [&str; 6] = [
     "firmware/PROTOCOL.md",
     "firmware/THEORY.md",
     "firmware/TROUBLESHOOTING.md",
-    "tests/board/faults.md",
+    "analysis/virtual-board/faults.md",
 ];
 
 /// The fenced block behind `<!-- name -->` in the README.

@@ -260,7 +260,7 @@ fn chain_with_lag_and_sine() {
 fn motions_that_methods_are_compared_on() {
     let zero = || r(0.0);
     let spring = |x: &Real| r(300.0) * x.clone();
-    let [rigid, chain] = analysis::tradeoff::simulation::cases();
+    let [rigid, chain] = analysis::studies::tradeoff::simulation::cases();
     let per = |x: f64| r(x) / r(0.05);
     let rates =
         vec![vec![zero(), r(1.0), zero(), zero()], vec![zero(), per(-0.5), per(1.0), per(1.0)]];

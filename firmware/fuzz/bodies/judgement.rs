@@ -2,9 +2,10 @@
 
 use std::sync::OnceLock;
 
+use firmware::board::in_time::{InTime, Lines};
 use firmware::boot::Program;
 use firmware::certificate::Parameter;
-use firmware::cycle::{Cycle, FrameQueue, Frames, InTime, Inbox, Lines, Mailbox, Options};
+use firmware::cycle::{Cycle, FrameQueue, Frames, Inbox, Mailbox, Options};
 use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};

@@ -2,19 +2,19 @@
 //! second example (equations 24 to 27), at the paper's numbers.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-mod device;
+mod paddle;
 
-pub use device::TRANSDUCERS;
 use firmware::certificate::Certified;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::scene::{Coupling, Scene, Timing};
+pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.
 pub type Environment = OneSided<DamperWall<1>>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
-    device: device::DEVICE,
+    device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },

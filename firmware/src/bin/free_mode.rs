@@ -2,7 +2,7 @@
 //! (equations 22 and 23).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-mod device;
+mod paddle;
 
 use firmware::certificate::Certified;
 use firmware::environment::FreeMode;
@@ -15,7 +15,7 @@ pub type Environment = FreeMode<1>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {
-    device: device::DEVICE,
+    device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
@@ -30,7 +30,7 @@ pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 /// The device's, but for the amplifier's gain. Full scale is what a speed of 12 rad/s needs: half a
 /// step of the converter keeps a device without friction turning at that torque over the residual,
 /// and the finer the step, the slower.
-pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..device::TRANSDUCERS };
+pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..paddle::TRANSDUCERS };
 
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.
 pub type Fixed = fixed::types::I12F20;

@@ -15,10 +15,16 @@ pub const PERIOD: f64 = 0.001;
 
 /// How far and how fast the device may move, beyond which the sweep ends and the amplifier goes off:
 /// half as far again as the tones below move the device that they are made for, and faster by a fifth.
-pub const LIMITS: MotionLimits = MotionLimits { travel: 0.7, speed: 85.0 };
+pub const LIMITS: MotionLimits =
+    MotionLimits { travel: 0.7, speed: 0.85 * TRANSDUCERS.largest_speed };
 
-/// The tones, up to a quarter of the sampling rate, for a device with 2e-5 kg m^2 and 0.02 N m s/rad
-/// or so: at low frequencies as much torque as makes a fifth of a radian, at high ones as much as
+/// A part of the torque at the motor's full scale, in N m.
+const fn part(part: f64) -> f64 {
+    part * TRANSDUCERS.full_scale_torque
+}
+
+/// The tones, up to a quarter of the sampling rate, for a device with 2e-5 kg m^2, 0.02 N m s/rad and
+/// 2 N m or so: at low frequencies as much torque as makes a fifth of a radian, at high ones as much as
 /// the motor has to spare, since the damping is told from a skew only where inertia outweighs it. A
 /// heavier device needs more torque or lower frequencies; the host says so where the motion is lost
 /// in counts.
@@ -29,16 +35,16 @@ pub static SWEEP: Sweep<10> = Sweep::planned(
     PERIOD,
     &TRANSDUCERS,
     [
-        Tone { frequency: 1.0, amplitude: 0.03, settle: 1, measured: 8 },
-        Tone { frequency: 2.0, amplitude: 0.06, settle: 1, measured: 12 },
-        Tone { frequency: 4.0, amplitude: 0.11, settle: 2, measured: 20 },
-        Tone { frequency: 8.0, amplitude: 0.22, settle: 4, measured: 32 },
-        Tone { frequency: 16.0, amplitude: 0.45, settle: 8, measured: 64 },
-        Tone { frequency: 32.0, amplitude: 0.9, settle: 16, measured: 128 },
-        Tone { frequency: 64.0, amplitude: 1.6, settle: 32, measured: 256 },
-        Tone { frequency: 100.0, amplitude: 1.6, settle: 50, measured: 400 },
-        Tone { frequency: 160.0, amplitude: 1.6, settle: 80, measured: 640 },
-        Tone { frequency: 240.0, amplitude: 1.6, settle: 120, measured: 960 },
+        Tone { frequency: 1.0, amplitude: part(0.015), settle: 1, measured: 8 },
+        Tone { frequency: 2.0, amplitude: part(0.03), settle: 1, measured: 12 },
+        Tone { frequency: 4.0, amplitude: part(0.055), settle: 2, measured: 20 },
+        Tone { frequency: 8.0, amplitude: part(0.11), settle: 4, measured: 32 },
+        Tone { frequency: 16.0, amplitude: part(0.225), settle: 8, measured: 64 },
+        Tone { frequency: 32.0, amplitude: part(0.45), settle: 16, measured: 128 },
+        Tone { frequency: 64.0, amplitude: part(0.8), settle: 32, measured: 256 },
+        Tone { frequency: 100.0, amplitude: part(0.8), settle: 50, measured: 400 },
+        Tone { frequency: 160.0, amplitude: part(0.8), settle: 80, measured: 640 },
+        Tone { frequency: 240.0, amplitude: part(0.8), settle: 120, measured: 960 },
     ],
 );
 

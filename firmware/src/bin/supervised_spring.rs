@@ -2,21 +2,21 @@
 //! options of a program, on top of a scene.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-mod device;
+mod paddle;
 
-pub use device::TRANSDUCERS;
 use firmware::certificate::Certified;
 use firmware::cycle::{LinkPolicy, Options};
 use firmware::environment::DelayedSpring;
 use firmware::scene::{Coupling, Scene, Timing};
 use firmware::servo::RenderingOptions;
+pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.
 pub type Environment = DelayedSpring<1>;
 
 /// The scene: half as stiff as the device allows, which leaves room for damping.
 pub const SCENE: Scene<Environment> = Scene {
-    device: device::DEVICE,
+    device: paddle::DEVICE,
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: DelayedSpring { stiffness: 14.0 },

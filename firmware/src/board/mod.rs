@@ -6,15 +6,10 @@
 //!
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
+pub mod in_time;
 pub mod input_filter;
-pub mod period;
-pub mod play;
-pub mod question;
 pub mod report;
 pub mod shown;
-#[cfg(feature = "sines")]
-pub mod trial;
-pub mod words;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
 #[allow(unsafe_code)]

@@ -4,10 +4,11 @@
 use core::f64::consts::PI;
 use core::fmt;
 
+use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{Loop, Numbers};
 use super::rest::{Rest, Steps};
-use super::rules::{Assessment, is_nonlinear, wall_of};
+use super::rules::is_nonlinear;
 use super::timed::limited_bound;
 use crate::environment::Environment;
 use crate::passivity::discrete::index;
@@ -261,7 +262,7 @@ impl Assumptions {
             passes: assessment.outcome.is_ok(),
         }));
         list.push(delay(&scene.environment));
-        let one_sided = wall_of(&scene.environment).is_some_and(|wall| wall.one_sided);
+        let one_sided = scene.environment.wall().is_some_and(|wall| wall.one_sided);
         let bound = assessment.bound.map(Interval::hi);
         list.push(one_sided.then_some(Assumption::OneSided { bound }));
         list.push(saturation(scene, assessment, steps));

@@ -33,7 +33,7 @@
 
 use super::model::Numbers;
 use super::parameter::Parameter;
-use super::rules::{is_nonlinear, wall_of};
+use super::rules::is_nonlinear;
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::scene::Scene;
@@ -69,7 +69,7 @@ pub(super) const fn between(
 }
 
 const fn is_affine_in_wall(scene: &Scene, n: &Numbers) -> bool {
-    let is_late = matches!(wall_of(&scene.environment), Some(wall) if wall.delay > 0);
+    let is_late = matches!(scene.environment.wall(), Some(wall) if wall.delay > 0);
     let is_soft = n.missed.is_some() || !n.is_standard && n.excess_compliance().hi() > 0.0;
     (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
 }
@@ -87,7 +87,7 @@ const fn is_affine_in_residual(scene: &Scene, n: &Numbers) -> bool {
 ///   stiffness.
 /// - In the nonlinear rule, an undelayed damper without a filter adds nothing to the bound.
 const fn between_periods(scene: &Scene, n: &Numbers, longest: f64) -> Between {
-    let wall = wall_of(&scene.environment);
+    let wall = scene.environment.wall();
     let cancels = !n.cancelled.is_zero();
     let damping = match wall {
         Some(wall) => wall.damping,

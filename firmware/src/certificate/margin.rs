@@ -4,9 +4,10 @@
 //! not the one for which an index was compared with `delta`. So the margin is not `delta` less the
 //! index.
 
+use super::assessment::Assessment;
 use super::model::{Missed, Numbers, largest_gain, largest_solved};
 use super::posed::Posed;
-use super::rules::{Answer, Assessment, Rule, paper_limit};
+use super::rules::{Answer, Rule, paper_limit};
 use crate::passivity::bernstein::Closeness;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};

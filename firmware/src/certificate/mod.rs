@@ -28,8 +28,10 @@
 //! assert!(rejection.to_string().contains("it would pass with stiffness <= 23.9 N m/rad"));
 //! ```
 
+mod assessment;
 mod assumption;
 mod between;
+mod certify_scene;
 mod digits;
 mod margin;
 mod model;
@@ -37,27 +39,33 @@ mod parameter;
 mod posed;
 mod rejection;
 mod remedy;
+mod remedy_search;
 mod rest;
 mod rules;
 mod secant;
 mod timed;
 mod varied;
 
+pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, Assumptions, Standing};
+pub use certify_scene::CertifyScene;
 pub use model::Loop;
 pub use parameter::{InvalidParameter, Parameter};
 pub use posed::Posed;
-pub use rejection::{Rejection, Sentence};
+pub use rejection::Rejection;
 pub use remedy::{Remedies, Remedy};
 pub use rest::{Rest, Steps};
-pub use rules::{Answer, Assessment, Rule, assess, assess_in, gamma};
+pub use rules::{Answer, Rule, gamma};
 pub use timed::{Timed, TimingError};
+
+pub use crate::text::Sentence;
 
 use crate::environment::*;
 use crate::number::Format;
+use crate::output_timing::OutputMode;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, Renders, Step};
-use rules::{Extent, assessed};
+use crate::step::Step;
+use assessment::{Extent, assessed};
 
 /// A scene that was proved passive.
 ///
@@ -92,7 +100,7 @@ pub const fn certify_in(scene: &Scene, format: Format) -> Result<Assessment, Rej
     let assessment = assessed(scene, format, Extent::OwnRule);
     match assessment.outcome {
         Ok(()) => Ok(assessment),
-        Err(rejection) => Err(remedy::with_remedies(rejection, scene, format)),
+        Err(rejection) => Err(remedy_search::with_remedies(rejection, scene, format)),
     }
 }
 

@@ -6,7 +6,6 @@
 //! is what was written, to the digits of a double.
 
 use super::parameter::first_invalid;
-use super::rules::wall_of;
 use crate::environment::{Environment, MAX_DEGREE, Rational, Wall};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
@@ -395,7 +394,7 @@ const fn exactly_solved_bound<const CANCELS: bool>(
     n: &Numbers,
 ) -> Option<Interval> {
     // A spring that pulls away is no monotone law.
-    if matches!(wall_of(environment), Some(w) if w.stiffness < 0.0) {
+    if matches!(environment.wall(), Some(w) if w.stiffness < 0.0) {
         return None;
     }
     match environment {

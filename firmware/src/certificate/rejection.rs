@@ -7,10 +7,7 @@ use super::remedy::{Remedies, Remedy};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::Doubt;
-use crate::text::Text;
-
-/// A sentence about a scene.
-pub type Sentence = Text<640>;
+use crate::text::Sentence;
 
 /// Why a scene was not certified. Indices in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,17 +1,8 @@
-//! What would pass: each rejection's condition inverted for one number at a time.
+//! What would pass instead of a scene that is rejected.
 
 use core::fmt;
 
-use super::between::passes_upwards;
-use super::digits::{Digits, Side};
-use super::model::Numbers;
 use super::parameter::Parameter;
-use super::posed::Posed;
-use super::rejection::Rejection;
-use super::varied::{FARTHEST, Varied};
-use crate::environment::Environment;
-use crate::number::Format;
-use crate::scene::{Coupling, Scene};
 use crate::text::Text;
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
@@ -32,11 +23,11 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    const fn exactly(parameter: Parameter, value: f64) -> Self {
+    pub(super) const fn exactly(parameter: Parameter, value: f64) -> Self {
         Self { parameter, lowest: Some(value), highest: Some(value) }
     }
 
-    const fn at_least(parameter: Parameter, value: f64) -> Self {
+    pub(super) const fn at_least(parameter: Parameter, value: f64) -> Self {
         Self { parameter, lowest: Some(value), highest: None }
     }
 
@@ -75,11 +66,11 @@ impl fmt::Display for Remedy {
     }
 }
 
-const CANDIDATES: usize = 6;
+pub(super) const CANDIDATES: usize = 6;
 
 /// The numbers that are looked at, in the order in which they are printed. What more of a device
 /// would help is the damping where its passivity is not declared.
-const ORDER: [Parameter; CANDIDATES] = [
+pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::Stiffness,
     Parameter::Damping,
     Parameter::Residual,
@@ -138,7 +129,7 @@ impl Remedies {
         })
     }
 
-    const fn put(&mut self, i: usize, found: Option<Remedy>) {
+    pub(super) const fn put(&mut self, i: usize, found: Option<Remedy>) {
         let Some(Remedy { parameter, lowest, highest }) = found else { return };
         self.ranges[i] = Range {
             lowest: match lowest {
@@ -168,199 +159,5 @@ impl Remedies {
             i += 1;
         }
         written
-    }
-}
-
-/// The rejection with the remedies that there are, where a remedy makes sense.
-pub(super) const fn with_remedies(
-    rejection: Rejection,
-    scene: &Scene,
-    format: Format,
-) -> Rejection {
-    let mut out = rejection;
-    match &mut out {
-        Rejection::Shortage { remedies, .. }
-        | Rejection::Missed { remedies, .. }
-        | Rejection::Coupling { remedies, .. }
-        | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
-        Rejection::UnstablePole { of_coupling: true, remedies, behind_standard, .. } => {
-            *remedies = search(scene, format);
-            *behind_standard = softer_behind_standard(scene, format);
-        }
-        _ => {}
-    }
-    out
-}
-
-const fn search(scene: &Scene, format: Format) -> Remedies {
-    let own = shortage(scene, format);
-    let mut found = Remedies::NONE;
-    let mut i = 0;
-    while i < CANDIDATES {
-        let varied = Varied { scene, format, parameter: ORDER[i] };
-        let remedy = match ORDER[i] {
-            Parameter::CouplingStiffness => standard_coupling(&varied),
-            Parameter::Passivity => more_damping(scene, format),
-            _ => varied.remedy(own),
-        };
-        found.put(i, remedy);
-        i += 1;
-    }
-    found
-}
-
-/// The stiffness with which the scene passes behind the standard coupling to three digits, on the soft
-/// side, where that coupling alone is not enough. In a frame of its own, for the second scene.
-#[inline(never)]
-const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, Remedy)> {
-    let numbers = Numbers::of(scene, format);
-    let standard = numbers.standard_stiffness().midpoint();
-    let stiffness = Digits::of(standard, Side::Below).value();
-    let standard = Scene { coupling: Coupling::Spring { stiffness }, ..*scene };
-    let own = shortage(&standard, format);
-    if matches!(own, Some(own) if own < 0.0) {
-        return None;
-    }
-    let varied = Varied { scene: &standard, format, parameter: Parameter::Stiffness };
-    match varied.remedy(own) {
-        Some(remedy) => Some((stiffness, remedy)),
-        None => None,
-    }
-}
-
-/// What the scene lacks as it is.
-#[inline(never)]
-const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
-        Ok(posed) => posed.shortage(),
-        Err(_) => None,
-    }
-}
-
-/// The standard coupling, `2 delta / T`, if that passes and is not what the scene has: in as few
-/// digits as pass, on the soft side.
-const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
-    let numbers = Numbers::of(varied.scene, varied.format);
-    if numbers.is_standard {
-        return None;
-    }
-    let value = numbers.standard_stiffness().midpoint();
-    let mut digits = Digits::of(value, Side::Below);
-    if digits.value() != value && !varied.is_certified(value) {
-        return None;
-    }
-    let mut count = 3;
-    loop {
-        if digits.are_read_back() && varied.is_certified(digits.value()) {
-            return Some(Remedy::exactly(varied.parameter, digits.value()));
-        }
-        if count == Digits::MOST || digits.value() == value {
-            return None;
-        }
-        count += 1;
-        digits = Digits::so_many(count, value, Side::Below);
-    }
-}
-
-/// A device with more damping; where its passivity was declared, with more of that, up to the
-/// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
-const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
-    let cancels = matches!(
-        scene.environment,
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
-    );
-    let parameter = match scene.device.passivity {
-        Some(_) => Parameter::Passivity,
-        None if !cancels => Parameter::DeviceDamping,
-        None => return None,
-    };
-    let numbers = Numbers::of(scene, format);
-    let Some(needed) = needed_passivity(scene, format) else { return None };
-    // A device gives only so much of its passivity as its longest period leaves.
-    let scale = match scene.timing.worst_period {
-        Some(worst) => worst / scene.timing.period,
-        None => 1.0,
-    };
-    if needed > FARTHEST * numbers.delta.hi() {
-        return None;
-    }
-    let varied = Varied { scene, format, parameter };
-    match varied.certified(Digits::of(needed * scale, Side::Above), Side::Above) {
-        Some(value) if passes_upwards(scene, &numbers, value / scale) => {
-            Some(Remedy::at_least(parameter, value))
-        }
-        Some(value) => Some(Remedy::exactly(parameter, value)),
-        None => None,
-    }
-}
-
-/// In a frame of its own, as what it calls.
-#[inline(never)]
-const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
-    match Posed::in_format(scene, format) {
-        Ok(posed) => posed.needed_passivity(),
-        Err(_) => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::certificate::certify;
-    use crate::environment::Wall;
-    use crate::scene::{Device, Timing};
-
-    fn scene(stiffness: f64, coupling: Coupling) -> Scene {
-        Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling,
-            environment: Environment::DamperWall(Wall {
-                stiffness,
-                damping: 0.01,
-                filter: None,
-                delay: 1,
-                face: 0.0,
-                one_sided: false,
-            }),
-            torque_limit: None,
-        }
-    }
-
-    /// The README's wall, too stiff for its device and with a coupling that makes it swing by itself.
-    #[test]
-    fn a_pole_that_the_coupling_makes_has_remedies() {
-        for coupling in [Coupling::Rigid, Coupling::Spring { stiffness: 1e4 }] {
-            let rejection = certify(&scene(100.0, coupling)).unwrap_err();
-            let sentence = rejection.sentence();
-            let sentence = sentence.as_str();
-            assert_eq!(rejection.reason(), "unstable_pole", "{sentence}");
-            assert!(sentence.contains("behind this coupling"), "{sentence}");
-            let softer = rejection.remedies().iter().find_map(|remedy| match remedy.parameter {
-                Parameter::Stiffness => remedy.highest,
-                _ => None,
-            });
-            let softer = softer.unwrap_or_else(|| panic!("{sentence}"));
-            assert!(certify(&scene(softer, coupling)).is_ok(), "{sentence}");
-            let Rejection::UnstablePole { behind_standard: Some((stiffness, remedy)), .. } =
-                rejection
-            else {
-                panic!("{sentence}");
-            };
-            let (standard, most) = (Coupling::Spring { stiffness }, remedy.highest.unwrap());
-            assert_eq!((stiffness, most), (44.0, 23.9), "{sentence}");
-            assert!(most > softer && certify(&scene(most, standard)).is_ok(), "{sentence}");
-        }
-        // Nothing is said of a coupling where the environment swings alone.
-        let mut alone = scene(20.0, Coupling::Rigid);
-        alone.environment = Environment::Rational(crate::environment::Rational {
-            numerator: crate::environment::Coefficients::new(&[1.0]).unwrap(),
-            denominator: crate::environment::Coefficients::new(&[1.0, -1.5]).unwrap(),
-            delay: 0,
-            unit_zeros: 0,
-        });
-        let rejection = certify(&alone).unwrap_err();
-        assert_eq!((rejection.reason(), rejection.remedies()), ("unstable_pole", Remedies::NONE));
-        assert!(!rejection.to_string().contains("coupling"), "{rejection}");
     }
 }

@@ -16,15 +16,15 @@ use core::f64::consts::TAU;
 use core::fmt;
 
 use super::model::{Loop, Numbers, Washout, canceller, damper};
-use super::rules::{is_nonlinear, wall_of};
+use super::rules::is_nonlinear;
 use crate::dac::DacCode;
 use crate::environment::{Environment, Rational};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
 use crate::scene::Scene;
-use crate::servo::Transducers;
 use crate::text::{AtMost, Written};
+use crate::transducers::Transducers;
 
 /// What a device is besides the numbers of a scene, as far as it was stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -157,7 +157,7 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     }
     let alone = l1_norm(&environment)?;
     let fed_back = alone * compliance(scene, format);
-    let switched = wall_of(&scene.environment).is_some_and(|w| w.one_sided && w.damping != 0.0);
+    let switched = scene.environment.wall().is_some_and(|w| w.one_sided && w.damping != 0.0);
     Some(if fed_back < 1.0 {
         Peak { norm: linear.max(alone / (1.0 - fed_back)), in_any_motion: !switched }
     } else {
@@ -207,7 +207,7 @@ fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
         let gain = state.gain.magnitude() / scene.timing.period;
         gain * angle * roundings(format, 1.0, 2.0) / (1.0 - state.pole.magnitude())
     };
-    let filter = wall_of(&scene.environment).filter(|wall| wall.filter.is_some());
+    let filter = scene.environment.wall().filter(|wall| wall.filter.is_some());
     let cancels = matches!(
         scene.environment,
         Environment::FreeMode { .. } | Environment::FreeModeWall { .. }

@@ -3,16 +3,7 @@
 #[cfg(doc)]
 use super::model::Missed;
 use super::model::Numbers;
-use super::parameter::first_invalid;
-use super::posed::Posed;
-use super::rejection::Rejection;
-use super::remedy::Remedies;
-use crate::environment::{Environment, Wall};
-use crate::number::Format;
-use crate::passivity::bernstein::Closeness;
-use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
-use crate::passivity::poles::{Doubt, Obstacle};
 use crate::scene::Scene;
 
 /// Answer of one rule.
@@ -35,42 +26,6 @@ pub enum Rule {
     Nonlinear,
 }
 
-/// Everything that is known about a scene after judging it. Indices in N m s/rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Assessment {
-    /// Index `alpha` of the environment alone; `None` where it does not exist.
-    pub alpha: Option<Interval>,
-    /// Index of `E'`, the environment that behind the standard coupling gives the same controller.
-    pub alpha_coupled: Option<Interval>,
-    /// Bound on the index that holds for one-sided and limited scenes; `None` for linear ones.
-    pub bound: Option<Interval>,
-    /// The device's passivity, scaled to the worst period.
-    pub delta: Interval,
-    /// Around the `cos(theta)` at which the linear index is reached; `[-1, 1]` where that is
-    /// everywhere.
-    pub cos_theta: Option<Interval>,
-    /// Answer of equations 17 to 19.
-    pub paper: Answer,
-    /// Answer of theory, section 4.1.
-    pub exact: Answer,
-    /// Which of the two the verdict follows.
-    pub rule: Rule,
-    /// The number format whose coefficients were judged.
-    pub format: Format,
-    /// The verdict: `Ok` is `certified`.
-    pub outcome: Result<(), Rejection>,
-}
-
-impl Assessment {
-    /// The index that the verdict compared with `delta`.
-    pub const fn deciding_index(&self) -> Option<Interval> {
-        match self.rule {
-            Rule::Exact => self.alpha_coupled,
-            Rule::Nonlinear => self.bound,
-        }
-    }
-}
-
 /// Output strict passivity `gamma` of `Q` (equation 19) for a spring coupling:
 /// `delta k / (delta - k)` with `k = K_vc T / 2`, for `k < delta`. At `k = delta` `Q` is zero and
 /// `gamma` infinite; above, `Q` has none (`None`).
@@ -83,68 +38,9 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
     Some(if gamma.is_finite() { gamma } else { Interval::new(f64::MAX, f64::INFINITY) })
 }
 
-/// Judges a scene as it was written by both rules, without looking for remedies.
-pub const fn assess(scene: &Scene) -> Assessment {
-    assess_in(scene, Format::F64)
-}
-
-/// Judges the coefficients that a servo in this number format multiplies by, without looking for
-/// remedies.
-pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
-    assessed(scene, format, Extent::BothRules)
-}
-
-/// How much is found out about a scene.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Extent {
-    /// The answers of both rules.
-    BothRules,
-    /// Of a scene that is refused, only what its own rule says.
-    OwnRule,
-}
-
-#[inline(never)]
-pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> Assessment {
-    let rule = if is_nonlinear(scene) { Rule::Nonlinear } else { Rule::Exact };
-    let mut out = Assessment {
-        alpha: None,
-        alpha_coupled: None,
-        bound: None,
-        delta: Interval::ENTIRE,
-        cos_theta: None,
-        paper: Answer::Fail,
-        exact: Answer::Fail,
-        rule,
-        format,
-        outcome: Ok(()),
-    };
-    if let Some(invalid) = first_invalid(scene) {
-        out.outcome = Err(Rejection::Invalid(invalid));
-        return out;
-    }
-    let numbers = Numbers::of(scene, format);
-    out.delta = numbers.delta;
-    // By reference: moved out of the result, the scene would be on a small board's stack twice.
-    out.outcome = match &Posed::with(scene, numbers) {
-        Ok(posed) => judge(posed, extent, &mut out),
-        Err(rejection) => Err(*rejection),
-    };
-    out
-}
-
 /// Whether the scene is judged by the nonlinear bound.
 pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
-    scene.torque_limit.is_some() || matches!(wall_of(&scene.environment), Some(w) if w.one_sided)
-}
-
-/// The wall of an environment, if it has one.
-pub(super) const fn wall_of(environment: &Environment) -> Option<&Wall> {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => Some(wall),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
-    }
+    scene.torque_limit.is_some() || matches!(scene.environment.wall(), Some(w) if w.one_sided)
 }
 
 /// What the index has to stay below for the paper's rule: `K_vc T / 2`, for the coupling spring to
@@ -179,154 +75,5 @@ pub(super) const fn exact_limit(n: &Numbers) -> Interval {
     match n.coupling_damping() {
         Some(damping) if n.is_standard => n.delta.min(damping),
         _ => n.delta,
-    }
-}
-
-const fn judge(posed: &Posed, extent: Extent, out: &mut Assessment) -> Result<(), Rejection> {
-    let n = &posed.numbers;
-    let alone = posed.alone(&Closeness::TIGHT);
-    if let Ok(found) = alone {
-        out.alpha = Some(found.minimum);
-        out.cos_theta = Some(found.cos_theta);
-    }
-    out.bound = posed.bound;
-    out.paper = posed.paper(&alone);
-    let is_refused = matches!(out.rule, Rule::Nonlinear) && !matches!(out.paper, Answer::Pass);
-    if is_refused && matches!(extent, Extent::OwnRule) {
-        return nonlinear_outcome(n, &alone, out);
-    }
-    let coupled = posed.coupled(Some(alone), &Closeness::TIGHT);
-    if let Ok(found) = coupled {
-        out.alpha_coupled = Some(found.minimum);
-        if matches!(out.rule, Rule::Exact) {
-            out.cos_theta = Some(found.cos_theta);
-        }
-    }
-    out.exact = posed.exact(&coupled);
-    match out.rule {
-        Rule::Exact => exact_outcome(n, &alone, &coupled, out),
-        Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
-    }
-}
-
-const fn exact_outcome(
-    n: &Numbers,
-    alone: &Result<RealPart, Obstacle>,
-    coupled: &Result<RealPart, Obstacle>,
-    out: &Assessment,
-) -> Result<(), Rejection> {
-    let limit = exact_limit(n);
-    // An environment that would pass at the standard coupling: it is the coupling that fails.
-    let blames_coupling = match alone {
-        Ok(found) => found.minimum.is_below(n.delta),
-        Err(_) => false,
-    };
-    match (coupled, alone) {
-        (Ok(found), _) => match out.exact {
-            Answer::Pass => Ok(()),
-            Answer::Undecided => Err(Rejection::Undecided {
-                doubt: Doubt::TooClose,
-                index: Some(found.minimum),
-                limit: Some(limit),
-                remedies: Remedies::NONE,
-            }),
-            Answer::Fail if blames_coupling && n.missed.is_some() => {
-                Err(missed_rejection(found.minimum, limit))
-            }
-            Answer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
-            Answer::Fail => Err(Rejection::Shortage {
-                alpha: found.minimum,
-                delta: limit,
-                cos_theta: found.cos_theta,
-                remedies: Remedies::NONE,
-            }),
-        },
-        (Err(Obstacle::Undecided(doubt)), _) => Err(from_obstacle(Obstacle::Undecided(*doubt))),
-        (Err(_), Ok(_)) if blames_coupling => Err(coupling_rejection(n, out)),
-        (Err(obstacle), Ok(_)) => Err(of_coupling(*obstacle)),
-        (Err(_), Err(obstacle)) => Err(from_obstacle(*obstacle)),
-    }
-}
-
-const fn coupling_rejection(n: &Numbers, out: &Assessment) -> Rejection {
-    let (alpha, alpha_coupled) = match out.rule {
-        Rule::Exact => (out.alpha, out.alpha_coupled),
-        Rule::Nonlinear => (out.bound, None),
-    };
-    Rejection::Coupling {
-        alpha,
-        alpha_coupled,
-        delta: n.delta,
-        stiffness: n.coupling,
-        standard: n.standard_stiffness(),
-        remedies: Remedies::NONE,
-    }
-}
-
-const fn missed_rejection(alpha: Interval, limit: Interval) -> Rejection {
-    Rejection::Missed { alpha, limit, remedies: Remedies::NONE }
-}
-
-const fn nonlinear_outcome(
-    n: &Numbers,
-    alone: &Result<RealPart, Obstacle>,
-    out: &Assessment,
-) -> Result<(), Rejection> {
-    let found = match alone {
-        Ok(found) => found,
-        Err(obstacle) => return Err(from_obstacle(*obstacle)),
-    };
-    let Some(bound) = out.bound else {
-        return Err(Rejection::Undecided {
-            doubt: Doubt::NoNonlinearBound,
-            index: Some(found.minimum),
-            limit: Some(n.delta),
-            remedies: Remedies::NONE,
-        });
-    };
-    match out.paper {
-        Answer::Pass => Ok(()),
-        Answer::Undecided => Err(Rejection::Undecided {
-            doubt: Doubt::TooClose,
-            index: Some(bound),
-            limit: Some(n.delta),
-            remedies: Remedies::NONE,
-        }),
-        Answer::Fail if bound.is_below(n.delta) => match (paper_limit(n), &n.missed) {
-            (Some(limit), Some(_)) => Err(missed_rejection(bound, limit)),
-            _ => Err(coupling_rejection(n, out)),
-        },
-        Answer::Fail => Err(Rejection::Shortage {
-            alpha: bound,
-            delta: n.delta,
-            cos_theta: found.cos_theta,
-            remedies: Remedies::NONE,
-        }),
-    }
-}
-
-/// The rejection of an environment that has no such obstacle without its coupling.
-const fn of_coupling(obstacle: Obstacle) -> Rejection {
-    let mut out = from_obstacle(obstacle);
-    if let Rejection::UnstablePole { of_coupling, .. } = &mut out {
-        *of_coupling = true;
-    }
-    out
-}
-
-const fn from_obstacle(obstacle: Obstacle) -> Rejection {
-    match obstacle {
-        Obstacle::UnstablePole { reflection } => Rejection::UnstablePole {
-            reflection,
-            of_coupling: false,
-            remedies: Remedies::NONE,
-            behind_standard: None,
-        },
-        Obstacle::RepeatedUnitPole { cos_theta } => Rejection::RepeatedUnitPole { cos_theta },
-        Obstacle::ResidueAngle { cos_theta } => Rejection::ResidueAngle { cos_theta },
-        Obstacle::NegativeResidue { residue } => Rejection::NegativeResidue { residue },
-        Obstacle::Undecided(doubt) => {
-            Rejection::Undecided { doubt, index: None, limit: None, remedies: Remedies::NONE }
-        }
     }
 }

@@ -3,11 +3,8 @@
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
-
-/// Time in s after the beginning of its period in which a tick reads its count, where torques are
-/// latched: the interrupt's own latency, and what other instructions add. The certificate of a board
-/// covers counts that are read as late as this, and later ones are told by [`BEGAN_LATE`].
-pub const READ_WITHIN: f64 = 1e-6;
+#[cfg(doc)]
+use crate::output_timing::READ_WITHIN;
 
 /// What [`Hardware::passed`] gives for one period whose tick began later than [`READ_WITHIN`].
 pub const BEGAN_LATE: u32 = 0;

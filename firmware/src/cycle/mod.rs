@@ -13,7 +13,6 @@ mod attend;
 mod frame;
 mod frame_queue;
 mod hardware;
-mod in_time;
 mod mailbox;
 mod options;
 mod state;
@@ -22,21 +21,22 @@ mod trouble;
 
 pub use frame::{Frame, FrameSink};
 pub use frame_queue::{FrameQueue, FrameReader, Frames};
-pub use hardware::{BEGAN_LATE, Hardware, READ_WITHIN};
-pub use in_time::{InTime, Lines};
+pub use hardware::{BEGAN_LATE, Hardware};
 pub use mailbox::{Inbox, Mailbox, Requests};
 pub use options::{Arming, LinkPolicy, Options, Reason};
 pub use state::{Notice, State, Status};
 pub use swap::longest_gap;
+
+pub use crate::output_timing::READ_WITHIN;
 
 use crate::dac::DacCode;
 use crate::energy::EnergyMonitor;
 use crate::environment::Renderable;
 use crate::fault::Fault;
 use crate::number::Number;
-use crate::servo::{OutputMode, Pace, Rendering};
+use crate::output_timing::OutputMode;
+use crate::servo::{Pace, Rendering};
 use crate::torque::LimitReason;
-use trouble::Late;
 
 /// What becomes of the servo once its clamp is shut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +47,13 @@ enum Goal {
     Release,
     /// The amplifier goes off because of this.
     Stop(Fault),
+}
+
+/// The last tick that began late, and by what part of a period.
+#[derive(Clone, Copy, Debug, Default)]
+struct Late {
+    tick: u32,
+    part: f32,
 }
 
 /// The servo on a board: its rendering, what it is doing, and what it watches.

@@ -5,17 +5,10 @@ use super::*;
 use crate::encoder::RawCount;
 use crate::environment::MAX_DELAY;
 use crate::fault::Retained;
-use crate::servo::OutputTiming;
+use crate::output_timing::OutputTiming;
 
 /// Ticks in a row without trouble before the servo may be armed.
 const CALM: u32 = MAX_DELAY as u32 + 2;
-
-/// The last tick that began late, and by what part of a period.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Late {
-    tick: u32,
-    part: f32,
-}
 
 impl<E: Renderable<N>, N: Number, M: OutputMode> Cycle<E, N, M> {
     /// The code of a servo that is not simply running. Whatever the rest of the program thinks:

@@ -10,10 +10,11 @@
 
 use core::hint::cold_path;
 
+use crate::build_error::BuildError;
 use crate::coupling::Offer;
 use crate::dac::DacCode;
 use crate::number::Number;
-use crate::servo::{BuildError, OutputMode, OutputTiming};
+use crate::output_timing::{OutputMode, OutputTiming};
 
 /// Observes passivity, one tick at a time.
 #[derive(Clone, Copy, Debug, Default)]

@@ -6,9 +6,9 @@ use super::law::{Law, Renderable, Setting};
 use super::rational::{Rational, RationalLaw};
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
+use crate::build_error::BuildError;
 use crate::coupling::{Offer, Slopes};
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// A spring with an optional damper, as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,16 @@ pub enum Environment {
 }
 
 impl Environment {
+    /// The wall, if it has one.
+    pub(crate) const fn wall(&self) -> Option<&Wall> {
+        match self {
+            Self::DelayedSpring(wall)
+            | Self::DamperWall(wall)
+            | Self::FreeModeWall { wall, .. } => Some(wall),
+            Self::FreeMode { .. } | Self::Rational(_) => None,
+        }
+    }
+
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
     /// only such an environment can be rendered where a torque is latched by the next count.
     pub const fn is_late(&self) -> bool {

@@ -1,8 +1,8 @@
 //! Whole samples of delay between an environment's position and its torque.
 
 use super::MAX_DELAY;
+use crate::build_error::BuildError;
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// The torques of the last ticks, not yet felt.
 pub trait DelayLine<N>: Clone + core::fmt::Debug {

@@ -3,10 +3,9 @@
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Law, Renderable, Setting};
 use super::velocity::{Velocity, Washout};
-use crate::coupling::{Offer, Slopes};
+use crate::build_error::BuildError;
+use crate::coupling::{Coupling, Offer, Slopes};
 use crate::number::Number;
-use crate::scene::Coupling;
-use crate::servo::BuildError;
 
 /// Free mode: cancels the device's damping down to `residual` (equations 22 and 23).
 #[derive(Clone, Copy, Debug, PartialEq)]

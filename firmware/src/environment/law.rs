@@ -1,9 +1,8 @@
 //! What every environment is to the servo: an affine law, whose state advances once a tick.
 
-use crate::coupling::{Offer, Slopes};
+use crate::build_error::BuildError;
+use crate::coupling::{Coupling, Offer, Slopes};
 use crate::number::Number;
-use crate::scene::{Coupling, Scene};
-use crate::servo::BuildError;
 
 /// The difference equation of an environment, at rest at zero to begin with.
 pub trait Law<N: Number> {
@@ -38,16 +37,4 @@ pub struct Setting {
     pub damping: f64,
     /// The coupling.
     pub coupling: Coupling,
-}
-
-impl Setting {
-    /// The setting of a scene.
-    pub(crate) fn of<E>(scene: &Scene<E>) -> Result<Self, BuildError> {
-        let (period, coupling) = (scene.timing.period, scene.coupling);
-        BuildError::unless_positive("period", period)?;
-        if let Coupling::Spring { stiffness } = coupling {
-            BuildError::unless_positive("coupling stiffness", stiffness)?;
-        }
-        Ok(Self { period, damping: scene.device.damping, coupling })
-    }
 }

@@ -3,9 +3,9 @@
 use super::MAX_DELAY;
 use super::delay_line::{DelayLine, VariableDelay};
 use super::law::{Law, Renderable, Setting};
+use crate::build_error::BuildError;
 use crate::coupling::{Offer, Slopes};
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// Largest degree of a [`Rational`] numerator or denominator.
 pub const MAX_DEGREE: usize = 8;

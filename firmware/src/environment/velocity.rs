@@ -4,8 +4,8 @@
 //! `g (z - 1) / (z - a)`, which is `g (x - s)` with the state `s += (1 - a) (x - s)`. A backward
 //! difference is the case `a = 0`, where the state is the last position.
 
+use crate::build_error::BuildError;
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// Something that adds a torque for velocity to a torque for position.
 pub trait Velocity<N: Number>: Clone + core::fmt::Debug {

@@ -3,9 +3,9 @@
 use super::delay_line::DelayLine;
 use super::law::Law;
 use super::velocity::Velocity;
+use crate::build_error::BuildError;
 use crate::coupling::{Contact, Offer, Slopes};
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// Where a wall is, and whether it can pull.
 pub trait Side<N>: Clone + core::fmt::Debug {

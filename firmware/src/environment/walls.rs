@@ -4,8 +4,8 @@ use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Renderable, Setting};
 use super::velocity::{Difference, NoDamping, Velocity, Washout};
 use super::wall_law::{Centred, Displaced, Face, Side, WallLaw};
+use crate::build_error::BuildError;
 use crate::number::Number;
-use crate::servo::BuildError;
 
 /// Spring delayed by whole samples: `E(z) = stiffness * z^-DELAY`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::SweepEnd;
-use crate::servo::Transducers;
+use crate::transducers::Transducers;
 
 /// Limits of the motion. Beyond any of them the sweep ends and the amplifier goes off.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -37,8 +37,6 @@ mod error;
 mod exciter;
 mod guard;
 pub mod sine;
-#[cfg(feature = "sines")]
-pub mod sines;
 
 use core::fmt;
 
@@ -48,7 +46,7 @@ pub use exciter::{Excitation, Exciter};
 pub use guard::{Guard, MotionLimits};
 
 use crate::dac::DacCode;
-use crate::servo::Transducers;
+use crate::transducers::Transducers;
 
 /// Fewest periods that are measured of a tone.
 pub const LEAST_PERIODS: u32 = 4;

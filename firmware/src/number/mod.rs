@@ -5,6 +5,7 @@
 //! the same bits on every machine: no fused multiply-add, no library function, no division.
 
 mod arithmetic;
+mod coefficient;
 mod fixed_point;
 mod float;
 mod rounding;

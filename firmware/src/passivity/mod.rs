@@ -2,9 +2,8 @@
 //!
 //! [`interval`], rounded in `rounding`, and [`polynomial`] are the numbers; [`transfer`] is a
 //! function of `z`; [`poles`] settles its poles; [`chebyshev`] turns its real part on the circle
-//! into a series, [`bernstein`] encloses the minimum; [`discrete`] and [`continuous`] are the tests
-//! of theory, section 1; [`closed_form`] has the indices that are known by formula, to check the
-//! general test against.
+//! into a series, [`bernstein`] encloses the minimum; [`discrete`] has the tests of
+//! theory, section 1.
 //!
 //! The larger functions are never inlined: each works on hundreds of bytes, and inlined into one
 //! another they would all be on a small board's stack at once. Nor are the interval operations on
@@ -12,8 +11,6 @@
 
 pub mod bernstein;
 pub mod chebyshev;
-pub mod closed_form;
-pub mod continuous;
 pub mod discrete;
 pub mod interval;
 pub mod poles;

@@ -1,6 +1,7 @@
 //! The servo's clamp from outside the tick: shut, opened and closed a step a tick.
 
-use super::{BuildError, Servo};
+use super::Servo;
+use crate::build_error::BuildError;
 use crate::environment::{Law, Renderable};
 use crate::number::Number;
 

@@ -1,28 +1,25 @@
 //! One tick: encoder count in, converter code out.
 
-mod build_error;
 mod clamp;
-mod mode;
-mod render_error;
 mod rendering;
-mod transducers;
 
-pub use build_error::BuildError;
-pub use mode::{Delayed, Latched, OutputMode, OutputTiming, Renders, Simultaneous};
-pub use render_error::{RenderError, Step};
 pub use rendering::{Pace, Rendering, RenderingOptions};
-pub use transducers::Transducers;
 
-use crate::certificate::Certified;
+pub use crate::build_error::BuildError;
+pub use crate::environment::{Delayed, Renders};
+pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
+pub use crate::step::Step;
+pub use crate::transducers::Transducers;
+
+use crate::certificate::{Certified, CertifyScene};
 use crate::coupling::{Offer, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Law, Renderable, Setting};
+use crate::environment::{Law, Renderable};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
-use crate::tuning::Tunable;
 
 /// What a tick gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +68,7 @@ pub struct Servo<E: Renderable<N>, N: Number> {
     radians_per_count: f64,
 }
 
-impl<E: Tunable<N>, N: Number> Servo<E, N> {
+impl<E: CertifyScene<N>, N: Number> Servo<E, N> {
     /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
     /// this number format's, such as the scene's as it was written, is taken again.
     ///
@@ -91,7 +88,7 @@ impl<E: Renderable<N>, N: Number> Servo<E, N> {
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let law = scene.environment.law(&Setting::of(scene)?)?;
+        let law = scene.environment.law(&scene.setting()?)?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)

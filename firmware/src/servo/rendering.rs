@@ -3,15 +3,16 @@
 use core::hint::cold_path;
 use core::marker::PhantomData;
 
-use super::{BuildError, Output, OutputMode, Renders, Servo, Transducers};
-use crate::certificate::Timed;
-use crate::cycle::READ_WITHIN;
+use super::{Output, Servo};
+use crate::build_error::BuildError;
+use crate::certificate::{CertifyScene, Timed};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
-use crate::environment::Renderable;
+use crate::environment::{Renderable, Renders};
 use crate::number::Number;
+use crate::output_timing::{OutputMode, READ_WITHIN};
 use crate::scene::{Scene, Timing};
-use crate::tuning::Tunable;
+use crate::transducers::Transducers;
 
 /// What is not of the scene, but of how it is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +81,7 @@ pub struct Pace {
     span: u32,
 }
 
-impl<E: Tunable<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
+impl<E: CertifyScene<N> + Renders<M>, N: Number, M: OutputMode> Rendering<E, N, M> {
     /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
     /// coefficients than this number format's, such as the scene's as it was written, is taken
     /// again.

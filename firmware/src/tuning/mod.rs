@@ -4,22 +4,29 @@
 //! built as a whole and away from the servo's interrupt; what is refused changes nothing.
 
 mod error;
-mod tunable;
+mod render_error;
 mod values;
 
 pub use error::TuningError;
-pub use tunable::Tunable;
+pub use render_error::RenderError;
 pub use values::Values;
 
 use core::fmt;
 
-use crate::certificate::Parameter;
-use crate::environment::Renderable;
+use crate::certificate::{CertifyScene, Parameter};
+use crate::environment::{Renderable, Renders};
 use crate::number::Number;
+use crate::output_timing::OutputMode;
 use crate::scene::{Coupling, Scene};
-use crate::servo::{
-    OutputMode, RenderError, Rendering, RenderingOptions, Renders, Step, Transducers,
-};
+use crate::servo::{Rendering, RenderingOptions};
+use crate::step::Step;
+use crate::transducers::Transducers;
+
+/// An environment whose scenes can be judged, timed and rendered in the number format `N`, and changed
+/// while they run.
+pub trait Tunable<N: Number>: CertifyScene<N> + Values {}
+
+impl<N: Number, E: CertifyScene<N> + Values> Tunable<N> for E {}
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///

@@ -8,10 +8,9 @@ use crate::environment::Environment;
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
-    Latched, OutputMode, OutputTiming, RenderError, RenderingOptions, Renders, Simultaneous,
-    Transducers,
+    Latched, OutputMode, OutputTiming, RenderingOptions, Renders, Simultaneous, Transducers,
 };
-use crate::tuning::{self, Parameters, Tunable};
+use crate::tuning::{self, Parameters, RenderError, Tunable};
 
 /// The scene that runs on a board, with all that its servo is built from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

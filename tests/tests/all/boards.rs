@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use analysis::anatomy::{Part, Share};
+use analysis::studies::anatomy::{Anatomy, Part, Share};
 use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
@@ -54,7 +54,7 @@ fn has(name: &str) -> &'static [Part] {
 
 /// The instructions of a scene's tick are of what the scene uses, and of nothing else.
 fn check_parts(board: Board, name: &str, program: &Program) {
-    let anatomy = program.anatomy().unwrap_or_else(|error| panic!("{error}"));
+    let anatomy = Anatomy::of_file(&program.path).unwrap_or_else(|error| panic!("{error}"));
     let parts =
         [Part::Spring, Part::Damper, Part::Filter, Part::Canceller, Part::Face, Part::Delay];
     for part in parts {

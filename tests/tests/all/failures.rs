@@ -6,12 +6,12 @@
 use std::f64::consts::TAU;
 
 use analysis::emulator::Player;
-use analysis::failures::claim::Failure;
-use analysis::failures::fate::End;
-use analysis::failures::report::{CaseReport, walls};
-use analysis::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
-use analysis::failures::trial::Played;
-use analysis::failures::{ALL, Case, roots, setting, walls as wall, zigzag};
+use analysis::studies::failures::claim::Failure;
+use analysis::studies::failures::fate::End;
+use analysis::studies::failures::report::{CaseReport, walls};
+use analysis::studies::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
+use analysis::studies::failures::trial::Played;
+use analysis::studies::failures::{ALL, Case, roots, setting, walls as wall, zigzag};
 use analysis::toolchain::{Tools, prepare};
 use firmware::environment::{Environment, Rational};
 use firmware::scene::{Coupling, Scene};

@@ -1,9 +1,11 @@
 //! The reference itself is judged by the published 34-digit values before it judges anything.
 //! Then it judges the answers that ways to the certificate are compared by.
 
-use analysis::tradeoff::certificate::environments::{ANSWERS, EACH, Environment, Kind, PERIOD};
-use analysis::tradeoff::certificate::environments::{answer, environment};
-use analysis::tradeoff::certificate::judges::Judge;
+use analysis::studies::tradeoff::certificate::environments::{
+    ANSWERS, EACH, Environment, Kind, PERIOD,
+};
+use analysis::studies::tradeoff::certificate::environments::{answer, environment};
+use analysis::studies::tradeoff::certificate::judges::Judge;
 use num_traits::Signed;
 use std::cmp::Ordering;
 use tests::exact::{Q, of_f64, power_of_ten, ratio};
@@ -105,7 +107,7 @@ fn the_answers_that_ways_to_the_certificate_are_compared_by_are_exact() {
             let threads: Vec<_> = parts.map(|part| scope.spawn(move || found(part))).collect();
             threads.into_iter().map(|thread| thread.join().expect("found")).collect()
         });
-        let file = "/../analysis/src/tradeoff/certificate/answers.txt";
+        let file = "/../analysis/src/studies/tradeoff/certificate/answers.txt";
         std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), text).expect("written");
         return;
     }

@@ -7,7 +7,7 @@
 use analysis::chain::{Chain, Link, Mass};
 use analysis::file::simulation::{HandTorque, Simulation};
 use analysis::file::{Format, Purpose, SceneFile, parse, parse_for, write};
-use analysis::simulation::missed::Missed;
+use analysis::missed::Missed;
 use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
 use analysis::stability::{Verdict, judge};
 use analysis::verdict;

@@ -9,17 +9,17 @@ use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
 
 use super::words::{Answered, Simulated, message, text};
-use crate::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
-use crate::bench::CORE_CLOCK;
+use crate::command::answer::{Answer, CommandError};
 use crate::command::common::ForWhom;
-use crate::command::identify::positive;
-use crate::command::run::{scene_file, script_of, transducers_of};
-use crate::command::{Answer, CommandError};
+use crate::command::file_scene::{scene_file, script_of, transducers_of};
+use crate::command::values::positive;
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::tradeoff::ticks::Ticks;
-use crate::tradeoff::{self, simulation};
+use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
+use crate::studies::bench::CORE_CLOCK;
+use crate::studies::tradeoff::ticks::Ticks;
+use crate::studies::tradeoff::{self, simulation};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
@@ -145,7 +145,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
 fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
     let ticks = Ticks::kept()?;
     let environment = &motion.subject().scene.environment;
-    Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))
+    Ok(Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
 }
 
 /// With the instructions that this scene takes on the emulated board.

@@ -6,8 +6,8 @@ mod words;
 
 use clap::Args;
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
 
 /// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]

@@ -2,12 +2,12 @@
 
 use clap::Args;
 
+use crate::command::answer::{Answer, CommandError};
 use crate::command::common::{ForWhom, folder};
-use crate::command::{Answer, CommandError};
 use crate::file::{Purpose, load_for};
 use crate::listing::listing;
-use crate::model::{Advice, Deviation, Judged, advise, percent};
 use crate::quantity::significant;
+use crate::studies::model::{Advice, Deviation, Judged, advise, percent};
 
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
 #[derive(Debug, Args)]

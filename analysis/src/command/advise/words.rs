@@ -7,10 +7,10 @@ use firmware::number::Arithmetic;
 use firmware::text::AtMost;
 use serde::Serialize;
 
-use crate::arithmetic::{Advice, Candidate, Subject};
-use crate::bench::CORE_CLOCK;
 use crate::listing::listing;
 use crate::quantity::significant;
+use crate::studies::arithmetic::{Advice, Candidate, Subject};
+use crate::studies::bench::CORE_CLOCK;
 
 /// The answer as JSON.
 #[derive(Serialize)]

@@ -5,9 +5,10 @@ use std::ops::Range;
 
 use clap::Args;
 
-use super::{OutputArguments, positive_range};
+use super::output::OutputArguments;
 use crate::chart::{self, Chart, Window};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
+use crate::command::values::positive_range;
 use crate::file::{self, Purpose};
 use crate::open_loop::OpenLoop;
 use crate::simulation::Experiment;

@@ -2,11 +2,11 @@
 
 use clap::{Args, ValueEnum};
 
-use super::OutputArguments;
+use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::CommandError;
-use crate::failures::region::{METHODS, Region};
+use crate::command::answer::CommandError;
 use crate::simulation::method::Method;
+use crate::studies::failures::region::{METHODS, Region};
 
 /// Arguments of `haptic chart failures`.
 #[derive(Debug, Args)]

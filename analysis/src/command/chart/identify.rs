@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::OutputArguments;
+use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::CommandError;
-use crate::command::identify::{Reading, of_file, positive};
+use crate::command::answer::CommandError;
+use crate::command::identify::{Reading, of_file};
+use crate::command::values::positive;
 
 /// Arguments of `haptic chart identify`.
 #[derive(Debug, Args)]

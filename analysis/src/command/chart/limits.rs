@@ -5,12 +5,13 @@ use std::ops::Range;
 use clap::Args;
 use firmware::scene::Coupling;
 
-use super::{OutputArguments, number, positive_range};
+use super::output::OutputArguments;
 use crate::chart::limits::{DelayCurve, Own};
 use crate::chart::{self, Chart, ChartError, Data};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::command::common::SceneArgument;
-use crate::command::run::transducers_of;
+use crate::command::file_scene::transducers_of;
+use crate::command::values::{number, positive_range};
 use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
 use crate::map::MapError;
 use crate::progress;

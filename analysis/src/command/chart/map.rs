@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use clap::Args;
 
-use super::{OutputArguments, range};
+use super::output::OutputArguments;
 use crate::chart::map::Overlay;
 use crate::chart::{self, Chart, Data};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::command::common::SceneArgument;
+use crate::command::values::range;
 use crate::file::SceneFile;
 use crate::map::border::closed_form_border;
 use crate::map::{Family, Map, MapError, Region};
@@ -44,7 +45,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
     let side = (arguments.points as f64).sqrt().ceil() as usize;
     let ranges = (arguments.stiffness.clone(), arguments.damping.clone());
-    Ok(of_file(&file, ranges, side)?)
+    of_file(&file, ranges, side)
 }
 
 /// A range of stiffness and one of damping, where they are given.
@@ -55,12 +56,12 @@ pub fn of_file(
     file: &SceneFile,
     (stiffness, damping): Ranges,
     side: usize,
-) -> Result<Chart, MapError> {
+) -> Result<Chart, CommandError> {
     let family = Family::of(file)?;
     let usual = family.usual_ranges();
     let (stiffness, damping) = (stiffness.unwrap_or(usual.0), damping.unwrap_or(usual.1));
     if ![&stiffness, &damping].into_iter().all(chart::is_range) {
-        return Err(MapError::NoRange { stiffness, damping });
+        return Err(MapError::NoRange { stiffness, damping }.into());
     }
     let bar = progress::bar(side as u64, "judging walls");
     let map = Map::new(&family, stiffness, damping, side, || bar.inc(1));

@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use super::{OutputArguments, WindowArguments};
+use super::output::{OutputArguments, WindowArguments};
 use crate::chart::{self, Chart};
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::file;
 
 /// Arguments of `haptic chart nyquist`.

@@ -8,16 +8,18 @@ use clap::{Args, ValueEnum};
 
 use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Output};
-use crate::command::{Answer, CommandError};
+use crate::command::answer::{Answer, CommandError};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Beside, Input, play};
 use crate::simulation::wall;
+use crate::studies::tradeoff::ticks::{self, Ticks};
+use crate::studies::tradeoff::{
+    self, Subject, Tradeoff, certificate, rate, servo, simulation, sine,
+};
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
-use crate::tradeoff::ticks::{self, Ticks};
-use crate::tradeoff::{self, Subject, Tradeoff, certificate, rate, servo, simulation, sine};
 
 /// Arguments of `haptic chart tradeoff`.
 #[derive(Debug, Args)]
@@ -87,8 +89,8 @@ impl Topic {
 
     fn measure(self) -> Result<Tradeoff, CommandError> {
         match self {
-            Self::Servo => servo::measure(),
-            Self::Sine => sine::measure(),
+            Self::Servo => Ok(servo::measure()?),
+            Self::Sine => Ok(sine::measure()?),
             Self::All | Self::Simulation => Ok(simulation::measure()?),
             Self::Certificate => {
                 let bar = progress::bar(certificate::steps() as u64, "certificate");

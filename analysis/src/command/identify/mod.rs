@@ -9,8 +9,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
+use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use super::{Answer, CommandError};
+use super::values::{bounded, not_negative, positive};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::link::Address;
 use crate::quantity::significant;
@@ -218,12 +219,13 @@ fn notes(found: &Identification) -> Vec<String> {
     if !found.is_rigid() {
         notes.push(format!(
             "inertia and damping do not explain the responses (residuals {} times the noise): the \
-             device is not one rigid mass, so its passivity is taken from the disk, which knows \
-             nothing of other frequencies",
+             device is not one rigid mass. What passivity it has in a hand is not to be seen from \
+             its motor alone: a hand that holds its far end takes that end's damping away. Describe \
+             it as masses and links, and ask `haptic device`",
             significant(found.misfit.sqrt(), 2),
         ));
     }
-    if found.passivity().is_none() {
+    if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
         notes.push(format!(
             "no passivity is left: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of torque and \
              counts, the declared delays, and that motor and encoder are on the same mass",
@@ -239,9 +241,9 @@ pub fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
     let passivity = match found.passivity() {
         Some(passivity) => format!(
-            "passivity = {} # N m s/rad, lower end of the {}\n",
+            "passivity = {} # N m s/rad, lower end of the damping; of a device that is rigid from its \
+             motor to the hand\n",
             significant(passivity, 4),
-            if found.is_rigid() { "damping" } else { "disk" },
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
@@ -299,19 +301,6 @@ fn points(found: &Identification) -> String {
     format!("{table}\n")
 }
 
-fn number(text: &str, bound: &str, admits: impl Fn(f64) -> bool) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|&value: &f64| value.is_finite() && admits(value));
-    value.ok_or_else(|| format!("it must be {bound}"))
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    number(text, "a number greater than 0", |value| value > 0.0)
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    number(text, "a number of seconds, 0 or more", |value| value >= 0.0)
-}
-
 fn part(text: &str) -> Result<f64, String> {
-    number(text, "a number from 0 to 0.9", |value| (0.0..=0.9).contains(&value))
+    bounded(text, "a number from 0 to 0.9", |value| (0.0..=0.9).contains(&value))
 }

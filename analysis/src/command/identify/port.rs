@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::command::CommandError;
+use crate::command::answer::CommandError;
 use crate::identify::port::Player;
 use crate::identify::{IdentifyError, Record, record};
 use crate::link::Address;

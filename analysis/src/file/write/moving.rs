@@ -3,7 +3,7 @@
 use super::quoted;
 use crate::device::Hand;
 use crate::file::simulation::{HandTorque, Simulation};
-use crate::simulation::missed::Missed;
+use crate::missed::Missed;
 
 /// `[simulation]`.
 pub fn simulation(lines: &mut Vec<String>, simulation: &Simulation) {

@@ -1,5 +1,5 @@
-//! The device that the scenes in this folder run on. Its numbers are here and nowhere else: measure
-//! them with `identify`, write them down here, and every scene is certified against them.
+//! Your device. Its numbers are here and nowhere else: measure them with `identify`, write them down
+//! here, and each scene that `haptic new` began is certified against them.
 
 // A program that renders no scene needs the transducers alone; whoever reads several scenes' files at
 // once has this one in each.

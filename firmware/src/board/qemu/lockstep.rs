@@ -41,15 +41,21 @@ static ZEROING: AtomicBool = AtomicBool::new(false);
 static ZERO: AtomicU32 = AtomicU32::new(0);
 
 /// Opens both pipes, the host's first.
-pub(super) fn pipes() -> Result<(File, File), NoHost> {
+///
+/// # Errors
+/// Where no host holds the other ends.
+pub fn pipes() -> Result<(File, File), NoHost> {
     let counts = File::open(c"counts").map_err(|_| NoHost)?;
     let codes = File::create(c"codes").map_err(|_| NoHost)?;
     Ok((counts, codes))
 }
 
-/// The next words of a question from the host; an error where it has closed its end.
+/// The next words of a question from the host.
+///
+/// # Errors
+/// Where it has closed its end.
 #[cfg(feature = "log")]
-pub(super) fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
+pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
     let mut bytes = [[0; 8]; N];
     from.read_exact(bytes.as_flattened_mut())?;
     Ok(bytes.map(u64::from_le_bytes))

@@ -10,6 +10,24 @@ use core::sync::atomic::{Ordering, compiler_fence};
 
 pub use super::pace::now;
 
+use crate::environment::Renderable;
+use crate::number::Number;
+use crate::scene::Scene;
+use crate::servo::{BuildError, Servo, Transducers};
+
+/// A servo to be measured, of a scene that the host has judged, in a number format in which it may not
+/// be certified. This board has no motor.
+///
+/// # Errors
+/// Where the scene or the transducers cannot be had in this number format.
+#[doc(hidden)]
+pub fn judged_elsewhere<E: Renderable<N>, N: Number>(
+    scene: &Scene<E>,
+    transducers: &Transducers,
+) -> Result<Servo<E, N>, BuildError> {
+    Servo::build(scene, transducers)
+}
+
 /// What the counter's numbers mean.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {

@@ -8,8 +8,7 @@
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
 
-#[cfg(feature = "log")]
-pub mod judge;
+mod exit;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -19,8 +18,6 @@ pub mod meter;
 pub mod pace;
 #[cfg(feature = "log")]
 mod parts;
-#[cfg(feature = "log")]
-pub mod player;
 pub mod registers;
 pub mod serial;
 #[cfg(feature = "log")]
@@ -29,27 +26,10 @@ mod start;
 pub(super) mod stop;
 mod sweep;
 pub mod tick;
-#[cfg(feature = "log")]
-pub mod trial;
 
-pub use start::{Places, run};
+pub use exit::{EXIT_DONE, EXIT_REFUSED};
+pub use start::{Mode, Places, run};
 pub use sweep::{SweepPlace, measure};
-
-/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
-pub type Mode = crate::servo::Simultaneous;
-
-/// Exit status of a run that the host ended.
-const EXIT_DONE: i32 = 0;
-/// Exit status of a program that could not start; the log says why.
-const EXIT_REFUSED: i32 = 1;
-
-/// The host has ended the run; where there is a log, that is finished first.
-fn ended() {
-    #[cfg(feature = "log")]
-    log::end();
-    #[cfg(not(feature = "log"))]
-    semihosting::process::exit(EXIT_DONE)
-}
 
 /// All interrupts but SysTick's arrive here, since the program brings no table of the chip's names.
 #[cortex_m_rt::exception]

@@ -7,8 +7,8 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 
-use crate::board::period;
-use crate::servo::BuildError;
+use crate::build_error::BuildError;
+use crate::period;
 
 /// SysTick's clock in Hz: the emulated F405 runs at its full speed from the start.
 const CORE_CLOCK: f64 = 168e6;

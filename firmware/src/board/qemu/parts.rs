@@ -6,10 +6,10 @@
 
 use core::hint::black_box;
 
-use super::log::Measured;
+use super::exit::refuse;
+use super::log::{Measured, Parts};
 use super::meter::{Scale, measure};
 use super::spread::Spread;
-use super::start::refuse;
 use crate::board::seat::FRAMES;
 use crate::boot::Program;
 use crate::cycle::{Frame, FrameQueue, FrameSink, Frames, State};
@@ -20,22 +20,6 @@ use crate::number::Number;
 use crate::servo::{OutputMode, Servo, Step};
 use crate::torque::LimitReason;
 use crate::tuning::Tunable;
-
-/// What looks at the parts of each tick.
-pub trait Parts {
-    /// Takes a tick.
-    fn take(&mut self, tick: &Measured, scale: &Scale);
-    /// Tells the host.
-    fn log(&mut self);
-}
-
-/// A tick without parts.
-pub struct NoParts;
-
-impl Parts for NoParts {
-    fn take(&mut self, _: &Measured, _: &Scale) {}
-    fn log(&mut self) {}
-}
 
 /// The parts of a cycle: its servo from count to code, its energy monitor, and its frame.
 pub struct CycleParts<E: Tunable<N>, N: Number, M> {

@@ -3,10 +3,11 @@
 use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
 
+use super::exit::refuse;
+use super::lockstep;
 use super::pace::{self, Period};
 use super::registers::Registers;
 use super::serial::{self, Serial};
-use super::{EXIT_REFUSED, Mode, lines, lockstep};
 use crate::board::link::Link;
 use crate::board::place::Place;
 use crate::board::seat::{Ends, Meeting, Seat, ends};
@@ -27,6 +28,9 @@ use super::{
     meter::{self, Scale},
     parts::CycleParts,
 };
+
+/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
+pub type Mode = crate::servo::Simultaneous;
 
 /// A program's places in memory, which have its scene's types.
 pub struct Places<E: Tunable<N>, N: Number> {
@@ -171,16 +175,4 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     log::certificate("board", certified.assessment());
     let (size, left) = (stack::size(), stack::left());
     defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - left, size);
-}
-
-/// Ends a program that cannot start. Where this machine refuses a scene that passed when it was compiled,
-/// the host has the words for it: `haptic certify`.
-#[cold]
-pub(super) fn refuse(reason: &'static str) -> ! {
-    lines::stop();
-    #[cfg(feature = "log")]
-    defmt::error!("refused by {=str}", reason);
-    #[cfg(not(feature = "log"))]
-    let _ = reason;
-    semihosting::process::exit(EXIT_REFUSED)
 }

@@ -6,7 +6,10 @@ use crate::board::place::Place;
 use crate::excitation::{Exciter, Sweep};
 
 #[cfg(feature = "log")]
-use super::{log::Log, parts::NoParts, start::calibrate};
+use super::{
+    log::{Log, NoParts},
+    start::calibrate,
+};
 
 /// Where a sweep's interrupt finds what it plays.
 pub type SweepPlace = Place<Exciter<'static>>;

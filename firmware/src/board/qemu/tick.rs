@@ -1,7 +1,7 @@
 //! A tick with the world around it: the host moves the encoder before, and sees the board's lines
 //! after.
 
-use super::{ended, lockstep};
+use super::lockstep;
 #[cfg(feature = "log")]
 use super::{lines, log, meter};
 use crate::cycle::State;
@@ -44,4 +44,12 @@ pub unsafe fn with(tick: extern "C" fn(), state: impl Fn() -> State, lose: impl 
         });
         log::spend(meter::now().wrapping_sub(begin));
     };
+}
+
+/// The host has ended the run; where there is a log, that is finished first.
+fn ended() {
+    #[cfg(feature = "log")]
+    log::end();
+    #[cfg(not(feature = "log"))]
+    semihosting::process::exit(super::exit::EXIT_DONE)
 }

@@ -13,9 +13,9 @@ use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
 use super::wiring::CLOCK;
-use crate::board::period;
+use crate::build_error::BuildError;
 use crate::cycle::{BEGAN_LATE, READ_WITHIN};
-use crate::servo::BuildError;
+use crate::period;
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' converters can take.

@@ -7,13 +7,13 @@ use super::pace::{Pace, Period};
 use super::quadrature::Counter;
 use super::wiring::{AMPLIFIER, CONVERTER, ENCODER};
 use super::{family, reset};
-use crate::board::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::board::retained;
 use crate::boot::Startup;
 use crate::cycle::Hardware;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::Retained;
+use crate::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::reset::ResetCause;
 
 /// The registers that belong to the servo's interrupt.

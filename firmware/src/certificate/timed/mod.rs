@@ -6,16 +6,17 @@ use core::marker::PhantomData;
 
 #[cfg(doc)]
 use super::Certified;
+use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{Missed, Numbers, largest_solved, nonlinear_bound};
 use super::parameter::first_invalid;
-use super::rules::paper_limit;
-use super::{Assessment, Rule, Sentence};
-use crate::cycle::READ_WITHIN;
+use super::rules::{Rule, paper_limit};
 use crate::number::Format;
+use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
-use crate::servo::{OutputMode, OutputTiming, Simultaneous, Step};
+use crate::step::Step;
+use crate::text::Sentence;
 
 /// A certified scene that agrees with the mode `M` in which a board puts its torques out.
 ///

@@ -1,18 +1,27 @@
-//! The board's end of the wire: bytes in, requests to the servo, answers out.
+//! The board's end of the wire: bytes in, requests to the servo, replies out.
 //!
-//! Runs below the servo's interrupt and without hardware: whoever has a serial port gives the bytes
-//! that came to [`Session::receive`], calls [`Session::poll`], and sends what [`Session::outgoing`]
-//! holds, over and over. Nothing here waits, and nothing that arrives makes more than a fixed
-//! amount of work: of each kind of question one can be open, and one frame is on its way out.
+//! Runs below the servo's interrupt and without hardware. The task of the serial port passes received
+//! bytes to [`Session::receive`], calls [`Session::poll`], and sends the bytes of [`Session::outgoing`],
+//! in a loop. Nothing here waits, and each message causes a bounded amount of work: one request of each
+//! kind can be open, and one frame is on its way out.
+//!
+//! A new set of parameters takes this way:
+//!
+//! ```text
+//! ToBoard::Set -> on_message     kept in `requested`, or refused: busy
+//!         poll -> prepare_set    certified and built (`tuning::prepare`), or refused with the step
+//!                 submit         to the servo's interrupt, which swaps it in (`cycle::swap`)
+//! Notice::Applied -> on_notice   it is the active set; ToHost::Answer
+//! ```
 
 mod outbox;
-mod owed;
+mod pending_replies;
 mod stream;
 #[cfg(test)]
 mod tests;
 
 use self::outbox::Outbox;
-use self::owed::{Greeting, Owed};
+use self::pending_replies::{Greeting, PendingReplies};
 use self::stream::Stream;
 use super::PROTOCOL;
 use super::decoder::Decoder;
@@ -32,22 +41,22 @@ use crate::scene::Scene;
 use crate::servo::{OutputMode, Rendering, Renders};
 use crate::tuning::{self, Tunable};
 
-/// What a board says of itself.
+/// What a board reports about itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
     /// Name of the program.
     pub name: &'static str,
     /// Timer counts in the servo's period.
     pub timer_counts: u32,
-    /// Why it was last reset.
+    /// Cause of the last reset.
     pub reset: ResetCause,
-    /// What stopped it before that.
+    /// The fault that stopped it before that reset.
     pub left: Option<Retained>,
-    /// Bytes of the stack that were never used; gives `None` where the board cannot tell.
+    /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
 }
 
-/// Notices that a poll looks at: more than can wait.
+/// Most notices that one poll takes: more than the queue holds.
 const NOTICES: usize = 16;
 
 /// A set of parameters with the damping that the device may lose while it runs.
@@ -65,16 +74,16 @@ pub struct Session<'a, E: Renderable<N>, N: Number, M, const LENGTH: usize> {
     frames: FrameReader<'a, LENGTH>,
     decoder: Decoder<{ LONGEST_TO_BOARD + CHECKSUM }>,
     outbox: Outbox,
-    owed: Owed,
+    replies: PendingReplies,
     stream: Stream,
-    /// What runs.
-    running: Set<E>,
-    /// How many were swapped in before it; wraps.
-    sets: u32,
-    /// Changes that nobody has looked at yet.
-    asked: Option<(Id, Changes)>,
-    /// What the servo was given and has not taken yet.
-    swapping: Option<(Id, Set<E>)>,
+    /// The set that the servo renders.
+    active: Set<E>,
+    /// Sets that were swapped in before it; wraps.
+    revision: u32,
+    /// Changes that are not certified yet.
+    requested: Option<(Id, Changes)>,
+    /// The set that was submitted to the servo and is not swapped in yet.
+    submitted: Option<(Id, Set<E>)>,
 }
 
 impl<'a, E, N, M, const LENGTH: usize> Session<'a, E, N, M, LENGTH>
@@ -83,8 +92,8 @@ where
     N: Number,
     M: OutputMode,
 {
-    /// The wire's end of the servo that runs this program; `margin` is the damping in N m s/rad
-    /// that the device may lose with its scene.
+    /// Session of the servo that runs this program; `margin` is the damping in N m s/rad that the device
+    /// may lose with its scene.
     pub fn new(
         program: Program<E>,
         margin: Option<f64>,
@@ -98,107 +107,116 @@ where
             frames,
             decoder: Decoder::new(),
             outbox: Outbox::new(),
-            owed: Owed::default(),
+            replies: PendingReplies::default(),
             stream: Stream::new(program.scene.timing.period),
-            running: Set { scene: program.scene, margin },
+            active: Set { scene: program.scene, margin },
             program,
-            sets: 0,
-            asked: None,
-            swapping: None,
+            revision: 0,
+            requested: None,
+            submitted: None,
         }
     }
 
-    /// Takes bytes that came in.
+    /// Takes received bytes.
     pub fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(message) = self.decoder.push(byte) {
                 self.requests.heard();
-                self.hear(message);
+                self.on_message(message);
             }
         }
     }
 
-    /// Takes what the servo says, and has the next frame ready if the one before has gone.
+    /// Takes the servo's notices, and puts the next frame into the outbox once the one before is sent:
+    /// replies first, then the answer to a new set of parameters, then telemetry.
     ///
     /// Certifies at most one set, which takes most of a small board's stack.
     pub fn poll(&mut self) {
         for _ in 0..NOTICES {
             let Some(notice) = self.requests.notice() else { break };
-            self.note(notice);
+            self.on_notice(notice);
         }
         self.stream.take(&mut self.frames);
         if self.outbox.is_empty() {
-            self.say();
+            self.send_reply();
+        }
+        if self.outbox.is_empty() {
+            self.prepare_set();
+        }
+        if self.outbox.is_empty() {
+            self.send_telemetry();
         }
     }
 
-    /// Bytes that are to be sent.
+    /// Bytes to send.
     pub fn outgoing(&self) -> &[u8] {
         self.outbox.rest()
     }
 
-    /// So many of them were sent.
+    /// Marks the first `bytes` of [`Session::outgoing`] as sent.
     pub const fn sent(&mut self, bytes: usize) {
         self.outbox.sent(bytes);
     }
 
-    fn hear(&mut self, message: ToBoard) {
+    fn on_message(&mut self, message: ToBoard) {
         match message {
-            ToBoard::Hello => self.owed.greet(),
-            ToBoard::Get => self.owed.running = true,
-            ToBoard::Describe => self.owed.description = true,
+            ToBoard::Hello => self.replies.greet(),
+            ToBoard::Get => self.replies.parameters = true,
+            ToBoard::Describe => self.replies.description = true,
             ToBoard::Status => self.requests.ask_status(),
             ToBoard::Stream(every) => self.stream.set(every),
             ToBoard::Arm { id } => {
-                if self.owed.arm(id) {
+                if self.replies.arm(id) {
                     self.requests.arm();
                 }
             }
             ToBoard::Disarm { id } => {
-                self.owed.disarm(id);
+                self.replies.disarm(id);
                 self.requests.disarm();
             }
-            ToBoard::Set { id, changes } => match (&self.asked, &self.swapping) {
-                (None, None) => self.asked = Some((id, changes)),
-                // Asked again because the answer takes its time.
+            ToBoard::Set { id, changes } => match (&self.requested, &self.submitted) {
+                (None, None) => self.requested = Some((id, changes)),
+                // A repeated request, since the answer takes a while.
                 (Some((before, _)), _) | (_, Some((before, _))) if *before == id => {}
-                _ => self.owed.refuse(id, Refusal::Busy),
+                _ => self.replies.refuse(id, Refusal::Busy),
             },
         }
     }
 
-    fn note(&mut self, notice: Notice) {
+    fn on_notice(&mut self, notice: Notice) {
         match notice {
-            Notice::Status(status) => self.owed.status = Some(status),
-            Notice::Armed => self.owed.switched(true, Ok(())),
-            Notice::NotArmed(fault) => self.owed.switched(true, Err(fault)),
+            Notice::Status(status) => self.replies.status = Some(status),
+            Notice::Armed => self.replies.switched(true, Ok(())),
+            Notice::NotArmed(fault) => self.replies.switched(true, Err(fault)),
             // A servo that has stopped is as disarmed as it was to be.
-            Notice::Disarmed | Notice::Stopped(_) => self.owed.switched(false, Ok(())),
+            Notice::Disarmed | Notice::Stopped(_) => self.replies.switched(false, Ok(())),
             Notice::Applied => {
-                if let Some((id, set)) = self.swapping.take() {
-                    self.running = set;
-                    self.sets = self.sets.wrapping_add(1);
-                    self.owed.done(id);
+                if let Some((id, set)) = self.submitted.take() {
+                    self.active = set;
+                    self.revision = self.revision.wrapping_add(1);
+                    self.replies.done(id);
                 }
             }
         }
     }
 
-    /// Puts the most urgent thing that is to be said into the outbox.
-    fn say(&mut self) {
-        if let Some(part) = self.owed.greeting() {
+    /// Puts the most urgent reply into the outbox.
+    fn send_reply(&mut self) {
+        if let Some(part) = self.replies.greeting() {
             self.greet(part);
-        } else if let Some((id, outcome)) = self.owed.next_answer() {
+        } else if let Some((id, outcome)) = self.replies.next_answer() {
             self.outbox.put(&ToHost::Answer { id, outcome });
-        } else if let Some(status) = self.owed.status.take() {
+        } else if let Some(status) = self.replies.status.take() {
             self.outbox.put(&ToHost::Status(self.status(&status)));
-        } else if core::mem::take(&mut self.owed.running) {
-            self.outbox.put(&ToHost::Running(self.numbers()));
-        } else if core::mem::take(&mut self.owed.description) {
+        } else if core::mem::take(&mut self.replies.parameters) {
+            self.outbox.put(&ToHost::Running(self.parameters()));
+        } else if core::mem::take(&mut self.replies.description) {
             self.outbox.put(&ToHost::Described(self.description()));
-        } else if let Some((id, changes)) = self.asked.take() {
-            self.change(id, &changes);
-        } else if let Some(batch) = self.stream.batch() {
+        }
+    }
+
+    fn send_telemetry(&mut self) {
+        if let Some(batch) = self.stream.batch() {
             self.outbox.put(&ToHost::Telemetry(batch));
         }
     }
@@ -209,21 +227,22 @@ where
                 ToHost::Welcome { protocol: PROTOCOL, program: self.facts.name }
             }
             (Greeting::Remembered, Some(record)) => ToHost::Remembered(record.into()),
-            (Greeting::Remembered, None) => return self.say(),
+            (Greeting::Remembered, None) => return self.send_reply(),
             (Greeting::Board, _) => ToHost::Board(self.board()),
         };
         self.outbox.put(&message);
     }
 
-    /// Certifies a set and gives it to the servo, or refuses it and leaves everything as it is.
-    fn change(&mut self, id: Id, changes: &Changes) {
+    /// Certifies the requested set and submits it to the servo, or refuses it and changes nothing.
+    fn prepare_set(&mut self) {
+        let Some((id, changes)) = self.requested.take() else { return };
         let Program { transducers, rendering, .. } = &self.program;
-        match tuning::prepare(&self.running.scene, changes, transducers, rendering) {
+        match tuning::prepare(&self.active.scene, &changes, transducers, rendering) {
             Ok(prepared) => {
                 let set = Set { scene: prepared.scene, margin: prepared.margin };
                 match self.requests.submit(prepared.rendering) {
-                    Ok(()) => self.swapping = Some((id, set)),
-                    Err(_) => self.owed.refuse(id, Refusal::Busy),
+                    Ok(()) => self.submitted = Some((id, set)),
+                    Err(_) => self.replies.refuse(id, Refusal::Busy),
                 }
             }
             Err(step) => {
@@ -248,15 +267,15 @@ where
 
     fn description(&self) -> Description {
         let Program { transducers, rendering, .. } = self.program;
-        let (scene, format, timing) = (E::as_data(&self.running.scene), N::FORMAT, M::TIMING);
+        let (scene, format, timing) = (E::as_data(&self.active.scene), N::FORMAT, M::TIMING);
         Description { scene, transducers, rendering, format, timing }
     }
 
-    fn numbers(&self) -> Running {
-        let Set { scene, margin } = &self.running;
+    fn parameters(&self) -> Running {
+        let Set { scene, margin } = &self.active;
         let named = |parameter| tuning::get(scene, parameter).map(|value| (parameter, value));
         let values = tuning::parameters(scene).iter().filter_map(named).collect();
-        Running { sets: self.sets, margin: *margin, values }
+        Running { sets: self.revision, margin: *margin, values }
     }
 
     fn status(&self, servo: &cycle::Status) -> Status {
@@ -266,7 +285,7 @@ where
             link_lost: servo.link_lost,
             tick: servo.tick,
             count: servo.count,
-            sets: self.sets,
+            sets: self.revision,
             missed: servo.missed,
             worst_slack: servo.worst_slack,
             energy: servo.energy,

@@ -15,7 +15,8 @@ use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Timing};
-use crate::servo::{Latched, RenderError, RenderingOptions, Step, Transducers};
+use crate::servo::{Latched, RenderingOptions, Step, Transducers};
+use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
 use crate::wire::{encode, largest_frame};
 

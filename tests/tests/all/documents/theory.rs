@@ -81,7 +81,7 @@ fn unresolved(anchors: &BTreeSet<Anchor>, text: &str) -> Vec<Anchor> {
 fn cite_the_theory() -> Vec<(String, String)> {
     let mut all: Vec<_> = ["firmware", "analysis", "tests"].into_iter().flat_map(sources).collect();
     let is_this = |path: &str| path.ends_with("documents/theory.rs");
-    all.retain(|(path, _)| !path.starts_with("tests/board") && !is_this(path));
+    all.retain(|(path, _)| !path.starts_with("analysis/virtual-board") && !is_this(path));
     for document in ["README.md", "firmware/boards.md", THEORY] {
         all.push((document.to_owned(), read(document)));
     }

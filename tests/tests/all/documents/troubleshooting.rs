@@ -11,7 +11,7 @@ const KINDS: [(&str, &str); 7] = [
     ("Rejection", "firmware/src/certificate/rejection.rs"),
     ("Doubt", "firmware/src/passivity/poles.rs"),
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
-    ("BuildError", "firmware/src/servo/build_error.rs"),
+    ("BuildError", "firmware/src/build_error.rs"),
     ("TuningError", "firmware/src/tuning/error.rs"),
     ("Refusal", "firmware/src/wire/message.rs"),
     ("LinkError", "analysis/src/link/error.rs"),

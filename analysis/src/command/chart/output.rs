@@ -1,0 +1,72 @@
+//! Where a picture goes, and which part of it is shown.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::chart::{Chart, ChartError, Output, Window};
+use crate::command::values::range;
+
+/// Where a picture goes, and its numbers.
+#[derive(Debug, Args)]
+pub struct OutputArguments {
+    /// The picture's file, .svg, .png or .pdf; or .csv for the numbers that are drawn alone
+    #[arg(short, long, value_name = "PICTURE")]
+    pub output: PathBuf,
+    /// Write the numbers that are drawn to this .csv, beside the picture
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
+}
+
+/// Ranges of the axes.
+#[derive(Debug, Args)]
+pub struct WindowArguments {
+    /// Ends of the horizontal axis, in its unit; otherwise all that there is to see
+    #[arg(long, value_name = "MIN..MAX", value_parser = range, allow_hyphen_values = true)]
+    pub x: Option<Range<f64>>,
+    /// Ends of the vertical axis, in its unit
+    #[arg(long, value_name = "MIN..MAX", value_parser = range, allow_hyphen_values = true)]
+    pub y: Option<Range<f64>>,
+}
+
+impl WindowArguments {
+    /// The ranges, for a drawing.
+    pub(super) fn window(&self) -> Window {
+        Window { x: self.x.clone(), y: self.y.clone() }
+    }
+}
+
+/// Files whose names say what is in them.
+#[derive(Debug)]
+pub struct Files {
+    picture: Option<Output>,
+    data: Option<PathBuf>,
+}
+
+impl OutputArguments {
+    /// Looks at the names of the files, so that nobody waits for a picture that cannot be kept.
+    pub(super) fn files(&self) -> Result<Files, ChartError> {
+        let is_data = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        match &self.csv {
+            Some(path) if !is_data(path) => Err(ChartError::DataExtension { path: path.clone() }),
+            Some(path) if is_data(&self.output) => {
+                Err(ChartError::TwoTables { output: self.output.clone(), csv: path.clone() })
+            }
+            None if is_data(&self.output) => {
+                Ok(Files { picture: None, data: Some(self.output.clone()) })
+            }
+            data => Ok(Files { picture: Some(Output::new(&self.output)?), data: data.clone() }),
+        }
+    }
+}
+
+impl Files {
+    /// Writes what is asked for of a chart.
+    pub(super) fn write(&self, Chart { picture, data }: Chart) -> Result<(), ChartError> {
+        if let Some(output) = &self.picture {
+            output.write(&picture)?;
+        }
+        self.data.as_ref().map_or(Ok(()), |path| data.write(path))
+    }
+}

@@ -1,0 +1,48 @@
+//! What a scene file is run with: its sensor, its motor and its hand, as it says them or as usual.
+
+use firmware::encoder::CounterWidth;
+use firmware::servo::Transducers;
+
+use super::answer::CommandError;
+use super::own;
+use crate::file::{self, SceneFile};
+use crate::hand::Script;
+
+/// Torque in N m at full scale for a scene file that has no limit of its own.
+const FULL_SCALE: f64 = 5.0;
+
+/// Counts a turn for a scene file that does not say its encoder's step.
+const COUNTS_PER_TURN: f64 = 65_536.0;
+
+/// A scene file, or the sentence that there is neither such a file nor such a program.
+pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
+    if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
+        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
+    }
+    Ok(file::load(name)?)
+}
+
+/// The sensor and the motor of a scene file, as it says them or as they are given.
+pub fn transducers_of(
+    file: &SceneFile,
+    counts_per_turn: Option<f64>,
+    full_scale: Option<f64>,
+) -> Transducers {
+    let from_step = file.encoder_step.map(|step| std::f64::consts::TAU / step);
+    Transducers {
+        counts_per_turn: counts_per_turn.or(from_step).unwrap_or(COUNTS_PER_TURN),
+        counter: CounterWidth::Bits32,
+        full_scale_torque: full_scale
+            .or(file.full_scale)
+            .or(file.scene.torque_limit)
+            .unwrap_or(FULL_SCALE),
+        largest_speed: Transducers::NO_HAND_IS_FASTER,
+    }
+}
+
+/// What a hand does to show a scene file: the file's own hand, if it has one.
+pub fn script_of(file: &SceneFile) -> Script {
+    let mut script = Script::push_and_let_go();
+    script.hand = file.hand.unwrap_or(script.hand);
+    script
+}

@@ -1,0 +1,79 @@
+//! What a run gave, for a person.
+
+use firmware::dac::DacCode;
+
+use crate::program::Program;
+use crate::quantity::significant;
+use crate::scenario::Outcome;
+use crate::verdict::Report;
+
+/// What a run gave, for a person.
+pub fn text(outcome: &Outcome) -> String {
+    let run = &outcome.run;
+    let mut rows = vec![
+        ("ticks", run.ticks.len().to_string()),
+        ("peak torque", format!("{} N m", significant(run.peak_torque(), 4))),
+    ];
+    if let Some(energy) = outcome.energy {
+        let millijoule = |joule: f64| format!("{} mJ", significant(1e3 * joule, 4));
+        rows.push(("energy the hand put in", millijoule(energy.given)));
+        rows.push(("energy the hand got back", millijoule(energy.got_back)));
+    }
+    if let Some(board) = &outcome.board {
+        rows.push(("codes equal", format!("{} of {}", run.equal, run.ticks.len())));
+        let (compute, whole) = (board.compute(), board.interrupt());
+        rows.push((
+            "instructions per tick",
+            format!(
+                "{} to {} from count to code, {} on average; {} on average in the whole interrupt",
+                compute.min,
+                compute.max,
+                significant(compute.mean, 3),
+                significant(whole.mean, 3)
+            ),
+        ));
+    }
+    rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
+}
+
+/// What is shown of a scene that ran on a board: its verdict, and what it did.
+pub fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
+    let damping = |value: Option<f64>| {
+        value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
+    };
+    let verdict = format!("{:?}", report.verdict).to_lowercase();
+    let rows = [
+        ("verdict", verdict),
+        ("alpha", damping(report.alpha.hi)),
+        ("delta", damping(Some(report.delta))),
+        ("margin", damping(report.margin_on_board)),
+    ];
+    let mut shown = format!("{}\n", report.name);
+    for (label, value) in rows {
+        shown += &format!("  {label}: {value}\n");
+    }
+    for line in text(outcome).lines() {
+        shown += &format!("  {line}\n");
+    }
+    shown + &coasting(program, outcome)
+}
+
+/// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
+const AT_REST: f64 = 1e-3;
+
+/// What keeps a device turning that the hand has let go of: nothing in the linear theory, but the
+/// converter rounds, and the simulated device has no friction at all.
+fn coasting(program: &Program, outcome: &Outcome) -> String {
+    let speed = outcome.final_speed.unwrap_or(0.0);
+    let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
+    if speed < AT_REST || ended < (program.script)().release {
+        return String::new();
+    }
+    let full_scale = program.transducers.full_scale_torque;
+    let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    format!(
+        "  still turning at the end: {} rad/s; friction of half a converter step, {} N m, stops it\n",
+        significant(speed, 2),
+        significant(half_step, 2)
+    )
+}

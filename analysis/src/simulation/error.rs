@@ -1,0 +1,86 @@
+//! Why there is no motion.
+
+use firmware::passivity::transfer::Unbuildable;
+use firmware::servo::BuildError;
+use thiserror::Error;
+
+use crate::file::FileError;
+use crate::quantity::significant;
+
+/// Why there is no answer.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// The file does not say what to simulate.
+    #[error("{scene}: a simulation needs a [simulation] table with `samples`")]
+    NoSimulation {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// The scene has no law that could run.
+    #[error("the scene cannot run: {0}")]
+    Servo(#[from] BuildError),
+    /// The scene has no linear loop.
+    #[error("the scene has no closed loop: {}", unbuildable(*.0))]
+    Loop(Unbuildable),
+    /// The torque file cannot be read.
+    #[error("cannot read the torque file {file}: {error}")]
+    TorqueFile {
+        /// The file.
+        file: String,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The torque file is not text.
+    #[error(transparent)]
+    TorqueText(Box<FileError>),
+    /// Something in the torque file is not a finite number.
+    #[error("{file}:{line}: `{value}` is out of bounds; it must be a finite number in N m")]
+    TorqueValue {
+        /// The file.
+        file: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// What stands there.
+        value: String,
+    },
+    /// The motion over a period is out of range.
+    #[error(
+        "the motion over a period of {period:e} s of a machine with rates of up to {rate:.1e} per \
+         second is beyond the range of numbers; look at that period, and at the inertia, damping \
+         and stiffness of device and hand"
+    )]
+    TooFast {
+        /// Largest of the machine's rates in 1/s, or of their squares in 1/s^2.
+        rate: f64,
+        /// The period in s.
+        period: f64,
+    },
+    /// The motion grows beyond the range of numbers.
+    #[error(
+        "the motion grows beyond the range of numbers: there is none from sample {sample} on, which \
+         is at {} s; the loop is not stable (`haptic stability`)", significant(*.time, 6)
+    )]
+    Overflow {
+        /// The first sample, counted from 0, of which something is no finite number.
+        sample: usize,
+        /// When that is in s.
+        time: f64,
+    },
+    /// No eigenvalues were found.
+    #[error("the eigenvalues of the closed loop were not found; its numbers are too far apart")]
+    Eigenvalues,
+}
+
+impl From<Unbuildable> for SimulationError {
+    fn from(error: Unbuildable) -> Self {
+        Self::Loop(error)
+    }
+}
+
+fn unbuildable(error: Unbuildable) -> &'static str {
+    match error {
+        Unbuildable::Improper => "its environment needs samples from the future",
+        Unbuildable::IllPosed => "coupling and environment have no unique solution",
+        Unbuildable::OutOfRange => "a number of it is out of range",
+    }
+}

@@ -1,0 +1,151 @@
+//! What is simulated, and how it is taken through a tick.
+
+use std::path::Path;
+
+use firmware::environment::{Environment, Wall};
+use firmware::scene::Scene;
+
+use super::drive::Drive;
+use super::error::SimulationError;
+use super::method::Method;
+use super::plant::Plant;
+use super::tick::{Stepping, Tick};
+use crate::device::Motion;
+use crate::file::SceneFile;
+use crate::missed::Missed;
+
+/// Everything that decides what will happen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Experiment {
+    /// The scene; its device is where the canceller's damping comes from.
+    pub scene: Scene,
+    /// The machine, with the hand that holds it and its amplifier's lag.
+    pub plant: Plant,
+    /// How the device moves at sample 0.
+    pub start: Motion,
+    /// Number of samples.
+    pub samples: usize,
+    /// Torque of the hand.
+    pub drive: Drive,
+    /// Angle of an encoder count in rad, if the angle is floored to whole counts.
+    pub encoder_step: Option<f64>,
+    /// Dry friction of the motor's mass in N m.
+    pub friction: f64,
+    /// Time in s from a sample to its torque, less than the period.
+    pub latency: f64,
+    /// Ticks in which the servo does not run.
+    pub missed: Missed,
+}
+
+impl Experiment {
+    /// What a scene file asks for; `folder` is where its torque file is looked for.
+    ///
+    /// # Errors
+    /// Where the file has no `[simulation]`, or its torque file cannot be read.
+    pub fn of(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
+        let Some(simulation) = &file.simulation else {
+            return Err(SimulationError::NoSimulation { scene: file.name.clone() });
+        };
+        Ok(Self {
+            samples: simulation.samples,
+            start: Motion { position: simulation.position, velocity: simulation.velocity },
+            drive: Drive::load(
+                &simulation.torque,
+                folder,
+                simulation.samples,
+                file.scene.timing.period,
+            )?,
+            friction: simulation.friction,
+            latency: simulation.latency,
+            missed: simulation.missed,
+            encoder_step: file.encoder_step,
+            ..Self::at_rest(file)
+        })
+    }
+
+    /// The scene and the machine of a file, at rest, with nothing to disturb them but latency.
+    pub fn at_rest(file: &SceneFile) -> Self {
+        Self {
+            plant: Plant::of(&file.chain).held(file.hand.unwrap_or_default()),
+            latency: file.simulation.as_ref().map_or(0.0, |simulation| simulation.latency),
+            ..Self::still(&file.scene)
+        }
+    }
+
+    /// A scene on its rigid device in no hand, at rest, with nothing to disturb it.
+    pub fn still(scene: &Scene) -> Self {
+        Self {
+            scene: *scene,
+            plant: Plant::rigid(scene.device),
+            start: Motion::default(),
+            samples: 0,
+            drive: Drive::Free,
+            encoder_step: None,
+            friction: 0.0,
+            latency: 0.0,
+            missed: Missed::None,
+        }
+    }
+
+    /// Whether `computed` samples are all that there should be.
+    ///
+    /// # Errors
+    /// Where the motion has left the range of numbers before.
+    pub fn completed(&self, computed: usize) -> Result<(), SimulationError> {
+        if computed >= self.samples {
+            return Ok(());
+        }
+        let time = computed as f64 * self.scene.timing.period;
+        Err(SimulationError::Overflow { sample: computed, time })
+    }
+
+    /// Whether the loop is linear and the same in every tick.
+    pub(super) fn is_linear(&self) -> bool {
+        let centred = wall(&self.scene).is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
+        let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
+        centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
+    }
+
+    /// The plant over a tick.
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over a period to be computed.
+    pub fn tick(&self, stride: Stride) -> Result<Tick, SimulationError> {
+        Tick::checked(&self.plant, &self.stepping(stride), self.drive.omega())
+    }
+
+    /// How the plant is taken through a tick.
+    pub fn stepping(&self, stride: Stride) -> Stepping {
+        Stepping {
+            method: stride.method,
+            substeps: stride.substeps.max(1),
+            period: self.scene.timing.period,
+            latency: self.latency,
+        }
+    }
+}
+
+/// The wall of a scene, if it has one.
+pub(crate) fn wall(scene: &Scene) -> Option<&Wall> {
+    match &scene.environment {
+        Environment::DelayedSpring(wall)
+        | Environment::DamperWall(wall)
+        | Environment::FreeModeWall { wall, .. } => Some(wall),
+        Environment::FreeMode { .. } | Environment::Rational(_) => None,
+    }
+}
+
+/// Method and steps a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stride {
+    /// The method.
+    pub method: Method,
+    /// Steps a tick, at least one; the exact method takes the tick in one whatever this is.
+    pub substeps: u32,
+}
+
+impl Default for Stride {
+    fn default() -> Self {
+        Self { method: Method::Exact, substeps: 1 }
+    }
+}

@@ -1,0 +1,101 @@
+//! What a program for the board has of each part of a tick: its linked instructions, each asked
+//! which of the firmware's functions it was made of.
+//!
+//! The tick is compiled into the servo's interrupt as a whole, so that no symbol shows its parts;
+//! the program's line tables do.
+
+mod listing;
+mod part;
+
+pub use listing::ListingError;
+pub use part::Part;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use listing::{Instruction, listing};
+use serde::Serialize;
+use thiserror::Error;
+
+/// Why a program's file could not be taken apart.
+#[derive(Debug, Error)]
+pub enum AnatomyError {
+    /// It could not be read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// It cannot be listed.
+    #[error("{path}: {source}")]
+    Listing {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: ListingError,
+    },
+}
+
+/// What a program has of a part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Share {
+    /// Instructions.
+    pub instructions: u64,
+    /// Those of them that multiply floating-point numbers.
+    pub multiplications: u64,
+    /// Bytes of code.
+    pub bytes: u64,
+}
+
+/// The tick of a program, part by part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Anatomy {
+    shares: [Share; Part::ALL.len()],
+}
+
+impl Anatomy {
+    /// Takes the linked program in a file apart.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, or is not as [`of_elf`](Self::of_elf) needs it.
+    pub fn of_file(path: &Path) -> Result<Self, AnatomyError> {
+        let elf = fs::read(path)
+            .map_err(|source| AnatomyError::File { path: path.to_owned(), source })?;
+        Self::of_elf(&elf).map_err(|source| AnatomyError::Listing { path: path.to_owned(), source })
+    }
+
+    /// Takes the linked program in an ELF file apart. The tick is in it twice, with and without
+    /// [injected damping](Part::Injection), as far as the two have nothing in common.
+    ///
+    /// # Errors
+    /// Where the file is no program for the board, or has no line tables.
+    pub fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
+        let mut anatomy = Self::default();
+        listing(elf, |Instruction { functions, bytes, multiplies }| {
+            if let Some(part) = Part::of(functions) {
+                let share = &mut anatomy.shares[part as usize];
+                share.instructions += 1;
+                share.multiplications += u64::from(multiplies);
+                share.bytes += bytes;
+            }
+        })?;
+        Ok(anatomy)
+    }
+
+    /// What it has of a part; all zero where there is no trace of it.
+    pub fn share(&self, part: Part) -> Share {
+        self.shares[part as usize]
+    }
+
+    /// The tick as a whole.
+    pub fn whole(&self) -> Share {
+        self.shares.iter().fold(Share::default(), |sum, share| Share {
+            instructions: sum.instructions + share.instructions,
+            multiplications: sum.multiplications + share.multiplications,
+            bytes: sum.bytes + share.bytes,
+        })
+    }
+}

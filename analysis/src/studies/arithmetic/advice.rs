@@ -1,0 +1,156 @@
+//! Which number format is enough for a scene, and the cheapest that is.
+
+use firmware::certificate::Rest;
+use firmware::number::Arithmetic;
+use serde::{Serialize, Serializer};
+
+use super::{ArithmeticError, Losses, Motion};
+use crate::quantity::significant;
+use crate::verdict::AtRest;
+
+/// What a format has to keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Most torque in N m, from its lowest to its highest, that may be left at rest: by the format,
+    /// and by the encoder.
+    pub hum: f64,
+    /// Largest error of the torque in N m, if there is one.
+    pub error: Option<f64>,
+    /// Most of a core's time that a tick may take, as a part.
+    pub share: f64,
+    /// Ticks a second.
+    pub rate: f64,
+    /// Instructions that a core does in a second.
+    pub clock: f64,
+}
+
+/// A format with what it costs and loses.
+#[derive(Clone, Debug, Serialize)]
+pub struct Candidate {
+    /// Its name.
+    pub format: &'static str,
+    /// Most instructions of a tick from count to code.
+    pub instructions: f64,
+    /// Part of the core's time that these take at the rate.
+    pub share: f64,
+    /// What it loses; none where the scene cannot be had in it.
+    pub losses: Option<Losses>,
+    /// The most that it may hum by as certified, with encoder and converter, and the device's
+    /// friction against that; none where nothing bounds it.
+    #[serde(serialize_with = "at_rest")]
+    pub rest: Option<Rest>,
+    /// Why it is not taken; empty where it is, or is only dearer.
+    pub rejected: Vec<String>,
+}
+
+impl Candidate {
+    /// Whether the device's friction ends every hum, as far as encoder and converter were stated.
+    pub fn is_still(&self) -> bool {
+        is_still(self.rest.as_ref())
+    }
+}
+
+fn is_still(rest: Option<&Rest>) -> bool {
+    rest.is_some_and(|rest| rest.friction.is_some() && rest.comes_to_rest() != Some(false))
+}
+
+fn at_rest<S: Serializer>(rest: &Option<Rest>, to: S) -> Result<S::Ok, S::Error> {
+    rest.as_ref().map(AtRest::of).serialize(to)
+}
+
+/// All formats, the cheapest first.
+#[derive(Clone, Debug)]
+pub struct Advice {
+    /// The formats.
+    pub candidates: Vec<Candidate>,
+    /// Torque in N m by which the encoder alone hums, in the finest format; `None` where nobody has
+    /// said how fine it is.
+    pub encoder_hum: Option<f64>,
+    /// Most of that which is wanted.
+    hum: f64,
+}
+
+impl Advice {
+    /// Looks at all formats; `instructions` are those of a tick in each.
+    ///
+    /// # Errors
+    /// Where the scene is refused or cannot be simulated.
+    pub fn new(
+        motion: &Motion,
+        figures: &Figures,
+        mut instructions: impl FnMut(Arithmetic) -> Result<f64, ArithmeticError>,
+    ) -> Result<Self, ArithmeticError> {
+        let mut candidates = Vec::new();
+        let mut encoder_hum = None;
+        for arithmetic in Arithmetic::ALL {
+            let losses = match Losses::of(motion, arithmetic) {
+                Ok(losses) => Ok(losses),
+                Err(error @ (ArithmeticError::Servo(_) | ArithmeticError::Angle(_))) => Err(error),
+                Err(error) => return Err(error),
+            };
+            if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
+                encoder_hum = losses.with_encoder.map(|rest| rest.hum);
+            }
+            let instructions = match losses {
+                Ok(_) => instructions(arithmetic)?,
+                Err(_) => f64::INFINITY,
+            };
+            let rest = motion.subject().rest(arithmetic);
+            candidates.push(candidate(arithmetic, instructions, losses, rest, figures));
+        }
+        candidates.sort_by(|a, b| {
+            a.instructions.total_cmp(&b.instructions).then(hum(a).total_cmp(&hum(b)))
+        });
+        Ok(Self { candidates, encoder_hum, hum: figures.hum })
+    }
+
+    /// The cheapest format that keeps to the figures: with the encoder, where there is one.
+    pub fn choice(&self) -> Option<&Candidate> {
+        let keep = || self.candidates.iter().filter(|candidate| candidate.rejected.is_empty());
+        keep().find(|candidate| !self.hums(candidate)).or_else(|| keep().next())
+    }
+
+    /// Whether the encoder makes a format hum by more than is wanted, and no friction ends it.
+    pub fn hums(&self, candidate: &Candidate) -> bool {
+        !candidate.is_still() && self.encoder_hum.is_some_and(|hum| hum > self.hum)
+    }
+}
+
+/// What a format adds at rest; of two that cost the same the quieter one is better.
+fn hum(candidate: &Candidate) -> f64 {
+    candidate.losses.map_or(f64::INFINITY, |losses| losses.alone.hum)
+}
+
+fn candidate(
+    arithmetic: Arithmetic,
+    instructions: f64,
+    losses: Result<Losses, ArithmeticError>,
+    rest: Option<Rest>,
+    figures: &Figures,
+) -> Candidate {
+    let share = instructions * figures.rate / figures.clock;
+    let mut rejected = Vec::new();
+    let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
+        if value > bound {
+            let (value, bound) = (significant(value, 3), significant(bound, 3));
+            rejected.push(format!("{what} {value}{unit} is above {bound}{unit}"));
+        }
+        value > bound
+    };
+    match &losses {
+        Ok(losses) => {
+            let hums =
+                !is_still(rest.as_ref()) && beyond("hum", losses.alone.hum, figures.hum, " N m");
+            if let Some(bound) = figures.error {
+                let elsewhere = losses.error_elsewhere.unwrap_or_default();
+                beyond("error", losses.error.max(elsewhere), bound, " N m");
+            }
+            beyond("share of the core", 100.0 * share, 100.0 * figures.share, " %");
+            let too_little = rest.filter(|rest| hums && rest.friction.is_some());
+            rejected.extend(too_little.map(|rest| rest.to_string()));
+        }
+        Err(error) => rejected.push(error.to_string()),
+    }
+    let (format, losses) = (arithmetic.name(), losses.ok());
+    Candidate { format, instructions, share, losses, rest, rejected }
+}

@@ -1,0 +1,46 @@
+//! What a tick takes on the emulated board in a format.
+
+use firmware::number::Arithmetic;
+use firmware_harness::trial::Trial;
+
+use super::{ArithmeticError, Motion};
+use crate::emulator::Trials;
+
+/// Instructions of a tick from count to code, on the emulated board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// The most that a tick takes.
+    pub most: u32,
+    /// Their mean.
+    pub mean: f64,
+}
+
+/// Has the board follow a motion, beside this machine.
+///
+/// # Errors
+/// Where the scene cannot be had in this format, the board fails or has no program for it, or a
+/// torque or a code of the board is not to the bit that of this machine.
+pub fn cost(
+    board: &mut Trials,
+    motion: &Motion,
+    arithmetic: Arithmetic,
+) -> Result<Cost, ArithmeticError> {
+    let here = motion.torques(arithmetic)?;
+    let units = motion.subject().units(arithmetic);
+    let (scene, transducers) = motion.subject().scaled(arithmetic);
+    let trial = Trial::Servo { scene, transducers, arithmetic };
+    let counts: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
+    let there = board.compute(&trial, &counts)?;
+    let bits = |torque: f64, code| (torque.to_bits(), code);
+    let mut pairs = here.iter().zip(&there);
+    let differs = pairs.position(|(&(torque, code), there)| {
+        bits(torque, code) != bits(there.value * units.torque, there.code)
+    });
+    if let Some(tick) = differs {
+        return Err(ArithmeticError::Differs { format: arithmetic.name(), tick });
+    }
+    let instructions = there.iter().map(|output| output.instructions);
+    let most = instructions.clone().max().unwrap_or_default();
+    let mean = instructions.map(f64::from).sum::<f64>() / there.len() as f64;
+    Ok(Cost { most, mean })
+}

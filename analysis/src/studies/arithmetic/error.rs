@@ -1,0 +1,40 @@
+//! Why a scene has no figures in a number format.
+
+use firmware::certificate::Rejection;
+use firmware::number::OutOfRange;
+use firmware::servo::BuildError;
+use thiserror::Error;
+
+use crate::emulator::EmulatorError;
+use crate::simulation::SimulationError;
+
+/// Why a scene has no figures in a number format.
+#[derive(Debug, Error)]
+pub enum ArithmeticError {
+    /// The certificate refuses the scene.
+    #[error("{0}")]
+    Refused(Box<Rejection>),
+    /// The servo cannot be built in this format.
+    #[error(transparent)]
+    Servo(#[from] BuildError),
+    /// An angle does not fit the format.
+    #[error("the device's angle: {0}")]
+    Angle(#[from] OutOfRange),
+    /// The scene cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The emulated board failed.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The emulated board computes something else.
+    #[error(
+        "in {format} the torque of the emulated board is not that of this machine at tick {tick}: \
+         its program is of another version"
+    )]
+    Differs {
+        /// The number format.
+        format: &'static str,
+        /// The tick, counted from 0.
+        tick: usize,
+    },
+}

@@ -1,0 +1,38 @@
+//! All that a format loses of a scene's torque.
+
+use firmware::number::Arithmetic;
+use serde::Serialize;
+
+use super::{ArithmeticError, Motion, Rest, at_rest};
+
+/// What a format loses.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Losses {
+    /// Largest difference in N m to the torques of `f64` on the same counts.
+    pub error: f64,
+    /// The same around 1 rad; `None` where the scene cannot be moved there.
+    pub error_elsewhere: Option<f64>,
+    /// What is left at rest by the format alone.
+    pub alone: Rest,
+    /// What is left at rest with the encoder; `None` where nobody has said how fine that is.
+    pub with_encoder: Option<Rest>,
+}
+
+impl Losses {
+    /// What a format loses in a motion, and at rest.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had in this format.
+    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, ArithmeticError> {
+        let elsewhere = motion.around(1.0);
+        Ok(Self {
+            error: motion.error(arithmetic)?,
+            error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,
+            alone: at_rest(motion.subject(), arithmetic, false)?,
+            with_encoder: match motion.subject().steps.encoder {
+                Some(_) => Some(at_rest(motion.subject(), arithmetic, true)?),
+                None => None,
+            },
+        })
+    }
+}

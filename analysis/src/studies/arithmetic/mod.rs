@@ -1,0 +1,180 @@
+//! What the servo's number format does to its torque: the same servo in every format, on the same
+//! counts, in the same hand.
+
+mod advice;
+mod cost;
+mod error;
+mod friction;
+mod losses;
+mod motion;
+mod rest;
+mod units;
+
+pub use advice::{Advice, Candidate, Figures};
+pub use cost::{Cost, cost};
+pub use error::ArithmeticError;
+pub use losses::Losses;
+pub use motion::Motion;
+pub use rest::{Rest, at_rest};
+pub use units::Units;
+
+use firmware::certificate::Steps;
+use firmware::number::{Arithmetic, InEach, Number};
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use crate::controller::{Controller, controller};
+
+/// Largest angle in rad to each side that a scaled format has to hold, unless it is told: a knob's or
+/// a paddle's.
+pub const HALF_A_TURN: f64 = std::f64::consts::PI;
+
+/// A scene with its sensor and motor, to be computed in any format.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// The scene.
+    pub scene: Scene,
+    /// Its sensor and its motor.
+    pub transducers: Transducers,
+    /// What somebody has said of their steps, and of the device's friction.
+    pub steps: Steps,
+    /// Largest angle in rad to each side that a scaled format has to hold.
+    pub range: f64,
+}
+
+/// A servo that takes angles in rad and gives torques in N m, whatever it is scaled to inside.
+pub struct FormatServo {
+    controller: Box<dyn Controller>,
+    units: Units,
+}
+
+impl Subject {
+    /// What the numbers of a format count in this scene.
+    pub fn units(&self, arithmetic: Arithmetic) -> Units {
+        if arithmetic.is_scaled() {
+            let torque = self.scene.torque_limit.unwrap_or(self.transducers.full_scale_torque);
+            Units::above(self.range, torque)
+        } else {
+            Units::SI
+        }
+    }
+
+    /// The scene and its transducers in the units of a format.
+    pub fn scaled(&self, arithmetic: Arithmetic) -> (Scene, Transducers) {
+        let units = self.units(arithmetic);
+        (units.scene(&self.scene), units.transducers(&self.transducers))
+    }
+
+    /// The scene's servo in a format, at rest at zero.
+    ///
+    /// # Errors
+    /// Where the scene is refused, or cannot be had in this format.
+    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, ArithmeticError> {
+        let (scene, transducers) = self.scaled(arithmetic);
+        let controller = arithmetic.choose(Build { scene, transducers })?;
+        Ok(FormatServo { controller, units: self.units(arithmetic) })
+    }
+}
+
+impl FormatServo {
+    /// The torque in N m at a raw count, and the converter's code.
+    pub fn tick(&mut self, raw: i32) -> (f64, u16) {
+        let tick = self.controller.tick(raw);
+        (tick.torque * self.units.torque, tick.code)
+    }
+
+    /// The torque in N m at an angle in rad that no encoder has counted.
+    ///
+    /// # Errors
+    /// Where the format does not hold the angle.
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, ArithmeticError> {
+        Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
+    }
+}
+
+/// Builds a servo, in a format that is still to be chosen.
+struct Build {
+    scene: Scene,
+    transducers: Transducers,
+}
+
+impl InEach for Build {
+    type Output = Result<Box<dyn Controller>, ArithmeticError>;
+
+    fn with<N: Number>(self) -> Self::Output {
+        let certified = self.scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
+        Ok(controller::<_, N>(&certified, &self.transducers)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::encoder::CounterWidth;
+    use firmware::environment::{Coefficients, Environment, Rational, Wall};
+    use firmware::scene::{Coupling, Device, Timing};
+
+    use super::*;
+
+    /// Units are powers of two: the same bits come out, whatever a servo counts in.
+    #[test]
+    fn units_round_nothing() {
+        let wall = Wall {
+            stiffness: 22.0,
+            damping: 0.01,
+            filter: None,
+            delay: 1,
+            face: 0.01,
+            one_sided: true,
+        };
+        let numbers = |numbers: &[f64]| Coefficients::new(numbers).unwrap();
+        let rational = Rational {
+            numerator: numbers(&[13.0, -3.0]),
+            denominator: numbers(&[1.0, -0.3]),
+            delay: 1,
+            unit_zeros: 0,
+        };
+        for environment in [
+            Environment::DelayedSpring(Wall { one_sided: false, ..wall }),
+            Environment::DamperWall(wall),
+            Environment::FreeMode { residual: 0.002, delay: 0 },
+            Environment::FreeModeWall { residual: 0.02, wall: Wall { damping: 0.0, ..wall } },
+            Environment::Rational(rational),
+        ] {
+            let scene = Scene {
+                device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.021999) },
+                timing: Timing { period: 1e-3, worst_period: None },
+                coupling: Coupling::Spring { stiffness: 43.9 },
+                environment,
+                torque_limit: match environment {
+                    Environment::DelayedSpring(_) => Some(0.3),
+                    _ => None,
+                },
+            };
+            let transducers = Transducers {
+                counts_per_turn: 61_440.0,
+                counter: CounterWidth::Bits32,
+                full_scale_torque: 0.7,
+                largest_speed: 100.0,
+            };
+            let units = Units { angle: 4.0, torque: 0.25 };
+            let build = |scene, transducers| Build { scene, transducers }.with::<f64>().unwrap();
+            let mut plain = build(scene, transducers);
+            let mut scaled = build(units.scene(&scene), units.transducers(&transducers));
+            let mut count = 0;
+            for tick in 0..500 {
+                count += [3, -1, 40, -37, 2, -5][tick % 6];
+                let (plain, scaled) = (plain.tick(count), scaled.tick(count));
+                let torque = scaled.torque * units.torque;
+                assert_eq!(plain.torque.to_bits(), torque.to_bits(), "{environment:?} {tick}");
+                assert_eq!(plain.code, scaled.code, "{environment:?} {tick}");
+            }
+        }
+    }
+
+    #[test]
+    fn units_hold_what_they_are_asked_to() {
+        for (value, unit) in [(0.9, 1.0), (1.0, 2.0), (3.1, 4.0), (0.25, 0.5), (0.2, 0.25)] {
+            assert_eq!(Units::above(value, value), Units { angle: unit, torque: unit });
+        }
+    }
+}

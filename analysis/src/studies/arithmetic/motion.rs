@@ -1,0 +1,99 @@
+//! A motion of contact and free, and how far a format's torques are from those of `f64` in it.
+
+use firmware::environment::{Environment, Wall};
+use firmware::number::Arithmetic;
+
+use super::{ArithmeticError, Subject};
+use crate::controller::controller;
+use crate::hand::Script;
+use crate::rig::{Alone, SimulatedDevice, run};
+
+/// Counts of a device in a hand, as the servo in `f64` moves it.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    subject: Subject,
+    counts: Vec<i32>,
+    /// Where the comparison begins.
+    begin: usize,
+}
+
+/// Time in s in which the device is brought to its offset.
+const APPROACH: f64 = 1.0;
+
+impl Motion {
+    /// Moves the device by a hand's script, for so many s.
+    ///
+    /// # Errors
+    /// Where the scene is refused or cannot be simulated.
+    pub fn new(subject: &Subject, script: Script, seconds: f64) -> Result<Self, ArithmeticError> {
+        let Subject { scene, transducers, .. } = *subject;
+        let period = scene.timing.period;
+        let mut device = SimulatedDevice::new(scene.device, script, period, &transducers)?;
+        let certified = scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
+        let mut servo = controller::<_, f64>(&certified, &transducers)?;
+        let ticks = (seconds / period).ceil() as usize;
+        let Ok(run) = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
+        let counts = run.ticks.iter().map(|tick| tick.count as i32).collect();
+        Ok(Self::recorded(subject, counts))
+    }
+
+    /// Recorded raw counts.
+    pub fn recorded(subject: &Subject, counts: Vec<i32>) -> Self {
+        Self { subject: *subject, counts, begin: 0 }
+    }
+
+    /// The same motion around the whole count nearest to so many rad, with the wall's face there;
+    /// `None` where the environment has its rest at zero and nowhere else.
+    pub fn around(&self, angle: f64) -> Option<Self> {
+        let counts_per_radian = self.subject.transducers.counts_per_turn / std::f64::consts::TAU;
+        let offset = (angle * counts_per_radian).round();
+        let place = offset / counts_per_radian;
+        let moved = |wall: Wall| Wall { face: wall.face + place, ..wall };
+        let mut subject = self.subject;
+        subject.scene.environment = match subject.scene.environment {
+            Environment::DelayedSpring(wall) => Environment::DelayedSpring(moved(wall)),
+            Environment::DamperWall(wall) => Environment::DamperWall(moved(wall)),
+            free @ Environment::FreeMode { .. } => free,
+            Environment::FreeModeWall { residual, wall } => {
+                Environment::FreeModeWall { residual, wall: moved(wall) }
+            }
+            Environment::Rational(_) => return None,
+        };
+        let begin = (APPROACH / subject.scene.timing.period).ceil() as usize;
+        let approach = (0..begin).map(|tick| {
+            let part = tick as f64 / begin as f64;
+            (offset * part * part * (3.0 - 2.0 * part)).round() as i32
+        });
+        let there = self.counts.iter().map(|count| count + offset as i32);
+        Some(Self { subject, counts: approach.chain(there).collect(), begin })
+    }
+
+    /// The raw counts, one a tick.
+    pub fn counts(&self) -> &[i32] {
+        &self.counts
+    }
+
+    /// What moves.
+    pub fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    /// Torques in N m and codes in a format, tick by tick.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had in this format.
+    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, ArithmeticError> {
+        let mut servo = self.subject.servo(arithmetic)?;
+        Ok(self.counts.iter().map(|&count| servo.tick(count)).collect())
+    }
+
+    /// Largest difference in N m of a format's torques to those of `f64` on the same counts.
+    ///
+    /// # Errors
+    /// Where the scene cannot be had in this format.
+    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, ArithmeticError> {
+        let (here, reference) = (self.torques(arithmetic)?, self.torques(Arithmetic::F64)?);
+        let pairs = here.iter().zip(&reference).skip(self.begin);
+        Ok(pairs.fold(0.0, |most, (here, reference)| (here.0 - reference.0).abs().max(most)))
+    }
+}

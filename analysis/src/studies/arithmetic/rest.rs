@@ -1,0 +1,125 @@
+//! What does not come to rest where everything should: a device without friction under a constant
+//! push, which only rounding keeps in motion.
+
+use firmware::environment::Environment;
+use firmware::number::Arithmetic;
+use serde::Serialize;
+
+use super::{ArithmeticError, FormatServo, Subject};
+use crate::device::{Grip, Hand, Motion, SimulatedEncoder};
+use crate::simulation::held::HeldDevice;
+
+/// What is left of the motion of a device that is pushed against a wall, or let go in free mode.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rest {
+    /// Torque in N m from its lowest to its highest, the most that any start ends with.
+    pub hum: f64,
+    /// Angle in rad from its lowest to its highest, the least that any start ends with.
+    pub cycle: f64,
+}
+
+/// Torque in N m that pushes against a wall, or half of the limit where that is less.
+pub const PRELOAD: f64 = 0.2;
+/// Starts in rad off zero.
+const STARTS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
+/// Time in s over which a motion is looked at.
+const WINDOW: f64 = 0.25;
+/// Most windows until a motion has died away as far as it will.
+const WINDOWS: usize = 40;
+/// A motion that has not become smaller by this part from one window to the next has died away.
+const STEADY: f64 = 0.9;
+
+/// Lets a device come to rest, from several starts; with an encoder whose counts are as coarse as
+/// the scene's, or with angles that no encoder has counted.
+///
+/// # Errors
+/// Where the scene is refused, or cannot be had in this format.
+pub fn at_rest(
+    subject: &Subject,
+    arithmetic: Arithmetic,
+    with_encoder: bool,
+) -> Result<Rest, ArithmeticError> {
+    let encoder = with_encoder.then(|| SimulatedEncoder::new(subject.transducers.counts_per_turn));
+    let scene = &subject.scene;
+    let device = HeldDevice::new(scene.device, Hand::default(), scene.timing.period)?;
+    let limit = scene.torque_limit.unwrap_or(subject.transducers.full_scale_torque);
+    let push = if has_spring(&scene.environment) { PRELOAD.min(0.5 * limit) } else { 0.0 };
+    let mut rest = Rest { hum: 0.0, cycle: f64::INFINITY };
+    for start in STARTS {
+        let servo = subject.servo(arithmetic)?;
+        let motion = Motion { position: start, velocity: 0.0 };
+        let mut settling = Settling { device: &device, servo, encoder, push, motion };
+        let left = settling.settle((WINDOW / scene.timing.period).ceil() as usize)?;
+        rest = Rest { hum: rest.hum.max(left.hum), cycle: rest.cycle.min(left.cycle) };
+    }
+    Ok(rest)
+}
+
+/// Whether there is something to lean on.
+fn has_spring(environment: &Environment) -> bool {
+    match environment {
+        Environment::FreeMode { .. } => false,
+        Environment::Rational(rational) => {
+            rational.unit_zeros == 0 && rational.numerator.as_slice().iter().sum::<f64>() != 0.0
+        }
+        _ => true,
+    }
+}
+
+/// A device that comes to rest.
+struct Settling<'a> {
+    device: &'a HeldDevice,
+    servo: FormatServo,
+    encoder: Option<SimulatedEncoder>,
+    push: f64,
+    motion: Motion,
+}
+
+impl Settling<'_> {
+    /// What is left in a window of so many ticks when it has become as little as it will.
+    fn settle(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
+        let mut last = self.window(ticks)?;
+        for _ in 1..WINDOWS {
+            let next = self.window(ticks)?;
+            if next.hum >= STEADY * last.hum && next.cycle >= STEADY * last.cycle {
+                return Ok(next);
+            }
+            last = next;
+        }
+        Ok(last)
+    }
+
+    fn window(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
+        let (mut torques, mut angles) = (Span::EMPTY, Span::EMPTY);
+        for _ in 0..ticks {
+            let angle = self.motion.position;
+            let torque = match &self.encoder {
+                Some(encoder) => self.servo.tick(encoder.read(angle)).0,
+                None => self.servo.tick_at(angle)?,
+            };
+            torques.add(torque);
+            angles.add(angle);
+            self.motion = self.device.step(self.motion, self.push - torque, Grip::default()).0;
+        }
+        Ok(Rest { hum: torques.length(), cycle: angles.length() })
+    }
+}
+
+/// From the lowest to the highest.
+struct Span {
+    low: f64,
+    high: f64,
+}
+
+impl Span {
+    const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    fn add(&mut self, value: f64) {
+        self.low = self.low.min(value);
+        self.high = self.high.max(value);
+    }
+
+    fn length(&self) -> f64 {
+        self.high - self.low
+    }
+}

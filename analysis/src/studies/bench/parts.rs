@@ -1,0 +1,109 @@
+//! What each scene has of each part of a tick, and what it keeps: no more than it uses.
+
+use comfy_table::{CellAlignment, Table, presets};
+use serde::Serialize;
+
+use super::Figure;
+use crate::program::{Program, State};
+use crate::studies::anatomy::{Anatomy, AnatomyError, Part, Share};
+use crate::toolchain::{self, NumberFormat};
+
+/// What a scene's program has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Inventory {
+    /// Name of the program.
+    pub scene: &'static str,
+    /// The tick from count to code in `f32`, as it is linked into the servo's interrupt: with and
+    /// without injected damping, one after the other.
+    pub tick: Share,
+    /// Its parts, in the order of a tick.
+    pub parts: Vec<PartShare>,
+    /// What the servo keeps in `f32`.
+    pub state_f32: State,
+    /// What it keeps in the scene's fixed-point format.
+    pub state_fixed: State,
+    /// Bytes of flash of the whole program, without log.
+    pub flash: u64,
+    /// Bytes of its RAM.
+    pub ram: u64,
+}
+
+/// What of a tick is one part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartShare {
+    /// The part.
+    pub part: String,
+    /// What there is of it.
+    #[serde(flatten)]
+    pub share: Share,
+}
+
+impl Inventory {
+    /// Of a program that was built for the emulated board without log.
+    ///
+    /// # Errors
+    /// Where the program cannot be taken apart.
+    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, AnatomyError> {
+        let anatomy = Anatomy::of_file(&built.path)?;
+        let part = |part: Part| PartShare { part: part.to_string(), share: anatomy.share(part) };
+        Ok(Self {
+            scene: program.name,
+            tick: anatomy.whole(),
+            parts: Part::ALL.map(part).to_vec(),
+            state_f32: (program.state)(NumberFormat::F32),
+            state_fixed: (program.state)(NumberFormat::Fixed),
+            flash: built.sizes.flash(),
+            ram: built.sizes.ram(),
+        })
+    }
+
+    /// Its figures as a benchmark lists them, the parts left out.
+    pub fn figures(&self) -> Vec<Figure> {
+        let figures = [
+            ("flash without log", self.flash, "bytes"),
+            ("RAM without log", self.ram, "bytes"),
+            ("both ticks in the linked program, f32", self.tick.bytes, "bytes"),
+            ("both ticks in the linked program, f32", self.tick.instructions, "instructions"),
+            ("both ticks in the linked program, f32", self.tick.multiplications, "multiplications"),
+            ("state of the servo, f32", self.state_f32.servo as u64, "bytes"),
+            ("state of the servo, fixed", self.state_fixed.servo as u64, "bytes"),
+            ("state of the environment, f32", self.state_f32.environment as u64, "bytes"),
+            ("state of the environment, fixed", self.state_fixed.environment as u64, "bytes"),
+        ];
+        let figure = |(what, value, unit)| {
+            Figure::new(format!("{}: {what}", self.scene), value as f64, unit, None, "")
+        };
+        figures.map(figure).to_vec()
+    }
+}
+
+/// The scenes side by side, for a person.
+pub fn table(scenes: &[Inventory]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header([""].into_iter().chain(scenes.iter().map(|of| of.scene)));
+    let mut row = |name: String, cell: &dyn Fn(&Inventory) -> String| {
+        table.add_row([name].into_iter().chain(scenes.iter().map(cell)));
+    };
+    let share = |Share { instructions, multiplications, bytes }: Share| match instructions {
+        0 => "-".to_owned(),
+        _ => format!("{instructions}, {multiplications}, {bytes}"),
+    };
+    row("both ticks: instructions, of them multiplications, bytes".into(), &|of| share(of.tick));
+    for (index, part) in Part::ALL.iter().enumerate() {
+        row(format!("of it {part}"), &|of| share(of.parts[index].share));
+    }
+    let bytes = |[f32, fixed]: [usize; 2]| format!("{f32}, {fixed}");
+    row("state of the servo in f32, in fixed: bytes".into(), &|of| {
+        bytes([of.state_f32, of.state_fixed].map(|state| state.servo))
+    });
+    row("of it the environment".into(), &|of| {
+        bytes([of.state_f32, of.state_fixed].map(|state| state.environment))
+    });
+    row("flash: bytes".into(), &|of| of.flash.to_string());
+    row("RAM: bytes".into(), &|of| of.ram.to_string());
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}

@@ -1,0 +1,71 @@
+//! Frequency grids: the narrow minimum between two points.
+
+use std::f64::consts::PI;
+
+use firmware::certificate::Loop;
+use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::scene::Scene;
+
+use super::case::{FailureError, Study};
+use super::claim::{Claim, Says};
+use super::fate::End;
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial};
+use crate::device::Hand;
+use crate::response::Response;
+use crate::simulation::{Experiment, SimulationError, Stride};
+
+/// Distance of the resonance's pole from the unit circle.
+const NARROW: f64 = 1e-6;
+/// Points of the grids.
+const GRIDS: [u32; 4] = [100, 1000, 10_000, 100_000];
+/// Depth of the minimum over the device's passivity.
+const DEPTH: f64 = 100.0;
+
+/// A resonance that gives back what it should take: its real part is negative within a millionth
+/// of a radian, and nowhere else by more than the device pays for.
+pub fn grid() -> Result<Study, FailureError> {
+    let scene = coupled(PADDLE, resonance(DEPTH, angle()));
+    let delta = PADDLE.damping;
+    let velocity = equivalent(&scene)?.from_velocity(PERIOD);
+    let claims = GRIDS.map(|points| {
+        let angles = (1..points).map(|point| PI * f64::from(point) / f64::from(points));
+        let alpha = angles.map(|theta| -velocity.at_angle(theta).re).fold(f64::MIN, f64::max);
+        let because = "the least real part on the grid asks for {} N m s/rad";
+        Claim::new(format!("grid of {points}"), Says::of(alpha < delta), alpha, because)
+    });
+    let alone = Experiment::still(&scene);
+    let truth = Claim::eigenvalues("exact exponential, in no hand", &alone, Stride::default())?;
+    // A spring with which the device resonates where the minimum is.
+    let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
+    let mut grows = trial("in a hand that resonates there", &scene, PADDLES, End::Grows);
+    grows.experiment.plant = grows.experiment.plant.held(Hand { stiffness, ..Hand::default() });
+    let certificate = Claim::certificate(&scene);
+    let trials = vec![grows.pushed(1.0, 300_000)];
+    Ok(Study { claims: claims.into(), certificate, truth, trials })
+}
+
+/// In the middle between two points of the finest grid, a third of the way around.
+fn angle() -> f64 {
+    let finest = f64::from(GRIDS[GRIDS.len() - 1]);
+    PI * ((finest / 3.0).floor() + 0.5) / finest
+}
+
+/// `E = -g (z - 1) (z^2 - 1) / (z (z^2 - 2 r c z + r^2))`: seen from velocity, `-depth delta` at
+/// the angle whose cosine is `c`, within `1 - r` of it.
+fn resonance(depth: f64, angle: f64) -> Environment {
+    let r = 1.0 - NARROW;
+    let gain = depth * PADDLE.damping * NARROW / PERIOD;
+    let polynomial = |values: &[f64]| Coefficients::new(values).expect("four coefficients fit");
+    Environment::Rational(Rational {
+        // With the two zeros at 1 that are declared.
+        numerator: polynomial(&[-gain, -gain]),
+        denominator: polynomial(&[1.0, -2.0 * r * angle.cos(), r * r, 0.0]),
+        delay: 0,
+        unit_zeros: 2,
+    })
+}
+
+/// The environment that behind the standard coupling is this scene's controller.
+fn equivalent(scene: &Scene) -> Result<Response, FailureError> {
+    Ok(Response::new(Loop::of(scene).map_err(SimulationError::from)?.equivalent))
+}

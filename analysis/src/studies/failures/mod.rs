@@ -1,0 +1,58 @@
+//! Where methods fail: what each says about a loop, what is true, and what the certificate had said
+//! before.
+//!
+//! A case is a question about one loop. Methods that others use answer it, and so do the certificate
+//! and something that does not err on it; the loop is then run, in simulation and with the emulated
+//! board as its servo.
+
+mod case;
+pub mod claim;
+pub mod converters;
+pub mod fate;
+pub mod grid;
+pub mod integration;
+pub mod loaded;
+pub mod missed;
+pub mod observer;
+pub mod region;
+pub mod report;
+pub mod roots;
+pub mod rules;
+pub mod setting;
+pub mod trial;
+pub mod walls;
+pub mod zigzag;
+
+pub use case::{Case, FailureError, Study};
+
+macro_rules! cases {
+    ($($name:literal, $question:literal, $study:path;)*) => {
+        /// All cases, in the order in which they are shown.
+        pub const ALL: &[Case] =
+            &[$(Case { name: $name, question: $question, study: $study }),*];
+    };
+}
+
+cases! {
+    "explicit-euler", "a certified wall on two masses", integration::explicit_euler;
+    "semi-implicit-euler", "a spring of 1500 N m/rad", integration::semi_implicit_euler;
+    "runge-kutta", "a spring of 2750 N m/rad on two masses in a hand", integration::runge_kutta;
+    "continuous-time", "a spring of 5000 N m/rad", rules::continuous_time;
+    "negative-spring", "a spring of -200 N m/rad", rules::negative_spring;
+    "damped-rule", "a late wall whose damping is the device's", rules::damped_rule;
+    "grid", "a resonance of the wrong sign", grid::grid;
+    "pole-outside", "a filter with a pole at 1 + 2^-20", roots::outside;
+    "pole-inside", "a filter with a pole at 1 - 2^-20", roots::inside;
+    "passivity-observer", "a certified wall and an observer", observer::passivity_observer;
+    "fixed-point", "the paper's wall in Q16.16", converters::fixed_point;
+    "encoder", "the paper's wall behind an encoder", converters::encoder;
+    "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
+    "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
+}
+
+impl Case {
+    /// The case of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|case| case.name == name)
+    }
+}

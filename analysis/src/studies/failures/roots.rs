@@ -1,0 +1,94 @@
+//! Roots in floating point: a pole a millionth beside the circle, with others near it.
+
+use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::scene::Scene;
+use nalgebra::{Complex, DMatrix};
+
+use super::case::{FailureError, Study};
+use super::claim::{Claim, Says};
+use super::setting::{PADDLE, rigid};
+use crate::stability::{eigenvalues, radius};
+
+/// Distance of the pole from the circle: 2^-20, so that every coefficient is a double.
+pub const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+/// How far inside the circle the four other poles are.
+pub const OTHERS: f64 = 1.0 / (1 << 8) as f64;
+
+/// A pole outside, which the roots of the denominator show inside.
+pub fn outside() -> Result<Study, FailureError> {
+    study(1.0 + BESIDE)
+}
+
+/// The same pole inside, which they show outside.
+pub fn inside() -> Result<Study, FailureError> {
+    study(1.0 - BESIDE)
+}
+
+/// A smooth filter of the fifth order before a spring, with these poles.
+pub fn scene(pole: f64) -> Scene {
+    let coefficients = |values: &[f64]| Coefficients::new(values).expect("six coefficients fit");
+    rigid(
+        PADDLE,
+        Environment::Rational(Rational {
+            numerator: coefficients(&[1e-12]),
+            denominator: coefficients(&denominator(pole)),
+            delay: 0,
+            unit_zeros: 0,
+        }),
+    )
+}
+
+/// `(z - pole) (z - (1 - OTHERS))^4` in descending powers, without rounding.
+pub fn denominator(pole: f64) -> Vec<f64> {
+    let factor = |product: Vec<f64>, root: f64| {
+        let shifted = [&product[..], &[0.0]].concat();
+        shifted.iter().zip([&[0.0], &product[..]].concat()).map(|(a, b)| a - root * b).collect()
+    };
+    [pole, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS, 1.0 - OTHERS]
+        .into_iter()
+        .fold(vec![1.0], factor)
+}
+
+fn study(pole: f64) -> Result<Study, FailureError> {
+    let scene = scene(pole);
+    let companion = companion(&denominator(pole));
+    let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();
+    let root = "outermost root of the denominator";
+    let claims = vec![
+        Claim::modulus("companion matrix", root, radius(&plain)),
+        Claim::modulus("companion matrix, balanced", root, radius(&eigenvalues(&companion)?)),
+    ];
+    let growth = growth(pole);
+    let because = "factor by factor its output is {} of what it was, 2^20 samples later";
+    let truth = Claim::new("its response", Says::of(growth < 1.0), growth, because);
+    let certificate = Claim::certificate(&scene);
+    Ok(Study { claims, certificate, truth, trials: Vec::new() })
+}
+
+fn companion(descending: &[f64]) -> DMatrix<f64> {
+    let degree = descending.len() - 1;
+    DMatrix::from_fn(degree, degree, |row, column| match row {
+        0 => -descending[column + 1],
+        _ => f64::from(u8::from(row == column + 1)),
+    })
+}
+
+/// By what the filter's response to an impulse changes over 2^20 samples, once its four fast poles
+/// have died away; computed factor by factor, each of which is exact to a rounding a sample.
+fn growth(pole: f64) -> f64 {
+    const LATER: usize = 1 << 20;
+    let mut states = [0.0; 5];
+    let mut run = |samples: usize, mut input: f64| {
+        for _ in 0..samples {
+            for (state, root) in states.iter_mut().zip([1.0 - OTHERS; 4].into_iter().chain([pole]))
+            {
+                *state = root * *state + std::mem::replace(&mut input, 0.0);
+                input = *state;
+            }
+            input = 0.0;
+        }
+        states[4]
+    };
+    let early = run(1 << 16, 1.0);
+    run(LATER, 0.0) / early
+}

@@ -1,0 +1,64 @@
+//! A hand that goes to and fro over one edge of the encoder, a tick each: the least friction that
+//! keeps a wall passive is no less than section 8 of the theory asks for.
+
+use std::f64::consts::TAU;
+
+use firmware::certificate::Steps;
+use firmware::number::Format;
+use firmware::scene::Scene;
+use firmware::torque::LimitReason;
+
+use super::case::{FailureError, Study};
+use super::claim::{Claim, Says};
+use super::fate::End;
+use super::setting::{PADDLE, PADDLES, encoder_friction, rigid, trial, wall_of};
+use crate::simulation::SimulationError;
+use crate::simulation::rendering::Rendering;
+
+/// Times to and fro.
+const TIMES: usize = 8;
+/// Way of the hand to both sides of the edge, in steps of the encoder.
+const BESIDE: f64 = 0.1;
+/// Part of the friction that is needed.
+const ALMOST: f64 = 0.99;
+
+/// A wall with almost the friction that it needs: by itself it comes to rest.
+pub fn zigzag() -> Result<Study, FailureError> {
+    let scene = wall();
+    let needed = encoder_friction(&scene, &PADDLES);
+    // Whatever the converter's steps are.
+    let steps = Steps { full_scale: None, ..Steps::of(&PADDLES, Some(ALMOST * needed)) };
+    let certificate = Claim::at_rest(&scene, Format::F64, &steps);
+    let mut rests = trial("in no hand", &scene, PADDLES, End::Rests).pushed(1.0, 2000);
+    rests.experiment.encoder_step = Some(TAU / PADDLES.counts_per_turn);
+    rests.experiment.friction = ALMOST * needed;
+    let claims = vec![Claim::simulated("simulation in no hand", &rests)?];
+    let gained = gained(&scene, ALMOST * needed)?;
+    let because = "a hand that goes over one edge and back gets {} J out each time";
+    let truth = Claim::new("zigzag", Says::of(gained <= 0.0), gained, because);
+    Ok(Study { claims, certificate, truth, trials: vec![rests] })
+}
+
+/// The wall: neither delayed nor coupled, so that its torque is the encoder's step times its gains.
+pub fn wall() -> Scene {
+    rigid(PADDLE, wall_of(20.0, 0.005, 0))
+}
+
+/// Energy in J that a hand gets out of a wall and its dry friction each time that it goes over an
+/// edge of the encoder and back.
+///
+/// # Errors
+/// Where the scene has no law that could run.
+pub fn gained(scene: &Scene, friction: f64) -> Result<f64, FailureError> {
+    let step = TAU / PADDLES.counts_per_turn;
+    let mut servo = Rendering::new(scene).map_err(SimulationError::from)?;
+    let mut work = [0.0; 2];
+    for half in 0..2 * TIMES {
+        // Below the edge, and on its way up; above it, and on its way down.
+        let (count, sign) = if half % 2 == 0 { (-1.0, 1.0) } else { (0.0, -1.0) };
+        let (torque, _) = servo.tick(count * step, LimitReason::None);
+        let way = sign * 2.0 * BESIDE * step;
+        work[half % 2] = -torque * way - friction * way.abs();
+    }
+    Ok(work.iter().sum())
+}

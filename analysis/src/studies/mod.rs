@@ -1,0 +1,10 @@
+//! Studies and measurements: what methods, number formats, device models and linked programs cost and
+//! lose. None of them is needed to certify, simulate or run a scene, and nothing below uses them; the
+//! charts and the commands show what they find.
+
+pub mod anatomy;
+pub mod arithmetic;
+pub mod bench;
+pub mod failures;
+pub mod model;
+pub mod tradeoff;

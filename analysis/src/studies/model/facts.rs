@@ -1,0 +1,88 @@
+//! What a model says about a scene: verdicts, motion, and what it costs to ask.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use firmware::scene::Scene;
+use serde::Serialize;
+
+use super::Model;
+use crate::file::SceneFile;
+use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
+use crate::stability;
+use crate::studies::bench::median;
+use crate::verdict::{self, Report};
+
+/// What a model says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Facts {
+    /// States of the loop, the servo's included.
+    pub states: usize,
+    /// Samples that are simulated in a second on one core of this machine.
+    pub steps_per_second: f64,
+    /// Passivity in N m s/rad that the certificate counts on; `None` where the device of this model
+    /// has none.
+    pub delta: Option<f64>,
+    /// The certificate's answer; `None` where there is no `delta`.
+    pub certificate: Option<verdict::Verdict>,
+    /// Whether the loop is stable in the model's hand.
+    pub stability: stability::Verdict,
+    /// Stiffness of the environment in N m/rad at which it stops being so.
+    pub critical_stiffness: Option<f64>,
+    /// What the run of the file gives.
+    #[serde(skip)]
+    pub motion: Trajectory,
+}
+
+impl Facts {
+    /// Asks a model of a file's machine; `run` is what the file wants to be simulated.
+    pub(super) fn of(
+        model: Model,
+        file: &SceneFile,
+        run: &Experiment,
+    ) -> Result<Self, SimulationError> {
+        let (experiment, stride) =
+            (Experiment { plant: model.plant(file), ..run.clone() }, Stride::default());
+        let certificate = certificate(model, file);
+        let stability = stability::judge(&experiment, stride)?;
+        Ok(Self {
+            states: stability::closed_loop(&experiment, stride)?.matrix.nrows(),
+            steps_per_second: speed(&experiment)?,
+            delta: certificate.as_ref().map(|report| report.delta),
+            certificate: certificate.map(|report| report.verdict),
+            stability: stability.verdict,
+            critical_stiffness: stability.critical_stiffness,
+            motion: simulate(&experiment, stride)?,
+        })
+    }
+}
+
+/// The certificate of the scene on the model's device, if that has any passivity: its own, or what
+/// the file declares where that is less.
+fn certificate(model: Model, file: &SceneFile) -> Option<Report> {
+    let mut device = model.chain(file).as_rigid().ok()?;
+    if let Some(declared) = declared(file) {
+        device.passivity = Some(device.passivity.unwrap_or(device.damping).min(declared));
+    }
+    Some(verdict::judge(&file.name, &Scene { device, ..file.scene }))
+}
+
+/// The passivity that the file declares, if it is not that of its chain.
+fn declared(file: &SceneFile) -> Option<f64> {
+    let own = file.chain.as_rigid().ok()?.passivity;
+    file.scene.device.passivity.filter(|&passivity| own != Some(passivity))
+}
+
+/// Median over a few rounds.
+fn speed(experiment: &Experiment) -> Result<f64, SimulationError> {
+    const STEPS: usize = 4096;
+    const ROUNDS: usize = 5;
+    let experiment = Experiment { samples: STEPS, ..experiment.clone() };
+    let mut times = Vec::new();
+    for _ in 0..ROUNDS {
+        let start = Instant::now();
+        black_box(simulate(black_box(&experiment), Stride::default())?);
+        times.push(start.elapsed().as_secs_f64());
+    }
+    Ok(STEPS as f64 / median(times))
+}

@@ -1,0 +1,179 @@
+//! Ways to an index and a verdict: by formula, by enclosure, on a grid, by roots.
+
+use std::f64::consts::PI;
+
+use firmware::passivity::discrete::{RealPart, index_near, index_within};
+use firmware::passivity::interval::Interval;
+use firmware::passivity::poles::Obstacle;
+use firmware::passivity::polynomial::Polynomial;
+use firmware::passivity::transfer::Transfer;
+use nalgebra::Complex;
+
+use super::environments::{Environment, PERIOD};
+use super::polynomials::{monomials, real_part, roots, squared};
+use crate::closed_form;
+
+/// Coarsest angle of a logarithmic grid in rad.
+const NEAREST: f64 = 1e-6;
+/// A root whose imaginary part is no larger counts as real.
+const REAL: f64 = 1e-6;
+
+/// A verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Passive.
+    Yes,
+    /// Not passive.
+    No,
+    /// Left open.
+    Open,
+}
+
+/// What a judge says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// The ends of what it says of the index in N m s/rad, one number twice where it has no bounds;
+    /// `None` where it says nothing.
+    pub alpha: Option<(f64, f64)>,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+/// A way to an index and a verdict.
+#[derive(Clone, Debug)]
+pub enum Judge {
+    /// The formula of theory, section 5.
+    ClosedForm,
+    /// The certificate's enclosure, so tight relative to the index.
+    Enclosure(f64),
+    /// The certificate's enclosure until it is clear whether it will be a proof; what is not proved
+    /// is refused, and the index is not looked for.
+    Decision,
+    /// The least of so many values, and how they lie.
+    Grid(Grid),
+    /// Zeros of the derivative as eigenvalues of a companion matrix.
+    Roots,
+}
+
+/// Points on the upper half of the circle, with `z / (z - 1)` there.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    points: Vec<(Complex<f64>, Complex<f64>)>,
+}
+
+impl Grid {
+    /// So many points, the last at -1, as far apart in their angles or in the logarithms of these.
+    pub fn new(count: usize, is_logarithmic: bool) -> Self {
+        let angle = |i: usize| {
+            let part = (i + 1) as f64 / count as f64;
+            if is_logarithmic { PI * (NEAREST / PI).powf(1.0 - part) } else { PI * part }
+        };
+        let point = |angle: f64| {
+            let kernel = Complex::new(0.5, -0.5 / (0.5 * angle).tan());
+            (Complex::from_polar(1.0, angle), kernel)
+        };
+        Self { points: (0..count).map(angle).map(point).collect() }
+    }
+
+    /// Number of points.
+    pub fn count(&self) -> usize {
+        self.points.len()
+    }
+
+    fn least(&self, environment: &Environment) -> f64 {
+        let horner = |values: &[f64], z: Complex<f64>| {
+            values.iter().fold(Complex::ZERO, |sum, &value| sum * z + value)
+        };
+        let real = |&(z, kernel): &(Complex<f64>, Complex<f64>)| {
+            let shifted = (0..environment.delay).fold(kernel, |value, _| value * z.conj());
+            (shifted * horner(&environment.numerator, z) / horner(&environment.denominator, z)).re
+        };
+        PERIOD * self.points.iter().map(real).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Judge {
+    /// What it says of an environment on a device of passivity `delta`; `None` where it knows
+    /// nothing of such environments.
+    pub fn ask(&self, environment: &Environment, delta: f64) -> Option<Answer> {
+        let period = Interval::exact(PERIOD);
+        match self {
+            Self::ClosedForm => {
+                let (stiffness, damping) = environment.wall?;
+                let (k, b) = (Interval::exact(stiffness), Interval::exact(damping));
+                let alpha = match damping {
+                    0.0 => closed_form::delayed_spring(k, period, environment.delay),
+                    _ => closed_form::damper_wall(k, b, period, environment.delay)?,
+                };
+                Some(enclosed(alpha, delta))
+            }
+            Self::Enclosure(tolerance) => {
+                Some(proved(index_within(transfer(environment), period, false, *tolerance), delta))
+            }
+            Self::Decision => {
+                let limit = Interval::exact(delta);
+                let found = proved(index_near(transfer(environment), period, false, limit), delta);
+                let is_proved = found.verdict == Verdict::Yes;
+                let verdict = if is_proved { Verdict::Yes } else { Verdict::No };
+                Some(Answer { alpha: None, verdict })
+            }
+            Self::Grid(grid) => Some(seen(environment, delta, || Some(grid.least(environment)))),
+            Self::Roots => Some(seen(environment, delta, || least_at_roots(environment))),
+        }
+    }
+}
+
+fn transfer(environment: &Environment) -> Transfer {
+    let polynomial = |values: &[f64]| Polynomial::descending(values, false);
+    Transfer {
+        shift: -(environment.delay as i32),
+        ..Transfer::new(polynomial(&environment.numerator), polynomial(&environment.denominator))
+    }
+}
+
+fn enclosed(alpha: Interval, delta: f64) -> Answer {
+    let verdict = match () {
+        () if alpha.hi() < delta => Verdict::Yes,
+        () if alpha.lo() >= delta => Verdict::No,
+        () => Verdict::Open,
+    };
+    Answer { alpha: Some((alpha.lo(), alpha.hi())), verdict }
+}
+
+fn proved(found: Result<RealPart, Obstacle>, delta: f64) -> Answer {
+    match found {
+        Ok(found) => enclosed(found.minimum, delta),
+        Err(Obstacle::Undecided(_)) => Answer { alpha: None, verdict: Verdict::Open },
+        Err(_) => Answer { alpha: None, verdict: Verdict::No },
+    }
+}
+
+/// What ordinary arithmetic sees: poles by their roots, the sign of the residue at 1, then the
+/// least real part.
+fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> Answer {
+    let nothing = |verdict| Answer { alpha: None, verdict };
+    let Some(poles) = roots(&environment.denominator) else { return nothing(Verdict::Open) };
+    let at_one = |values: &[f64]| values.iter().sum::<f64>();
+    let residue = at_one(&environment.numerator) / at_one(&environment.denominator);
+    if poles.iter().any(|pole| pole.norm() >= 1.0) || residue < 0.0 {
+        return nothing(Verdict::No);
+    }
+    match least() {
+        Some(least) => {
+            let verdict = if -least < delta { Verdict::Yes } else { Verdict::No };
+            Answer { alpha: Some((-least, -least)), verdict }
+        }
+        None => nothing(Verdict::Open),
+    }
+}
+
+/// The least of `T p / (2 r)` among the ends and the real zeros of its derivative.
+fn least_at_roots(environment: &Environment) -> Option<f64> {
+    let p = monomials(&real_part(environment));
+    let r = monomials(&squared(&environment.denominator));
+    let derivative = p.slope().times(&r).minus(&p.times(&r.slope()));
+    let found = roots(&derivative.descending())?;
+    let inside = found.into_iter().filter(|z| z.im.abs() <= REAL && z.re.abs() < 1.0);
+    let values = inside.map(|z| z.re).chain([-1.0, 1.0]).map(|c| p.at(c) / r.at(c));
+    Some(0.5 * PERIOD * values.fold(f64::INFINITY, f64::min))
+}

@@ -1,0 +1,108 @@
+use super::*;
+use crate::table::Table;
+
+fn kept() -> Tradeoff {
+    let kept = include_bytes!("../../../../pictures/tradeoff/certificate.csv");
+    Tradeoff::read(&SUBJECT, Table::new("certificate.csv", &kept[..]).unwrap()).unwrap()
+}
+
+/// Ways that need a grid of tens of thousands of points are left out: they take long, and are the
+/// same code.
+fn is_quick(judge: &Judge) -> bool {
+    !matches!(judge, Judge::Grid(grid) if grid.count() > 1000)
+}
+
+/// All that does not depend on the machine is in the kept table as it is found today. What ordinary
+/// arithmetic finds depends on the last places of sines and square roots.
+#[test]
+fn the_kept_errors_and_verdicts_are_those_that_are_found() {
+    let kept = kept();
+    let mut compared = 0;
+    for kind in Kind::ALL {
+        for candidate in candidates().iter().filter(|candidate| is_quick(&candidate.judge)) {
+            let is_it = |row: &&Method| row.case == kind.name() && row.name == candidate.name;
+            let Some(was) = kept.methods.iter().find(is_it) else {
+                assert!(asked(&candidate.judge, kind, 0).is_none(), "{kind:?} {}", candidate.name);
+                continue;
+            };
+            let found = Figures::of(&candidate.judge, kind, 0..EACH).row(kind, candidate, 1.0);
+            let proves = !matches!(candidate.judge, Judge::Grid(_) | Judge::Roots);
+            for (column, (is, was)) in found.values.iter().zip(&was.values).enumerate().skip(1) {
+                let (Some(is), Some(was)) = (is, was) else {
+                    assert_eq!(is, was);
+                    continue;
+                };
+                let is_count = (2..=5).contains(&column);
+                let slack = match (proves, is_count) {
+                    (true, true) => 0.0,
+                    (false, true) => 5.0 + 0.02 * was,
+                    (_, false) => 0.05 * was + 1e-15,
+                };
+                let same = is == was || (is - was).abs() <= slack;
+                assert!(same, "{kind:?} {}, column {column}: {is} was {was}", candidate.name);
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 40, "{compared}");
+}
+
+/// Whatever its width, no enclosure says yes where the answer is no, nor the contrary, and the
+/// certificate's own leaves open next to none of those that are away from the border. Grids and
+/// roots say yes where the answer is no.
+#[test]
+fn a_proof_is_never_wrong_and_grids_and_roots_are() {
+    let count = |row: &Method, column: usize| row.values[column].unwrap();
+    for row in &kept().methods {
+        let [wrong_yes, wrong_no, open] = [2, 4, 5].map(|column| count(row, column));
+        let is_far = row.case != Kind::Border.name();
+        match (&*row.family, &*row.name) {
+            ("closed form", _) => assert_eq!(wrong_yes + wrong_no + open, 0.0, "{row:?}"),
+            ("enclosure", name) => {
+                assert_eq!(wrong_yes + wrong_no, 0.0, "{row:?}");
+                let is_own = name.ends_with("1e-13");
+                assert!(!is_own || !is_far || open < 0.005 * EACH as f64, "{row:?}");
+            }
+            ("decision", _) => {
+                assert_eq!(wrong_yes + open, 0.0, "{row:?}");
+                assert!(!is_far || wrong_no < 0.005 * EACH as f64, "{row:?}");
+            }
+            _ if row.case == Kind::Narrow.name() => assert!(wrong_yes > 0.0, "{row:?}"),
+            _ => {}
+        }
+    }
+}
+
+/// A danger and a price: each has a panel of its own, and no panel has their sum.
+#[test]
+fn wrong_passes_are_drawn_apart_from_what_is_refused_or_left_open() {
+    let drawn = SUBJECT.errors.iter().map(|axis| axis.column.names[0]);
+    assert_eq!(drawn.collect::<Vec<_>>(), ["alpha_error", "wrong_yes", "no_yes"]);
+    for row in &kept().methods {
+        let [wrong_yes, no_yes, wrong_no, open] = [2, 3, 4, 5].map(|column| row.values[column]);
+        assert_eq!(no_yes, Some(wrong_no.unwrap() + open.unwrap()), "{row:?}");
+        assert_eq!((row.error(1), row.error(2)), (wrong_yes, no_yes), "{row:?}");
+    }
+}
+
+/// A wall one sample late by every way: `alpha = K T/2 + B` (equation 27).
+#[test]
+fn every_way_finds_the_index_of_a_wall() {
+    let wall = |number: &usize| {
+        let drawn = environment(Kind::Walls, *number);
+        drawn.delay == 1 && drawn.wall.is_some_and(|(_, damping)| damping > 0.0)
+    };
+    let number = (0..EACH).find(wall).unwrap();
+    let (stiffness, damping) = environment(Kind::Walls, number).wall.unwrap();
+    let truth = 0.5 * stiffness * environments::PERIOD + damping;
+    for candidate in candidates() {
+        let said = asked(&candidate.judge, Kind::Walls, number).unwrap();
+        let Some((lo, hi)) = said.alpha else { continue };
+        let width = match candidate.judge {
+            Judge::Enclosure(tolerance) => tolerance.max(1e-12),
+            _ => 1e-12,
+        };
+        let near = |end: f64| (end / truth - 1.0).abs() <= width;
+        assert!(near(lo) && near(hi), "{}: {lo} {hi} {truth}", candidate.name);
+    }
+}

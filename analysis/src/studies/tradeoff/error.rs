@@ -1,0 +1,24 @@
+//! Why methods could not be measured.
+
+use thiserror::Error;
+
+use crate::emulator::EmulatorError;
+use crate::studies::arithmetic::ArithmeticError;
+use crate::toolchain::{BuildError, SetupError};
+
+/// Why methods could not be measured on the emulated board.
+#[derive(Debug, Error)]
+pub enum TradeoffError {
+    /// A number format has no figures.
+    #[error(transparent)]
+    Arithmetic(#[from] ArithmeticError),
+    /// The machine cannot build or run programs for the board.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The board's program does not build.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The emulated board failed.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+}

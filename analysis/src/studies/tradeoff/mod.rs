@@ -1,0 +1,370 @@
+//! Speed against accuracy: tables of measured methods, each with what it costs and how far off it
+//! is, and the methods that no other beats in both.
+//!
+//! A [`Subject`] says what is compared and in which columns; a [`Tradeoff`] is the table that was
+//! measured, kept as CSV beside the picture that is drawn of it ([`crate::chart::tradeoff`]).
+
+pub mod certificate;
+mod error;
+pub mod rate;
+pub mod servo;
+pub mod simulation;
+pub mod sine;
+pub mod ticks;
+
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::time::Instant;
+
+pub use error::TradeoffError;
+
+use crate::emulator::Trials;
+use crate::progress;
+use crate::quantity::significant;
+use crate::table::{Column, Table, TableError};
+use crate::toolchain::{self, BuildError, Toolchain, Tools};
+
+/// Digits of the numbers in a table: more than a measured time has, and as many as tell a wrong
+/// error from a right one.
+const DIGITS: usize = 6;
+
+/// What every number of a table is.
+pub const NUMBER: &str = "a number of 0 or more, `inf`, or nothing where there is none";
+
+const CASE: Column = Column { names: &["case"], bound: "a name" };
+const FAMILY: Column = Column { names: &["family"], bound: "a name" };
+const NAME: Column = Column { names: &["name"], bound: "a name" };
+
+/// Which values of a column are the good ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// The smaller the better.
+    Least,
+    /// The greater the better.
+    Most,
+}
+
+/// A column of a table that is drawn along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// The column in the file.
+    pub column: Column,
+    /// What it is, and its unit, as it stands at the axis.
+    pub label: &'static str,
+    /// Which way is better.
+    pub aim: Aim,
+    /// Values up to this one are all the same and are drawn there: what the reference itself is good
+    /// for, or half of the smallest count. Above 0, because axes are logarithmic.
+    pub floor: f64,
+    /// What a value at the floor is called in the picture.
+    pub at_floor: &'static str,
+}
+
+impl Axis {
+    /// A column of numbers of which the smaller are the better.
+    pub const fn least(names: &'static [&'static str], label: &'static str) -> Self {
+        let column = Column { names, bound: NUMBER };
+        Self { column, label, aim: Aim::Least, floor: f64::MIN_POSITIVE, at_floor: "0" }
+    }
+
+    /// A column of numbers of which the greater are the better.
+    pub const fn most(names: &'static [&'static str], label: &'static str) -> Self {
+        Self { aim: Aim::Most, ..Self::least(names, label) }
+    }
+
+    /// The same with all values up to `floor` taken for the same, called by these words.
+    pub const fn floored(self, floor: f64, at_floor: &'static str) -> Self {
+        Self { floor, at_floor, ..self }
+    }
+
+    /// Whether the first value is better than the second, beyond the floor.
+    pub fn is_better(&self, value: f64, than: f64) -> bool {
+        let [value, than] = [value, than].map(|value| value.max(self.floor));
+        match self.aim {
+            Aim::Least => value < than,
+            Aim::Most => value > than,
+        }
+    }
+}
+
+/// What is compared, in which columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subject {
+    /// What its files are called, without the extension.
+    pub name: &'static str,
+    /// Above its picture.
+    pub title: &'static str,
+    /// What a method costs.
+    pub cost: Axis,
+    /// What one gets for it: a panel of the picture each.
+    pub errors: &'static [Axis],
+    /// Columns that are kept but not drawn.
+    pub others: &'static [Column],
+}
+
+impl Subject {
+    /// The columns of numbers in the order of [`Method::values`].
+    pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
+        let drawn = std::iter::once(self.cost.column).chain(self.errors.iter().map(|e| e.column));
+        drawn.chain(self.others.iter().copied())
+    }
+}
+
+/// A method with its figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// On what it was measured: only methods of one case are compared.
+    pub case: String,
+    /// What it is one of: drawn with the same mark, joined by a line in the order of the table.
+    pub family: String,
+    /// Its own name, short enough to stand beside its mark.
+    pub name: String,
+    /// The figures in the order of [`Subject::columns`]; infinite where the method fails, `None`
+    /// where it has no such figure.
+    pub values: Vec<Option<f64>>,
+}
+
+impl Method {
+    /// A method that has all figures.
+    pub fn new(case: &str, family: &str, name: impl Into<String>, values: &[f64]) -> Self {
+        let values = values.iter().copied().map(Some).collect();
+        Self { case: case.to_owned(), family: family.to_owned(), name: name.into(), values }
+    }
+
+    /// What it costs.
+    pub fn cost(&self) -> Option<f64> {
+        self.values[0]
+    }
+
+    /// Its error of that number among those of the subject.
+    pub fn error(&self, number: usize) -> Option<f64> {
+        self.values[1 + number]
+    }
+}
+
+/// A table of measured methods.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tradeoff {
+    /// What is compared.
+    pub subject: &'static Subject,
+    /// The methods.
+    pub methods: Vec<Method>,
+}
+
+impl Tradeoff {
+    /// The cases, in the order of the table.
+    pub fn cases(&self) -> Vec<&str> {
+        distinct(self.methods.iter().map(|method| &*method.case))
+    }
+
+    /// The families, in the order of the table.
+    pub fn families(&self) -> Vec<&str> {
+        distinct(self.methods.iter().map(|method| &*method.family))
+    }
+
+    /// The methods of a case.
+    pub fn of<'t, 'c>(&'t self, case: &'c str) -> impl Iterator<Item = &'t Method> + use<'t, 'c> {
+        self.methods.iter().filter(move |method| method.case == case)
+    }
+
+    /// The methods of a case that no other beats: each has the best error, of that number among
+    /// those of the subject, of all that cost no more. From the cheapest to the best. A method that
+    /// fails is on no front.
+    pub fn front(&self, case: &str, error: usize) -> Vec<&Method> {
+        let (cost, aim) = (&self.subject.cost, &self.subject.errors[error]);
+        let figures = |m: &Method| Some((m.cost()?, m.error(error)?));
+        let finite = |m: &&Method| figures(m).is_some_and(|(c, e)| c.is_finite() && e.is_finite());
+        let mut front: Vec<_> = self.of(case).filter(finite).collect();
+        let is_beaten = |m: &Method, by: &Method| {
+            let (Some((c, e)), Some((by_c, by_e))) = (figures(m), figures(by)) else {
+                return false;
+            };
+            let worse = cost.is_better(c, by_c) || aim.is_better(e, by_e);
+            !worse && (cost.is_better(by_c, c) || aim.is_better(by_e, e))
+        };
+        let all = front.clone();
+        front.retain(|method| !all.iter().any(|other| is_beaten(method, other)));
+        let by_cost = |m: &&Method| m.cost().unwrap_or(f64::INFINITY);
+        front.sort_by(|a, b| by_cost(a).total_cmp(&by_cost(b)));
+        if cost.aim == Aim::Most {
+            front.reverse();
+        }
+        front
+    }
+
+    /// Reads a table that was kept.
+    ///
+    /// # Errors
+    /// Where it is not the table of this subject.
+    pub fn read<R: Read>(
+        subject: &'static Subject,
+        mut table: Table<R>,
+    ) -> Result<Self, TableError> {
+        let words = [table.column(CASE)?, table.column(FAMILY)?, table.column(NAME)?];
+        let places: Vec<_> =
+            subject.columns().map(|column| table.column(column)).collect::<Result<_, _>>()?;
+        let mut methods = Vec::new();
+        while let Some(row) = table.row()? {
+            let [case, family, name] = words.map(|place| row.text(place).to_owned());
+            let value = |&place| match row.text(place) {
+                "" => Ok(None),
+                _ => row.number(place, |value: &f64| *value >= 0.0).map(Some),
+            };
+            let values = places.iter().map(value).collect::<Result<_, _>>()?;
+            methods.push(Method { case, family, name, values });
+        }
+        table.at_least(1)?;
+        Ok(Self { subject, methods })
+    }
+
+    /// Writes it to be kept.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write(&self, to: impl Write) -> std::io::Result<()> {
+        let mut file = csv::Writer::from_writer(to);
+        let words = [CASE, FAMILY, NAME].into_iter();
+        file.write_record(words.chain(self.subject.columns()).map(|column| column.names[0]))?;
+        for method in &self.methods {
+            let words = [&method.case, &method.family, &method.name].into_iter().cloned();
+            let number = |value: &Option<f64>| value.map_or_else(String::new, written);
+            file.write_record(words.chain(method.values.iter().map(number)))?;
+        }
+        file.flush()
+    }
+}
+
+/// The shortest time in s that each of some works has taken in so many rounds, in which they take
+/// turns: what it takes where nothing else is in the way. Each is done twice in a turn, of which the
+/// second counts: what the one before has left in the processor's memories is no cost of its own.
+fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
+    let mut times = vec![f64::INFINITY; works.len()];
+    for _ in 0..rounds {
+        for (time, work) in times.iter_mut().zip(&mut *works) {
+            work();
+            let start = Instant::now();
+            work();
+            *time = time.min(start.elapsed().as_secs_f64());
+        }
+    }
+    times
+}
+
+/// An emulated board that computes what it is asked to of the scenes that have a program, and sines.
+///
+/// # Errors
+/// Where its program cannot be built or the emulator cannot be started.
+pub fn board() -> Result<Trials, TradeoffError> {
+    boot("building the trial of the formats", Toolchain::build_trial)
+}
+
+/// One that computes what it is asked to of any scene, whose program takes longer to build.
+///
+/// # Errors
+/// As of [`board`].
+pub fn any_board() -> Result<Trials, TradeoffError> {
+    boot("building all types of scenes in all formats", Toolchain::build_survey)
+}
+
+fn boot(
+    what: &str,
+    build: fn(&Toolchain) -> Result<PathBuf, BuildError>,
+) -> Result<Trials, TradeoffError> {
+    let toolchain =
+        toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
+    let spinner = progress::spinner(what);
+    let elf = build(&toolchain)?;
+    spinner.finish_and_clear();
+    Ok(Trials::boot(&elf)?)
+}
+
+fn written(value: f64) -> String {
+    significant(value, DIGITS)
+}
+
+/// Each once, in the order in which they come.
+fn distinct<'t>(words: impl Iterator<Item = &'t str>) -> Vec<&'t str> {
+    let mut seen = Vec::new();
+    for word in words {
+        if !seen.contains(&word) {
+            seen.push(word);
+        }
+    }
+    seen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    static SUBJECT: Subject = Subject {
+        name: "test",
+        title: "A test",
+        cost: Axis::least(&["time"], "time (s)"),
+        errors: &[
+            Axis::least(&["error"], "error (1)").floored(1e-9, "rounding"),
+            Axis::most(&["stiffness"], "stiffness (N m/rad)"),
+        ],
+        others: &[Column { names: &["steps"], bound: NUMBER }],
+    };
+
+    fn table(rows: &[(&str, f64, f64, f64)]) -> Tradeoff {
+        let row = |&(name, time, error, stiffness): &(&str, f64, f64, f64)| {
+            Method::new("a case", "a family", name, &[time, error, stiffness, 1.0])
+        };
+        Tradeoff { subject: &SUBJECT, methods: rows.iter().map(row).collect() }
+    }
+
+    fn names<'t>(front: &[&'t Method]) -> Vec<&'t str> {
+        front.iter().map(|method| &*method.name).collect()
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let all = table(&[
+            ("dear", 9.0, 1e-12, 5.0),
+            ("beaten", 3.0, 0.2, 1.0),
+            ("cheap", 1.0, 0.5, 1.0),
+            ("fair", 2.0, 0.1, 2.0),
+            ("as good below the floor", 8.0, 1e-10, 9.0),
+            ("fails", 0.1, f64::INFINITY, 0.5),
+        ]);
+        let front = all.front("a case", 0);
+        assert_eq!(names(&front), ["cheap", "fair", "as good below the floor"]);
+        // Of stiffness one wants the most.
+        let front = all.front("a case", 1);
+        assert_eq!(names(&front), ["fails", "cheap", "fair", "as good below the floor"]);
+        assert!(all.front("another case", 0).is_empty());
+    }
+
+    /// A table with its numbers as they are once it has been written and read again.
+    fn rounded(mut all: Tradeoff) -> Tradeoff {
+        let values = all.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
+        values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
+        all
+    }
+
+    #[test]
+    fn a_table_is_read_as_it_was_written() {
+        let mut all = table(&[("one, with a comma", 1.234_567_89e-7, 0.0, f64::INFINITY)]);
+        all.methods[0].values[3] = None;
+        let mut file = Vec::new();
+        all.write(&mut file).unwrap();
+        let table = Table::new("kept.csv", &*file).unwrap();
+        assert_eq!(Tradeoff::read(&SUBJECT, table).unwrap(), rounded(all));
+    }
+
+    #[test]
+    fn what_is_no_such_table_is_refused() {
+        for (text, said) in [
+            ("case,family,name,time,error\na,b,c,1,1\n", "there is no column `stiffness`"),
+            ("case,family,name,time,error,stiffness,steps\n", "too few"),
+            ("case,family,name,time,error,stiffness,steps\na,b,c,-1,1,1,1\n", "0 or more"),
+            ("case,family,name,time,error,stiffness,steps\na,b,c,1,NaN,1,1\n", "0 or more"),
+        ] {
+            let table = Table::new("kept.csv", text.as_bytes()).unwrap();
+            let error = Tradeoff::read(&SUBJECT, table).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

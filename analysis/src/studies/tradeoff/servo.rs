@@ -1,0 +1,200 @@
+//! Number formats of the servo: what a tick takes on the emulated board, and what is lost of the
+//! torque (theory, section 9).
+
+use firmware::certificate::Steps;
+use firmware::encoder::CounterWidth;
+use firmware::environment::{Environment, Wall};
+use firmware::number::Arithmetic;
+use firmware::servo::Transducers;
+
+use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
+use crate::emulator::Trials;
+use crate::hand::Script;
+use crate::program::{self, Program};
+use crate::studies::arithmetic::{self, ArithmeticError, HALF_A_TURN, Losses, Motion, cost};
+use crate::table::{Column, Table, TableError};
+
+/// What is compared.
+pub static SUBJECT: Subject = Subject {
+    name: "servo",
+    title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
+    cost: Axis::least(&["instructions"], "most instructions from count to code"),
+    errors: &[
+        Axis::least(&["error"], "largest error of the torque (N m)").floored(FLOOR, NONE),
+        Axis::least(&["error_at_1_rad"], "largest error of the torque around 1 rad (N m)")
+            .floored(FLOOR, NONE),
+        Axis::least(&["hum"], "hum at rest, without encoder (N m)").floored(FLOOR, NONE),
+        Axis::least(&["cycle"], "smallest limit cycle (rad)").floored(FLOOR, NONE),
+    ],
+    others: &[
+        Column { names: &["mean_instructions"], bound: NUMBER },
+        Column { names: &["hum_with_encoder"], bound: NUMBER },
+        Column { names: &["cycle_with_encoder"], bound: NUMBER },
+    ],
+};
+
+/// What `f64` itself rounds away of numbers around 1.
+const FLOOR: f64 = 1e-16;
+const NONE: &str = "none";
+/// Time in s of the motion.
+const SECONDS: f64 = 5.0;
+
+/// A scene whose tick is measured, and what the device does meanwhile.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its name.
+    pub name: &'static str,
+    /// The scene with its sensor and motor.
+    pub subject: arithmetic::Subject,
+    /// What a hand does.
+    pub script: Script,
+}
+
+impl Case {
+    /// Of a program, whose counter does not wrap.
+    pub(super) fn of(program: &Program) -> Self {
+        let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
+        let (scene, range) = (program.scene, HALF_A_TURN);
+        let steps = Steps::of(&transducers, None);
+        let subject = arithmetic::Subject { scene, transducers, steps, range };
+        Self { name: program.name, subject, script: (program.script)() }
+    }
+
+    /// The same in another environment.
+    pub(super) fn with(mut self, name: &'static str, environment: Environment) -> Self {
+        self.subject.scene.environment = environment;
+        Self { name, ..self }
+    }
+
+    /// What the device does.
+    ///
+    /// # Errors
+    /// Where the scene cannot be simulated.
+    pub fn motion(&self) -> Result<Motion, ArithmeticError> {
+        Motion::new(&self.subject, self.script.clone(), SECONDS)
+    }
+}
+
+/// The programs' scenes, and a wall that also pulls.
+pub fn cases() -> Vec<Case> {
+    let mut cases: Vec<_> = program::ALL.iter().map(Case::of).collect();
+    let pulls = |case: &Case| match case.subject.scene.environment {
+        Environment::DamperWall(wall) => {
+            let wall = Wall { one_sided: false, ..wall };
+            Some(case.clone().with("damper_wall, two-sided", Environment::DamperWall(wall)))
+        }
+        _ => None,
+    };
+    cases.extend(cases.iter().filter_map(pulls).collect::<Vec<_>>());
+    cases
+}
+
+/// Measures all formats on all scenes.
+///
+/// # Errors
+/// Where the board cannot be built or fails.
+pub fn measure() -> Result<Tradeoff, TradeoffError> {
+    let mut board = super::board()?;
+    let mut methods = Vec::new();
+    for case in cases() {
+        let motion = case.motion()?;
+        for arithmetic in Arithmetic::ALL {
+            methods.push(row(&case, &motion, &mut board, arithmetic)?);
+        }
+    }
+    board.finish()?;
+    Ok(Tradeoff { subject: &SUBJECT, methods })
+}
+
+/// The table that is kept.
+///
+/// # Errors
+/// Where it is not a table of this subject.
+pub fn kept() -> Result<Tradeoff, TableError> {
+    let kept = include_bytes!("../../../pictures/tradeoff/servo.csv");
+    Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)
+}
+
+fn row(
+    case: &Case,
+    motion: &Motion,
+    board: &mut Trials,
+    arithmetic: Arithmetic,
+) -> Result<Method, ArithmeticError> {
+    let cost = cost(board, motion, arithmetic)?;
+    let Losses { error, error_elsewhere, alone, with_encoder } = Losses::of(motion, arithmetic)?;
+    let values = [
+        Some(cost.most.into()),
+        Some(error),
+        error_elsewhere,
+        Some(alone.hum),
+        Some(alone.cycle),
+        Some(cost.mean),
+        with_encoder.map(|rest| rest.hum),
+        with_encoder.map(|rest| rest.cycle),
+    ];
+    let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
+    Ok(Method { values: values.to_vec(), ..method })
+}
+
+fn family(arithmetic: Arithmetic) -> &'static str {
+    match arithmetic {
+        Arithmetic::F32 => "floating point of the unit",
+        Arithmetic::F64 => "floating point in software",
+        Arithmetic::I16F16 | Arithmetic::I8F24 | Arithmetic::I1F31 => "fixed point, rounded",
+        _ => "fixed point, truncated",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studies::arithmetic::{Rest, Units, at_rest};
+
+    /// The kept figures that do not depend on a compiler for the board.
+    #[test]
+    fn the_kept_losses_are_what_they_are() {
+        let kept = kept().unwrap();
+        let mut methods = kept.methods.iter();
+        for case in cases() {
+            let motion = case.motion().unwrap();
+            for arithmetic in Arithmetic::ALL {
+                let kept = methods.next().unwrap();
+                let names = (&*kept.case, &*kept.name);
+                assert_eq!(names, (case.name, arithmetic.name()));
+                let Losses { error, error_elsewhere, alone, with_encoder } =
+                    Losses::of(&motion, arithmetic).unwrap();
+                let Rest { hum, cycle } = with_encoder.unwrap();
+                let alone = [Some(alone.hum), Some(alone.cycle)];
+                let fresh =
+                    [Some(error), error_elsewhere, alone[0], alone[1], Some(hum), Some(cycle)];
+                let at = [1, 2, 3, 4, 6, 7].map(|column| kept.values[column]);
+                for (kept, fresh) in at.into_iter().zip(fresh) {
+                    let (kept, fresh) = (kept.unwrap(), fresh.unwrap());
+                    assert!((kept - fresh).abs() <= 1e-5 * kept, "{names:?}: {kept} {fresh}");
+                }
+            }
+        }
+        assert!(methods.next().is_none());
+    }
+
+    /// Theory, section 9: the paper's wall at rest. What it says is of one filter that has all of
+    /// the controller; here three products are rounded, each with a coefficient as fine as 31 bits.
+    #[test]
+    fn the_wall_hums_as_much_as_experiments_found() {
+        let case = Case::of(Program::find("damper_wall").unwrap());
+        let subject = arithmetic::Subject { range: 0.9, ..case.subject };
+        assert_eq!(subject.units(Arithmetic::I1F31), Units { angle: 1.0, torque: 2.0 });
+        let hum =
+            |arithmetic, with_encoder| at_rest(&subject, arithmetic, with_encoder).unwrap().hum;
+        assert!(hum(Arithmetic::F64, false) <= 2e-16);
+        let near = |hum: f64, found: f64| assert!(hum < 2.0 * found && hum > 0.1 * found, "{hum}");
+        near(hum(Arithmetic::F32, false), 1.6e-7);
+        near(hum(Arithmetic::I1F31, false), 3e-7);
+        near(hum(Arithmetic::I16F16, false), 1.9e-3);
+        near(hum(Arithmetic::I16F16Truncated, false), 3.9e-3);
+        // The encoder is no format's fault.
+        let encoder = hum(Arithmetic::F64, true);
+        assert!(encoder > 3.6e-3 && (hum(Arithmetic::F32, true) / encoder - 1.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,57 @@
+//! The motions that the methods are measured on.
+
+use firmware::environment::{Environment, Wall};
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+use crate::chain::{Link, Mass};
+use crate::device::{Hand, Motion};
+use crate::simulation::Experiment;
+use crate::simulation::plant::Plant;
+
+/// Samples of a motion.
+pub(super) const SAMPLES: usize = 1000;
+/// Stiffness of the spring in N m/rad: stable for every method on one mass.
+pub(super) const STIFFNESS: f64 = 300.0;
+
+/// A motion to be computed: a spring that is neither delayed nor coupled, on a device that is
+/// released at a millirad.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What moves.
+    pub name: &'static str,
+    /// The motion.
+    pub experiment: Experiment,
+}
+
+/// The device of theory, section 9; and as two masses whose resonance is at 1183 rad/s, in a hand.
+pub fn cases() -> [Case; 2] {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    let masses = [Mass { inertia: 0.05, damping: 0.5 }, Mass { inertia: 0.02, damping: 0.0 }];
+    let links = [Link { stiffness: 20e3, damping: 0.27 }];
+    let hand = Hand { inertia: 0.1, damping: 1.0, stiffness: 1000.0 };
+    let case = |name, plant| Case { name, experiment: released(plant, device) };
+    [
+        case("mass and damper", Plant::rigid(device)),
+        case("two masses in a hand", Plant::chain(&masses, &links).held(hand)),
+    ]
+}
+
+fn released(plant: Plant, device: Device) -> Experiment {
+    let wall = Wall {
+        stiffness: STIFFNESS,
+        damping: 0.0,
+        filter: None,
+        delay: 0,
+        face: 0.0,
+        one_sided: false,
+    };
+    let scene = Scene {
+        device,
+        timing: Timing { period: 1e-3, worst_period: None },
+        coupling: Coupling::Rigid,
+        environment: Environment::DelayedSpring(wall),
+        torque_limit: None,
+    };
+    let start = Motion { position: 1e-3, velocity: 0.0 };
+    Experiment { plant, start, samples: SAMPLES, ..Experiment::still(&scene) }
+}

@@ -1,0 +1,166 @@
+//! Methods of integration by their steps in a tick: how fast they are, how far off the motion is,
+//! and how far off the verdict (theory, section 9).
+
+mod cases;
+mod stepper;
+
+use std::hint::black_box;
+
+use super::{Axis, Method as Row, NUMBER, Subject, Tradeoff, fastest};
+use crate::simulation::method::Method;
+use crate::simulation::{SimulationError, Stride, Trajectory, simulate};
+use crate::stability::critical_stiffness;
+use crate::table::{Column, Table, TableError};
+
+pub use cases::{Case, cases};
+
+use cases::SAMPLES;
+use stepper::Stepper;
+
+/// What is compared.
+pub static SUBJECT: Subject = Subject {
+    name: "simulation",
+    title: "Simulation: methods of integration by their steps in a sample of 1 ms",
+    cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
+    errors: &[
+        // As exact as `analysis/tests/all/simulation_reference.rs` finds the reference to be, in sixty digits.
+        Axis::least(&["angle_error"], "largest error of the angle (part of its largest)")
+            .floored(1e-12, "no error seen"),
+        // As exact as the borders of stability are found.
+        Axis::least(&["verdict_error"], "error of the largest stable stiffness (part)")
+            .floored(1e-9, "no error seen"),
+    ],
+    others: &[
+        Column { names: &["substeps"], bound: NUMBER },
+        Column { names: &["largest_stable_stiffness"], bound: NUMBER },
+    ],
+};
+
+/// Number of the verdict's error among the errors.
+pub const VERDICT: usize = 1;
+/// Number of the steps among the columns.
+pub const SUBSTEPS_COLUMN: usize = 3;
+/// Steps in a tick.
+const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
+/// Rounds of the measurement, of which the fastest counts.
+const ROUNDS: usize = 31;
+/// An angle this many times as far off as it is large says nothing of the motion.
+const LOST: f64 = 1e3;
+
+/// The table that is kept.
+///
+/// # Errors
+/// Where it is not a table of this subject.
+pub fn kept() -> Result<Tradeoff, TableError> {
+    let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
+    Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..])?)
+}
+
+/// The cheapest method in a table of this subject whose largest stable stiffness for the rigid
+/// device is off by no more than a part.
+pub fn cheapest(table: &Tradeoff, bound: f64) -> Option<&Row> {
+    let [rigid, _] = cases();
+    let is_enough = |method: &&Row| method.error(VERDICT).is_some_and(|error| error <= bound);
+    // From the cheapest to the best.
+    table.front(rigid.name, VERDICT).into_iter().find(is_enough)
+}
+
+/// Measures all methods on all motions.
+///
+/// # Errors
+/// Where a motion cannot be computed.
+pub fn measure() -> Result<Tradeoff, SimulationError> {
+    let mut methods = Vec::new();
+    for case in cases() {
+        let truth = Truth::of(&case)?;
+        let strides = strides();
+        let work = |&stride: &Stride| {
+            let run = runner(&case, stride);
+            move || drop(black_box(run(black_box(SAMPLES))))
+        };
+        let times = fastest(ROUNDS, &mut strides.iter().map(work).collect::<Vec<_>>());
+        for (stride, time) in strides.into_iter().zip(times) {
+            methods.push(truth.row(&case, stride, time)?);
+        }
+    }
+    Ok(Tradeoff { subject: &SUBJECT, methods })
+}
+
+/// What is measured of each case.
+fn strides() -> Vec<Stride> {
+    let of = |method| {
+        let substeps = if method == Method::Exact { &SUBSTEPS[..1] } else { &SUBSTEPS[..] };
+        substeps.iter().map(move |&substeps| Stride { method, substeps })
+    };
+    Method::ALL.into_iter().flat_map(of).collect()
+}
+
+/// What a case's figures are compared with.
+struct Truth {
+    motion: Trajectory,
+    critical: Option<f64>,
+}
+
+impl Truth {
+    fn of(case: &Case) -> Result<Self, SimulationError> {
+        let exact = Stride::default();
+        let motion = simulate(&case.experiment, exact)?;
+        Ok(Self { motion, critical: critical_stiffness(&case.experiment, exact)? })
+    }
+
+    /// A method's figures, of which the time in s for all samples is given.
+    fn row(&self, case: &Case, stride: Stride, time: f64) -> Result<Row, SimulationError> {
+        let critical = critical_stiffness(&case.experiment, stride)?;
+        let verdict = match (critical, self.critical) {
+            (Some(found), Some(truth)) => (found / truth - 1.0).abs(),
+            _ => f64::INFINITY,
+        };
+        let (family, short) = (stride.method.name(), short(stride.method));
+        let name = match stride.method {
+            Method::Exact => short.to_owned(),
+            _ => format!("{short}, {}", stride.substeps),
+        };
+        let angles = runner(case, stride)(SAMPLES);
+        let figures = [
+            Some(SAMPLES as f64 / time),
+            Some(self.angle_error(&angles)),
+            Some(verdict),
+            Some(f64::from(stride.substeps)),
+            critical,
+        ];
+        Ok(Row { values: figures.to_vec(), ..Row::new(case.name, family, name, &[]) })
+    }
+
+    fn angle_error(&self, angles: &[f64]) -> f64 {
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+        let size = largest(&mut self.motion.position.iter().copied());
+        let differences = angles.iter().zip(&self.motion.position).map(|(is, should)| is - should);
+        // What is no number compares with nothing.
+        let is_lost = angles.iter().any(|angle| !angle.is_finite());
+        let error = largest(&mut differences.into_iter()) / size;
+        if is_lost || error > LOST { f64::INFINITY } else { error }
+    }
+}
+
+/// A method's name where there is little room.
+fn short(method: Method) -> &'static str {
+    match method {
+        Method::Exact => "exact",
+        Method::Euler => "Euler",
+        Method::SemiImplicit => "semi-implicit",
+        Method::Rk4 => "RK4",
+        Method::Tustin => "Tustin",
+    }
+}
+
+/// What gives the angles at so many samples; what can be computed beforehand has been.
+fn runner(case: &Case, stride: Stride) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
+    match case.experiment.plant.order() {
+        2 => Stepper::<2>::new(case, stride).into_runner(case),
+        _ => Stepper::<4>::new(case, stride).into_runner(case),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,194 @@
+//! A run as samples over time: what a simulation, a scenario or a recording gave.
+
+use std::ops::Range;
+use std::path::Path;
+
+use crate::file::SceneFile;
+use crate::simulation::drive::Drive;
+use crate::simulation::served::Served;
+use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
+
+/// A step of the encoder is at most one in so many of the largest velocity.
+const STEPS: f64 = 20.0;
+/// A velocity is taken over at most one in so many of the samples.
+const SMEARED: usize = 12;
+
+/// What the samples are counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clock {
+    /// Seconds.
+    #[default]
+    Seconds,
+    /// Ticks, of a period that is not known.
+    Ticks,
+}
+
+/// A run to draw.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// What it is called.
+    pub title: String,
+    /// What the times are in.
+    pub clock: Clock,
+    /// When the samples were taken, each later than the one before.
+    pub time: Vec<f64>,
+    /// Angle of the device in rad, a sample each.
+    pub position: Vec<f64>,
+    /// Where the hand wanted to be in rad, as long as it held the device.
+    pub hand: Vec<f64>,
+    /// Velocity in rad/s, a sample each; empty where it was not recorded, to be taken from the angle.
+    pub velocity: Vec<f64>,
+    /// Coupling torque in N m; the motor applies the opposite.
+    pub torque: Vec<f64>,
+    /// Torque in N m with which the hand drives the device, in the direction of the angle; empty where
+    /// it is not known or there is none.
+    pub hand_torque: Vec<f64>,
+    /// What the torque is limited to, in N m.
+    pub torque_limit: Option<f64>,
+    /// Why the torque is not what the scene asked for.
+    pub limit: Vec<Served>,
+    /// When the hand lets go, on the same clock.
+    pub release: Option<f64>,
+    /// Angle in rad beyond which a one-sided wall is felt.
+    pub face: Option<f64>,
+    /// When the run went beyond what a picture can show, if it did; there are no samples from
+    /// there on.
+    pub lost: Option<f64>,
+}
+
+impl Trace {
+    /// What a scene file's simulation does, taken exactly through each tick; `folder` is where its
+    /// torque file is looked for.
+    ///
+    /// # Errors
+    /// Where the file has no `[simulation]`, or its scene cannot run.
+    pub fn simulated(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
+        let experiment = Experiment::of(file, folder)?;
+        let motion = simulate(&experiment, Stride::default())?;
+        let period = file.scene.timing.period;
+        let drive = |k: usize| experiment.drive.held(k) + experiment.drive.sine(k, period)[0];
+        let is_driven = experiment.drive != Drive::Free;
+        let driven = is_driven.then(|| (0..experiment.samples).map(drive).collect());
+        let trace = Self {
+            title: file.name.clone(),
+            clock: Clock::Seconds,
+            time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
+            position: motion.position,
+            velocity: motion.velocity,
+            torque: motion.torque,
+            hand_torque: driven.unwrap_or_default(),
+            torque_limit: file.scene.torque_limit,
+            limit: motion.limit,
+            face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
+            ..Self::default()
+        };
+        Ok(trace)
+    }
+
+    /// Ends the run at the first sample that is not fine, or where there is no more of it.
+    pub fn until(mut self, is_fine: impl Fn(f64) -> bool) -> Self {
+        let fine = |column: &[f64], i: usize| column.get(i).is_none_or(|value| is_fine(*value));
+        let all = |&i: &usize| {
+            [&self.position, &self.velocity, &self.torque].iter().all(|column| fine(column, i))
+        };
+        let recorded = self.position.len().min(self.torque.len());
+        let kept = (0..recorded).take_while(all).count();
+        self.lost = self.time.get(kept).copied();
+        self.time.truncate(kept);
+        for column in [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.torque,
+            &mut self.hand,
+            &mut self.hand_torque,
+        ] {
+            column.truncate(kept);
+        }
+        self.limit.truncate(kept);
+        self
+    }
+
+    /// When a sample begins, and when the last one ends.
+    pub fn begin(&self, sample: usize) -> f64 {
+        match (self.time.get(sample), &self.time[..]) {
+            (Some(&time), _) => time,
+            (None, [.., before, last]) => 2.0 * last - before,
+            (None, _) => 0.0,
+        }
+    }
+
+    /// From the first sample to the end of the last.
+    pub fn times(&self) -> Range<f64> {
+        self.begin(0)..self.begin(self.time.len())
+    }
+
+    /// Samples over which a velocity is taken that was not recorded: as many as a picture does not
+    /// show apart, and as many more, up to a [`SMEARED`] part of the run, as make a step of the
+    /// encoder a small part of the velocities.
+    pub fn window(&self) -> usize {
+        let last = self.time.len().saturating_sub(1).max(1);
+        let (least, most) = ((self.time.len() / 400).clamp(1, last), (last / SMEARED).max(1));
+        let Some(step) = self.step() else { return least };
+        let sample = (self.time[last] - self.time[0]) / last as f64;
+        let is_fine = |window: &usize| {
+            let fastest = self.means(*window).fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
+            STEPS * step <= fastest * sample * *window as f64
+        };
+        let wider = std::iter::successors(Some(least), |window| Some(window + window.div_ceil(4)));
+        wider.take_while(|window| *window < most).find(is_fine).unwrap_or(most.max(least))
+    }
+
+    /// The encoder's step: the least by which changes of the angle from a sample to the next differ,
+    /// of some size beside the largest; `None` if it never changes.
+    fn step(&self) -> Option<f64> {
+        /// What is smaller, as a part of the largest change, has come of rounded numbers.
+        const ROUNDED: f64 = 1e-6;
+        let changes = self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let mut changes: Vec<_> = changes.chain([0.0]).collect();
+        changes.sort_by(f64::total_cmp);
+        let least = ROUNDED * changes[changes.len() - 1];
+        let steps = changes.windows(2).map(|pair| pair[1] - pair[0]);
+        steps.filter(|step| *step > least).min_by(f64::total_cmp)
+    }
+
+    /// The mean velocity over so many samples, around each sample as far as the run goes.
+    fn means(&self, window: usize) -> impl Iterator<Item = f64> + '_ {
+        let last = self.time.len().saturating_sub(1);
+        let window = window.min(last);
+        (0..self.time.len()).map(move |i| {
+            let from = i.saturating_sub(window.div_ceil(2)).min(last - window);
+            let to = from + window;
+            (self.position[to] - self.position[from]) / (self.time[to] - self.time[from])
+        })
+    }
+
+    /// The velocity as it was recorded, or the mean over a few samples.
+    pub fn velocities(&self) -> Vec<f64> {
+        match self.velocity.is_empty() {
+            true => self.means(self.window()).collect(),
+            false => self.velocity.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 4096 counts a turn, sent every other tick of 1 ms, around 0.3 rad/s.
+    #[test]
+    fn a_velocity_from_angles_is_no_comb_of_the_encoders_steps() {
+        let step = std::f64::consts::TAU / 4096.0;
+        let time: Vec<f64> = (0..1000).map(|i| 0.002 * f64::from(i)).collect();
+        let angle = |t: &f64| (0.3 * t + 0.01 * (3.0 * t).sin()) / step;
+        let position: Vec<f64> = time.iter().map(|t| angle(t).floor() * step).collect();
+        let trace = Trace { time, position, ..Trace::default() };
+        for (t, v) in trace.time.iter().zip(trace.velocities()) {
+            let truth = 0.3 + 0.03 * (3.0 * t).cos();
+            assert!((v - truth).abs() < 0.03, "{v} {truth} at {t}");
+        }
+        // Angles that no encoder has rounded are taken as near to each other as a picture shows.
+        let position = trace.time.iter().map(|t| angle(t) * step).collect();
+        assert_eq!(Trace { position, ..trace }.window(), 2);
+    }
+}

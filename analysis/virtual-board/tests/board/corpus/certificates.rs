@@ -1,0 +1,60 @@
+//! Certificates: intervals in software double precision, of scenes that pass, that do not, and that
+//! are none.
+
+use analysis::emulator::Judge;
+use firmware::certificate::assess;
+use firmware::passivity::interval::Interval;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware_harness::question::{Ends, Reply};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use tests::{floats, scenes, vectors};
+
+use super::{TOOLCHAIN, Virtual};
+
+/// Random scenes of each kind.
+const EACH: u64 = 24;
+/// Of the reference cases, every one of so many.
+const PART: usize = 3;
+
+fn bits(index: Option<Interval>) -> Ends {
+    index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
+}
+
+/// A scene some of whose numbers may be anything.
+fn broken(rng: &mut ChaCha8Rng) -> Scene {
+    let mut scene = scenes::any(rng).scene;
+    scene.device = Device { passivity: Some(floats::any(rng)), ..scene.device };
+    scene.coupling = Coupling::Spring { stiffness: floats::any(rng) };
+    if rng.random() {
+        scene.timing = Timing { period: floats::any(rng), worst_period: None };
+    }
+    scene
+}
+
+#[test]
+fn certificates_are_equal() {
+    let elf = TOOLCHAIN.build_judge().unwrap_or_else(|error| panic!("{error}"));
+    let mut boards = [Judge::over(Virtual::boot(&elf)), Judge::boot(&elf).unwrap()];
+    let mut asked: Vec<_> = vectors::all().iter().step_by(PART).map(|case| case.scene()).collect();
+    let drawn = (0..EACH).map(ChaCha8Rng::seed_from_u64);
+    asked.extend(drawn.flat_map(|mut rng| [scenes::any(&mut rng).scene, broken(&mut rng)]));
+    let mut certified = 0;
+    for scene in &asked {
+        let found = assess(scene);
+        certified += usize::from(found.outcome.is_ok());
+        let replies = boards.each_mut().map(|board| board.judge(scene).unwrap());
+        assert_eq!(replies[0], replies[1], "{scene:?}");
+        let expected = Reply {
+            alpha: bits(found.alpha),
+            alpha_coupled: bits(found.alpha_coupled),
+            paper: found.paper,
+            exact: found.exact,
+            ..replies[0]
+        };
+        assert_eq!(replies[0], expected, "{scene:?}");
+    }
+    boards.into_iter().for_each(|board| board.finish().unwrap());
+    let all = asked.len();
+    assert!(certified * 5 > all && certified * 5 < 4 * all, "{certified} of {all} certified");
+}

@@ -1,0 +1,37 @@
+//! Answers scenes by their bits: questions in by the pipe `counts`, replies out by `codes`.
+
+use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, pace};
+use semihosting::fs::File;
+use semihosting::io::Write;
+
+use crate::question::answer;
+
+/// Answers until the host closes its end.
+pub fn run() -> ! {
+    pace::start_clock();
+    let scale = meter::Scale::calibrate();
+    let Ok((counts, codes)) = lockstep::pipes() else {
+        semihosting::process::exit(EXIT_REFUSED);
+    };
+    semihosting::process::exit(match serve(counts, codes, scale) {
+        Ok(()) => EXIT_DONE,
+        Err(Unanswerable) => EXIT_REFUSED,
+    })
+}
+
+/// A question that is none, or a host that does not take the reply.
+struct Unanswerable;
+
+fn serve(mut questions: File, mut replies: File, scale: meter::Scale) -> Result<(), Unanswerable> {
+    while let Ok(question) = lockstep::words(&mut questions) {
+        let words = answer(&question, |judge| {
+            let start = meter::now();
+            judge();
+            u64::from(scale.instructions(meter::now().wrapping_sub(start)))
+        })
+        .ok_or(Unanswerable)?;
+        let bytes = words.map(u64::to_le_bytes);
+        replies.write_all(bytes.as_flattened()).map_err(|_| Unanswerable)?;
+    }
+    Ok(())
+}

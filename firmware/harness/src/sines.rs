@@ -1,0 +1,71 @@
+//! Other means of computing the sweep's sine, for the table of what each costs.
+
+use core::f32::consts::TAU;
+
+use firmware::excitation::sine::{QUINTIC, sine};
+
+/// A means of computing the sine of a part of a turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sine {
+    /// The crate `micromath`, in `f32`.
+    Micromath,
+    /// The crate `libm`, for `f32`; inside it computes in `f64`.
+    Libm,
+    /// The same crate, for `f64`.
+    LibmDouble,
+    /// A polynomial of the third degree.
+    Cubic,
+    /// A polynomial of the fifth degree: what a sweep is played with.
+    Quintic,
+    /// A polynomial of the seventh degree.
+    Septic,
+    /// A polynomial of the ninth degree.
+    Nonic,
+}
+
+/// Coefficients as those of [`QUINTIC`], with the least largest error of their degree.
+const CUBIC: [f32; 2] = [6.192_264_7, -35.363_71];
+const SEPTIC: [f32; 4] = [6.283_164, -41.337_143, 81.340_77, -70.993_43];
+#[expect(clippy::approx_constant, reason = "the least error is beside it, not at it")]
+const NONIC: [f32; 5] = [6.283_185, -41.341_656, 81.601_006, -76.549_78, 39.536_705];
+
+impl Sine {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Micromath,
+        Self::Libm,
+        Self::LibmDouble,
+        Self::Cubic,
+        Self::Quintic,
+        Self::Septic,
+        Self::Nonic,
+    ];
+
+    /// Its name, for tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Micromath => "micromath",
+            Self::Libm => "libm sinf",
+            Self::LibmDouble => "libm sin",
+            Self::Cubic => "degree 3",
+            Self::Quintic => "degree 5",
+            Self::Septic => "degree 7",
+            Self::Nonic => "degree 9",
+        }
+    }
+
+    /// The sine of `turn` turns, from 0 to 1.
+    #[inline(always)]
+    pub fn of_turn(self, turn: f32) -> f32 {
+        match self {
+            // By name, since `f32` has a sine of its own where there is an operating system.
+            Self::Micromath => micromath::F32Ext::sin(TAU * turn),
+            Self::Libm => libm::sinf(TAU * turn),
+            Self::LibmDouble => libm::sin(core::f64::consts::TAU * f64::from(turn)) as f32,
+            Self::Cubic => sine(turn, &CUBIC),
+            Self::Quintic => sine(turn, &QUINTIC),
+            Self::Septic => sine(turn, &SEPTIC),
+            Self::Nonic => sine(turn, &NONIC),
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The device of the scenes in this folder that come with the project: the paddle that the paper's
+//! examples are of. A scene of your own is of *your* device, which is in `device`.
+
+// Whoever reads several scenes' files at once has this one in each.
+#![allow(dead_code, clippy::duplicate_mod)]
+
+use firmware::encoder::CounterWidth;
+use firmware::scene::Device;
+use firmware::servo::Transducers;
+
+/// What the hand holds: inertia in kg m^2, damping in N m s/rad.
+pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+
+/// Its encoder and its motor with amplifier, at the handle: torque in N m, speed in rad/s.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 2.0,
+    largest_speed: 100.0,
+};

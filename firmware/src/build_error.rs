@@ -1,0 +1,209 @@
+//! What can go wrong between a certified scene and a servo.
+
+use core::fmt;
+
+use crate::number::{Format, Number, OutOfRange};
+use crate::text::Sentence;
+
+/// Why a certified scene cannot run with these transducers in this number format.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BuildError {
+    /// A scale, a period or a limit is zero, negative or not finite.
+    NotPositive {
+        /// What it is.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The scene's torque limit is above what the converter can give.
+    TorqueLimit {
+        /// The scene's limit in N m.
+        limit: f64,
+        /// The torque at the converter's largest code in N m.
+        full_scale: f64,
+    },
+    /// A constant of the scene does not fit the number format.
+    Unrepresentable {
+        /// What it is.
+        name: &'static str,
+        /// Value, bound and format.
+        reason: OutOfRange,
+    },
+    /// The scene is certified as it was written, or in another number format, and its coefficients
+    /// as rounded to this one are not.
+    Uncertified {
+        /// This format.
+        format: Format,
+    },
+    /// The loop of coupling and environment has no solution, or more than one.
+    IllPosed {
+        /// `1 + f / K_vc` with the environment's slope `f`, out of contact.
+        line: f64,
+        /// The same in contact with a wall that can only push.
+        contact: f64,
+    },
+    /// The environment is delayed by more samples than are stored.
+    Delay {
+        /// What was asked for.
+        delay: usize,
+        /// The most that there is.
+        largest: usize,
+    },
+    /// A numerator of higher degree than its denominator, or a denominator that is zero.
+    Improper {
+        /// Degree of the numerator.
+        numerator: usize,
+        /// Degree of the denominator.
+        denominator: usize,
+    },
+    /// The scene's certificate has no room for damping that is switched on and off.
+    Injection {
+        /// The damping in N m s/rad.
+        damping: f64,
+        /// What it has to stay below in N m s/rad.
+        room: f64,
+    },
+    /// The encoder's counter would wrap unseen at the largest speed.
+    Speed {
+        /// Counts between two ticks at the largest speed.
+        counts: f64,
+        /// Half the counter's range.
+        half: f64,
+    },
+    /// No board can pace the scene.
+    Period {
+        /// Its period in s.
+        period: f64,
+        /// The shortest that every board can pace.
+        shortest: f64,
+        /// The longest.
+        longest: f64,
+    },
+}
+
+impl BuildError {
+    /// Refuses what is not positive and finite.
+    pub(crate) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::NotPositive { name, value })
+        }
+    }
+
+    /// Rounds a coefficient, or says which one does not fit.
+    pub(crate) fn coefficient<N: Number>(
+        name: &'static str,
+        value: f64,
+    ) -> Result<N::Coefficient, Self> {
+        N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
+    }
+
+    /// Rounds an angle or a torque, or says which one does not fit.
+    pub(crate) fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
+        N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
+    }
+}
+
+impl BuildError {
+    /// The error as a sentence, the same at compile time, on the host and on the board.
+    pub const fn sentence(&self) -> Sentence {
+        let mut t = Sentence::new();
+        match self {
+            Self::NotPositive { name, value } => {
+                t.push("the ");
+                t.push(name);
+                t.push(" must be positive and finite, and is ");
+                t.push_number(*value);
+            }
+            Self::TorqueLimit { limit, full_scale } => {
+                t.push("the torque limit of ");
+                t.push_number(*limit);
+                t.push(" N m is above the converter's full scale of ");
+                t.push_number(*full_scale);
+                t.push(" N m: lower it to that, or scale the amplifier up");
+            }
+            Self::Unrepresentable { name, reason } => {
+                t.push("the ");
+                t.push(name);
+                t.push(": ");
+                reason.write(&mut t);
+            }
+            Self::Uncertified { format } => {
+                t.push("the scene is certified, but not with its coefficients rounded to ");
+                t.push(format.name().as_str());
+                t.push(
+                    ": ask for its certificate in that format, which says why, and leave more \
+                     margin",
+                );
+            }
+            Self::IllPosed { line, contact } => {
+                t.push(
+                    "coupling and environment have no unique solution: the loop gain 1 + f / K is ",
+                );
+                t.push_number(*line);
+                t.push(" out of contact and ");
+                t.push_number(*contact);
+                t.push(
+                    " in contact, and must be positive; a stiffer coupling or a delayed \
+                     environment has one",
+                );
+            }
+            Self::Delay { delay, largest } => {
+                t.push("a delay of ");
+                t.push_number(*delay as f64);
+                t.push(" samples is longer than the ");
+                t.push_number(*largest as f64);
+                t.push(" that are stored");
+            }
+            Self::Improper { numerator, denominator } => {
+                t.push("a numerator of degree ");
+                t.push_number(*numerator as f64);
+                t.push(" over a denominator of degree ");
+                t.push_number(*denominator as f64);
+                t.push(" needs samples from the future");
+            }
+            Self::Injection { damping, room } => {
+                t.push("a damping of ");
+                t.push_number(*damping);
+                t.push(
+                    " N m s/rad that is switched on and off uses up as much of the device's \
+                     passivity, of which this scene leaves less than ",
+                );
+                t.push_number(*room);
+                t.push(" N m s/rad: inject less, or make the scene softer");
+            }
+            Self::Speed { counts, half } => {
+                t.push("at the largest speed the encoder may move by ");
+                t.push_number(*counts);
+                t.push(" counts between two ticks, of which its counter tells only those below ");
+                t.push_number(*half);
+                t.push(": a shorter worst period or a wider counter tells them all");
+            }
+            Self::Period { period, shortest, longest } => {
+                t.push("the period of ");
+                t.push_number(*period);
+                t.push(" s is not between ");
+                t.push_number(*shortest);
+                t.push(" and ");
+                t.push_number(*longest);
+                t.push(" s, what a board can pace");
+            }
+        }
+        t
+    }
+
+    /// Stops the compiler with the sentence.
+    #[track_caller]
+    pub(crate) const fn refuse(&self) -> ! {
+        panic!("{}", self.sentence().as_str())
+    }
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.sentence().as_str())
+    }
+}
+
+impl core::error::Error for BuildError {}

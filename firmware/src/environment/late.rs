@@ -1,0 +1,46 @@
+//! What an environment must be to stand the time that a torque takes to the motor.
+
+use super::{
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, OneSided, Placed, Rational,
+};
+use crate::output_timing::{Latched, OutputMode, Simultaneous};
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// An environment that is late by at least one sample, so that its torque is known one tick early.
+///
+/// Of [`Environment`] and [`Rational`] only the numbers tell; they are looked at when the scene
+/// is [timed](crate::certificate::Timed).
+pub trait Delayed: sealed::Sealed {}
+
+macro_rules! delayed {
+    ($($delay:literal)*) => {$(delayed! { @
+        DelayedSpring<$delay>, Placed<DelayedSpring<$delay>>, OneSided<DelayedSpring<$delay>>,
+        DamperWall<$delay>, Placed<DamperWall<$delay>>, OneSided<DamperWall<$delay>>,
+        FilteredWall<$delay>, Placed<FilteredWall<$delay>>, OneSided<FilteredWall<$delay>>,
+        FreeMode<$delay>,
+    })*};
+    (@ $($environment:ty,)*) => {$(
+        impl sealed::Sealed for $environment {}
+        impl Delayed for $environment {}
+    )*};
+}
+
+delayed!(1 2 3 4 5 6 7 8);
+delayed!(@ Environment, Rational,);
+
+/// An environment that can be rendered in the mode `M`: any of them where count and torque are
+/// simultaneous, one that is [`Delayed`] where a torque takes time.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
+    label = "this environment needs a delay of 1 to 8 samples",
+    note = "give it a delay of 1, as in `DamperWall<1>`: that is the sample which passes until the \
+            motor has the torque; a `FreeModeWall` cancels without delay, and runs in simulation \
+            only"
+)]
+pub trait Renders<M: OutputMode> {}
+
+impl<E> Renders<Simultaneous> for E {}
+impl<E: Delayed> Renders<Latched> for E {}

@@ -1,0 +1,54 @@
+//! When a count is read, and when the torque that it gives reaches the motor.
+//!
+//! A force takes time from count to motor. A scene says by how many whole samples its environment
+//! is late; a board says when its codes appear; both have to agree, which the compiler sees to by
+//! [`Renders`](crate::environment::Renders).
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// When a code reaches the motor, by type.
+pub trait OutputMode: sealed::Sealed + Copy + Send + core::fmt::Debug + 'static {
+    /// The same as data.
+    const TIMING: OutputTiming;
+}
+
+/// When a code reaches the motor, as data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub enum OutputTiming {
+    /// At the instant of its count.
+    Simultaneous,
+    /// At the next count, by the timer.
+    Latched,
+}
+
+/// The timer that begins a period latches the code of the tick before: a torque appears exactly
+/// one sample after the count that it was computed from, without jitter, so that equation 35 has no
+/// part of a sample in it. The servo computes each
+/// torque one tick early, so that what the scene calls one sample late *is* that sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Latched;
+
+/// Count and torque belong to the same instant: a simulation, or an emulated board in lockstep
+/// with one. No converter can do this.
+#[derive(Clone, Copy, Debug)]
+pub struct Simultaneous;
+
+impl sealed::Sealed for Latched {}
+impl sealed::Sealed for Simultaneous {}
+
+impl OutputMode for Latched {
+    const TIMING: OutputTiming = OutputTiming::Latched;
+}
+
+impl OutputMode for Simultaneous {
+    const TIMING: OutputTiming = OutputTiming::Simultaneous;
+}
+
+/// Time in s after the beginning of its period in which a tick reads its count, where torques are
+/// latched: the interrupt's own latency, and what other instructions add. The certificate of a board
+/// covers counts that are read as late as this, and later ones are told by
+/// [`BEGAN_LATE`](crate::cycle::BEGAN_LATE).
+pub const READ_WITHIN: f64 = 1e-6;

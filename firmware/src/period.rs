@@ -1,0 +1,30 @@
+//! Periods that every board can pace.
+
+use crate::build_error::BuildError;
+
+/// Periods without a tick after which the watchdog resets the board. Its clock is an RC oscillator:
+/// on the F405, the worst, eight periods by its nominal 32 kHz are between five and fifteen.
+pub const PATIENCE: f64 = 8.0;
+/// Counts of the watchdog's clock a second, behind the prescaler of 4 that it has out of reset.
+pub const WATCHDOG_CLOCK: f64 = 32_000.0 / 4.0;
+/// What the watchdog counts down from at most.
+const WATCHDOG_LONGEST: f64 = 4095.0;
+
+/// The shortest period in s: 1700 cycles of a board's processor, of which a tick takes some hundreds
+/// and what is below it has to have the most.
+pub const SHORTEST: f64 = 1e-5;
+/// The longest period in s that the watchdog has its patience with.
+pub const LONGEST: f64 = (WATCHDOG_LONGEST - 1.0) / WATCHDOG_CLOCK / PATIENCE;
+
+/// Refuses what is not between them.
+///
+/// # Errors
+/// [`BuildError::Period`].
+pub const fn check(period: f64) -> Result<(), BuildError> {
+    // Written so that NaN is refused.
+    if period >= SHORTEST && period <= LONGEST {
+        Ok(())
+    } else {
+        Err(BuildError::Period { period, shortest: SHORTEST, longest: LONGEST })
+    }
+}

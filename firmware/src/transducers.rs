@@ -1,0 +1,124 @@
+//! The scales between the servo's numbers and the world's.
+
+use core::f64::consts::TAU;
+
+use crate::build_error::BuildError;
+use crate::dac::DacCode;
+use crate::encoder::CounterWidth;
+use crate::number::Number;
+use crate::scene::Timing;
+use crate::torque::{LimitReason, Limiter};
+
+/// The scales of what surrounds the servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Transducers {
+    /// Encoder counts a turn of the device's axis, after quadrature and gearing.
+    pub counts_per_turn: f64,
+    /// Bits after which the counter wraps.
+    pub counter: CounterWidth,
+    /// Torque of the motor on the device's axis in N m at the largest code that every board's
+    /// converter gives, [`DacCode::CODES_TO_FULL_SCALE`] from mid-scale.
+    pub full_scale_torque: f64,
+    /// The fastest in rad/s that the device can turn in any hand: a count that needs more speed
+    /// than this is a broken encoder, and a fault.
+    pub largest_speed: f64,
+}
+
+impl Transducers {
+    /// A speed in rad/s that no hand reaches at a paddle or a knob, 16 turns a second: for
+    /// [`Transducers::largest_speed`] where the device is not known better.
+    pub const NO_HAND_IS_FASTER: f64 = 100.0;
+
+    /// Whether a servo can work between them with this timing and this torque limit.
+    ///
+    /// # Errors
+    /// What is wrong, with its value and its bound.
+    pub const fn check(&self, timing: Timing, limit: Option<f64>) -> Result<(), BuildError> {
+        if let Err(error) = self.codes_per_torque() {
+            return Err(error);
+        }
+        if let Err(error) = self.bound(limit) {
+            return Err(error);
+        }
+        // The counter must not wrap unseen before missed ticks become a fault.
+        let worst = match timing.worst_period {
+            Some(worst) => worst,
+            None => timing.period,
+        };
+        match self.largest_step(worst) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(crate) const fn radians_per_count(&self) -> Result<f64, BuildError> {
+        let counts = self.counts_per_turn;
+        match BuildError::unless_positive("counts per turn", counts) {
+            Ok(()) => Ok(TAU / counts),
+            Err(error) => Err(error),
+        }
+    }
+
+    pub(crate) const fn codes_per_torque(&self) -> Result<f64, BuildError> {
+        let full_scale = self.full_scale_torque;
+        match BuildError::unless_positive("full-scale torque", full_scale) {
+            Ok(()) => Ok(DacCode::CODES_TO_FULL_SCALE as f64 / full_scale),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The most counts that the encoder can move in `time` s, and one for its edges.
+    ///
+    /// # Errors
+    /// Where the counter would wrap unseen in that time.
+    pub(crate) const fn largest_step(&self, time: f64) -> Result<u32, BuildError> {
+        let speed = self.largest_speed;
+        if let Err(error) = BuildError::unless_positive("largest speed", speed) {
+            return Err(error);
+        }
+        let step = match self.radians_per_count() {
+            Ok(step) => step,
+            Err(error) => return Err(error),
+        };
+        let counts = speed * time / step + 1.0;
+        let half = match self.counter {
+            CounterWidth::Bits16 => (1_u32 << 15) as f64,
+            CounterWidth::Bits32 => (1_u32 << 31) as f64,
+        };
+        // Written so that NaN is refused.
+        if counts < half { Ok(counts as u32) } else { Err(BuildError::Speed { counts, half }) }
+    }
+
+    /// Energy in J of one count against one code: the unit of the energy monitor.
+    pub fn energy_unit(&self) -> f64 {
+        TAU / self.counts_per_turn * self.full_scale_torque
+            / f64::from(DacCode::CODES_TO_FULL_SCALE)
+    }
+
+    /// The most torque in N m that a scene with this limit gives: the limit, or else full scale.
+    const fn bound(&self, limit: Option<f64>) -> Result<f64, BuildError> {
+        let full_scale = self.full_scale_torque;
+        let bound = match limit {
+            Some(limit) => limit,
+            None => full_scale,
+        };
+        if let Err(error) = BuildError::unless_positive("torque limit", bound) {
+            return Err(error);
+        }
+        if bound > full_scale {
+            return Err(BuildError::TorqueLimit { limit: bound, full_scale });
+        }
+        Ok(bound)
+    }
+
+    /// The limiter of a scene's torque limit, or else of the converter's range.
+    pub(crate) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
+        let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::Converter };
+        let bound = N::bound_from_f64(self.bound(limit)?)
+            .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;
+        let name = "torque limit in the servo's number format";
+        BuildError::unless_positive(name, bound.to_f64())?;
+        Ok(Limiter::new(bound, reason))
+    }
+}

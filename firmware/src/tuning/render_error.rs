@@ -1,0 +1,69 @@
+//! Why a changed scene cannot be rendered.
+
+use core::fmt;
+
+use super::TuningError;
+use crate::build_error::BuildError;
+use crate::certificate::{Rejection, TimingError};
+use crate::step::Step;
+
+/// Why a scene cannot be rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RenderError {
+    /// The change is not one of this scene.
+    Tuning(TuningError),
+    /// No certificate.
+    Rejected(Rejection),
+    /// Not with this board's timing.
+    Timing(TimingError),
+    /// Not with these transducers in this number format.
+    Build(BuildError),
+}
+
+impl RenderError {
+    /// Where it happened.
+    pub const fn step(&self) -> Step {
+        match self {
+            Self::Tuning(_) => Step::Change,
+            Self::Rejected(_) | Self::Timing(_) => Step::Certificate,
+            Self::Build(_) => Step::Servo,
+        }
+    }
+}
+
+impl fmt::Display for RenderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tuning(error) => error.fmt(f),
+            Self::Rejected(rejection) => rejection.fmt(f),
+            Self::Timing(error) => error.fmt(f),
+            Self::Build(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for RenderError {}
+
+impl From<TuningError> for RenderError {
+    fn from(error: TuningError) -> Self {
+        Self::Tuning(error)
+    }
+}
+
+impl From<Rejection> for RenderError {
+    fn from(rejection: Rejection) -> Self {
+        Self::Rejected(rejection)
+    }
+}
+
+impl From<TimingError> for RenderError {
+    fn from(error: TimingError) -> Self {
+        Self::Timing(error)
+    }
+}
+
+impl From<BuildError> for RenderError {
+    fn from(error: BuildError) -> Self {
+        Self::Build(error)
+    }
+}
