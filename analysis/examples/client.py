@@ -319,13 +319,36 @@ def connect(port):
     return lambda: line.read(max(1, line.in_waiting)), line.write
 
 
-def main(arguments):
+def change(pair):
+    """The name and the value of NAME=VALUE."""
+    name, equals, value = pair.partition("=")
+    if not equals:
+        raise ValueError(f"`{pair}` is not NAME=VALUE")
+    if name not in PARAMETERS.values():
+        raise ValueError(f"there is no parameter `{name}`; there are "
+                         + ", ".join(PARAMETERS.values()))
     try:
+        return name, float(value)
+    except ValueError:
+        raise ValueError(f"`{value}` is no number for {name}") from None
+
+
+def main(arguments):
+    if not arguments or {"-h", "--help"} & set(arguments):
+        print(__doc__, file=sys.stdout if arguments else sys.stderr)
+        return 0 if arguments else 2
+    try:
+        if len(arguments) < 2:
+            raise ValueError("a command must follow the port")
         port, command, *rest = arguments
+        if command == "stream" and len(rest) != 2:
+            raise ValueError("stream takes two numbers: TICKS and EVERY")
+        if command == "set" and not rest:
+            raise ValueError("set takes a NAME=VALUE or more")
+        changes = [change(pair) for pair in rest] if command == "set" else []
         board = Board(port)
         if command == "set":
-            pairs = [pair.split("=") for pair in rest]
-            board.set([(name, float(value)) for name, value in pairs])
+            board.set(changes)
         elif command in ("arm", "disarm"):
             board.request(ARM if command == "arm" else DISARM)
         elif command == "stream":

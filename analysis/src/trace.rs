@@ -8,6 +8,11 @@ use crate::simulation::drive::Drive;
 use crate::simulation::served::Served;
 use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
 
+/// A step of the encoder is at most one in so many of the largest velocity.
+const STEPS: f64 = 20.0;
+/// A velocity is taken over at most one in so many of the samples.
+const SMEARED: usize = 12;
+
 /// What the samples are counted in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
@@ -118,22 +123,72 @@ impl Trace {
     }
 
     /// Samples over which a velocity is taken that was not recorded: as many as a picture does not
-    /// show apart, so that the steps of the encoder do not hide it.
+    /// show apart, and as many more, up to a [`SMEARED`] part of the run, as make a step of the
+    /// encoder a small part of the velocities.
     pub fn window(&self) -> usize {
-        (self.time.len() / 400).max(1)
+        let last = self.time.len().saturating_sub(1).max(1);
+        let (least, most) = ((self.time.len() / 400).clamp(1, last), (last / SMEARED).max(1));
+        let Some(step) = self.step() else { return least };
+        let sample = (self.time[last] - self.time[0]) / last as f64;
+        let is_fine = |window: &usize| {
+            let fastest = self.means(*window).fold(0.0, |fastest: f64, v| fastest.max(v.abs()));
+            STEPS * step <= fastest * sample * *window as f64
+        };
+        let wider = std::iter::successors(Some(least), |window| Some(window + window.div_ceil(4)));
+        wider.take_while(|window| *window < most).find(is_fine).unwrap_or(most.max(least))
+    }
+
+    /// The encoder's step: the least by which changes of the angle from a sample to the next differ,
+    /// of some size beside the largest; `None` if it never changes.
+    fn step(&self) -> Option<f64> {
+        /// What is smaller, as a part of the largest change, has come of rounded numbers.
+        const ROUNDED: f64 = 1e-6;
+        let changes = self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let mut changes: Vec<_> = changes.chain([0.0]).collect();
+        changes.sort_by(f64::total_cmp);
+        let least = ROUNDED * changes[changes.len() - 1];
+        let steps = changes.windows(2).map(|pair| pair[1] - pair[0]);
+        steps.filter(|step| *step > least).min_by(f64::total_cmp)
+    }
+
+    /// The mean velocity over so many samples, around each sample as far as the run goes.
+    fn means(&self, window: usize) -> impl Iterator<Item = f64> + '_ {
+        let last = self.time.len().saturating_sub(1);
+        let window = window.min(last);
+        (0..self.time.len()).map(move |i| {
+            let from = i.saturating_sub(window.div_ceil(2)).min(last - window);
+            let to = from + window;
+            (self.position[to] - self.position[from]) / (self.time[to] - self.time[from])
+        })
     }
 
     /// The velocity as it was recorded, or the mean over a few samples.
     pub fn velocities(&self) -> Vec<f64> {
-        if !self.velocity.is_empty() {
-            return self.velocity.clone();
+        match self.velocity.is_empty() {
+            true => self.means(self.window()).collect(),
+            false => self.velocity.clone(),
         }
-        let mean = |i: usize| {
-            let from = i.saturating_sub(self.window());
-            let to = if from == i { i + 1 } else { i };
-            let step = self.position[to] - self.position[from];
-            step / (self.time[to] - self.time[from])
-        };
-        (0..self.time.len()).map(mean).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 4096 counts a turn, sent every other tick of 1 ms, around 0.3 rad/s.
+    #[test]
+    fn a_velocity_from_angles_is_no_comb_of_the_encoders_steps() {
+        let step = std::f64::consts::TAU / 4096.0;
+        let time: Vec<f64> = (0..1000).map(|i| 0.002 * f64::from(i)).collect();
+        let angle = |t: &f64| (0.3 * t + 0.01 * (3.0 * t).sin()) / step;
+        let position: Vec<f64> = time.iter().map(|t| angle(t).floor() * step).collect();
+        let trace = Trace { time, position, ..Trace::default() };
+        for (t, v) in trace.time.iter().zip(trace.velocities()) {
+            let truth = 0.3 + 0.03 * (3.0 * t).cos();
+            assert!((v - truth).abs() < 0.03, "{v} {truth} at {t}");
+        }
+        // Angles that no encoder has rounded are taken as near to each other as a picture shows.
+        let position = trace.time.iter().map(|t| angle(t) * step).collect();
+        assert_eq!(Trace { position, ..trace }.window(), 2);
     }
 }

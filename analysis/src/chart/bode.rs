@@ -39,8 +39,11 @@ pub fn bode(
     if all.start >= all.end || all.start <= 0.0 {
         return Err(ChartError::TooFewPoints);
     }
+    meets("horizontal", wanted.x.as_ref(), &all)?;
+    meets("vertical", wanted.y.as_ref(), &span(points().map(|point| point.gain)))?;
     let x = wanted.x.clone().unwrap_or_else(|| interesting(loops, &all));
-    let seen = || points().filter(|point| x.contains(&point.hertz));
+    // The last one is at half the sample rate, where the phase falls fastest.
+    let seen = || points().filter(|point| (x.start..=x.end).contains(&point.hertz));
     let far = 10_f64.powf(DECADES);
     let gains = seen().map(|point| point.gain.clamp(1.0 / far, far));
     let gains = span(gains.chain([1.0]));

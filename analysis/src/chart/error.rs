@@ -1,9 +1,12 @@
 //! Why there is no picture.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use firmware::passivity::transfer::Unbuildable;
 use thiserror::Error;
+
+use crate::quantity::significant;
 
 /// Why a picture could not be drawn.
 #[derive(Debug, Error)]
@@ -57,9 +60,26 @@ pub enum ChartError {
         /// Why.
         why: Unbuildable,
     },
+    /// An axis was asked for where nothing is.
+    #[error(
+        "there is nothing to draw from {} to {} on the {axis} axis: what there is goes from {} to {}",
+        number(wanted.start), number(wanted.end), number(there.start), number(there.end)
+    )]
+    NothingThere {
+        /// Horizontal or vertical.
+        axis: &'static str,
+        /// What was asked for.
+        wanted: Range<f64>,
+        /// What there is.
+        there: Range<f64>,
+    },
     /// There is nothing to draw.
     #[error("a picture needs at least two points")]
     TooFewPoints,
+}
+
+fn number(value: f64) -> String {
+    significant(value, 6)
 }
 
 fn unbuildable(why: Unbuildable) -> &'static str {

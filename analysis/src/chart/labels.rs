@@ -1,4 +1,4 @@
-//! Names beside points, none of them on another or on a point.
+//! Names beside points and lines, none of them on another, on a point or on a line where there is room.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -7,13 +7,21 @@ use crate::chart::{Area, Drawn, FONT, UNITS, units};
 
 /// Width of a letter over the size of its font: more than the mean of the letters in use, so that
 /// a name is never longer than its block.
-const LETTER: f64 = 0.6;
+const LETTER: f64 = 0.52;
 /// Between a point and its name.
 const GAP: i32 = units(7);
 /// Between a line and a name.
 const BESIDE: i32 = units(1);
+/// Points so near to each other are at one place.
+const SAME: f64 = units(3) as f64;
+/// A name is its point's if others are so many times as far away from it.
+const OWN: f64 = 1.5;
+/// A line to a name keeps so far from other points.
+const PAST: f64 = units(6) as f64;
+/// Places along a line to a name at which is looked for what it passes.
+const STEPS: i32 = 20;
 /// Directions in which a place is looked for, first to the right and above.
-const DIRECTIONS: usize = 16;
+const DIRECTIONS: usize = 32;
 /// Distances at which it is looked for, each one line further.
 const DISTANCES: i32 = 9;
 
@@ -39,6 +47,15 @@ impl Block {
             && other.top < self.bottom
     }
 
+    /// How far a point is from it.
+    fn distance(&self, (x, y): (i32, i32)) -> f64 {
+        distance((x, y), self.nearest((x, y)))
+    }
+
+    fn nearest(&self, (x, y): (i32, i32)) -> (i32, i32) {
+        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+    }
+
     fn holds(&self, other: &Self) -> bool {
         self.left <= other.left
             && other.right <= self.right
@@ -52,17 +69,41 @@ impl Block {
 pub struct Labels {
     panel: Block,
     taken: Vec<Block>,
+    names: Vec<Block>,
+    points: Vec<(i32, i32)>,
+}
+
+/// Where a name is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Spot {
+    block: Block,
+    /// Whether it takes a line to say what it is the name of.
+    is_led: bool,
 }
 
 impl Labels {
     /// An empty panel.
     pub fn within(panel: Block) -> Self {
-        Self { panel, taken: Vec::new() }
+        Self { panel, taken: Vec::new(), names: Vec::new(), points: Vec::new() }
     }
 
-    /// Lets no name come so near a point.
-    pub fn keep_clear(&mut self, (x, y): (i32, i32), reach: i32) {
+    /// Lets no name come so near a point, nor be taken for its name that is another one's.
+    pub fn mark(&mut self, point: (i32, i32), reach: i32) {
+        self.keep_clear(point, reach);
+        self.points.push(point);
+    }
+
+    fn keep_clear(&mut self, (x, y): (i32, i32), reach: i32) {
         self.taken.push(Block::new((x - reach, y - reach), (x + reach, y + reach)));
+    }
+
+    /// Lets no name come so near a line.
+    pub fn keep_clear_of(&mut self, line: &[(i32, i32)], reach: i32) {
+        let steps = |from, to| (distance(from, to) / f64::from(reach)).ceil().max(1.0) as i32;
+        for pair in line.windows(2) {
+            let steps = steps(pair[0], pair[1]);
+            (0..=steps).for_each(|step| self.keep_clear(along(pair, (step, steps)), reach));
+        }
     }
 
     /// Lets no name be across a line that is upright or level.
@@ -73,8 +114,10 @@ impl Labels {
             .push(Block::new((left - BESIDE, top - BESIDE), (right + BESIDE, bottom + BESIDE)));
     }
 
-    /// The nearest place to a point where a name of that size fits; `None` where the panel is full.
-    fn place(&self, (x, y): (i32, i32), (width, height): (i32, i32)) -> Option<Block> {
+    /// The nearest place to a point where a name of that size fits and is the point's; else one from
+    /// where a line leads to the point. `None` where the panel is full.
+    fn place(&self, point: (i32, i32), (width, height): (i32, i32)) -> Option<Spot> {
+        let (x, y) = point;
         let around = (0..DISTANCES).flat_map(|distance| {
             (0..DIRECTIONS).map(move |direction| {
                 let turn = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
@@ -86,27 +129,111 @@ impl Labels {
         });
         let block = |(distance, angle): (i32, f64)| {
             let reach = f64::from(GAP + distance * height);
-            let middle = (
-                f64::from(x) + angle.cos() * (reach + 0.5 * f64::from(width)),
-                f64::from(y) - angle.sin() * (reach + 0.5 * f64::from(height)),
-            );
+            // Across, its corner is the nearest to the point; upright and level, its middle is.
+            let away = |part: f64, size: i32| {
+                let side = (part * std::f64::consts::SQRT_2).clamp(-1.0, 1.0);
+                part * reach + 0.5 * side * f64::from(size)
+            };
+            let middle =
+                (f64::from(x) + away(angle.cos(), width), f64::from(y) - away(angle.sin(), height));
             let corner = (middle.0 as i32 - width / 2, middle.1 as i32 - height / 2);
             Block::new(corner, (corner.0 + width, corner.1 + height))
         };
-        around.map(block).find(|block| self.is_free(block))
+        let free = || around.clone().map(block).filter(|block| self.is_free(block));
+        let own = free()
+            .find(|block| block.distance(point) <= f64::from(2 * GAP) && self.is_own(point, block));
+        let far = |block: &Block| block.distance(point) >= f64::from(2 * GAP);
+        let led = || {
+            let led = || free().filter(|block| far(block) && self.can_lead(point, block));
+            let others = || self.points.iter().filter(|other| distance(point, **other) > SAME);
+            let alone = |b: &Block| others().all(|other| b.distance(*other) >= f64::from(2 * GAP));
+            led().find(alone).or_else(|| led().next()).or_else(|| free().next())
+        };
+        let spot = |is_led| move |block| Spot { block, is_led };
+        own.map(spot(false)).or_else(|| led().map(spot(true)))
+    }
+
+    /// Whether nobody takes a name there for that of another point.
+    fn is_own(&self, point: (i32, i32), block: &Block) -> bool {
+        let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
+        let own = block.distance(point);
+        others.into_iter().all(|other| block.distance(*other) >= OWN * own)
+    }
+
+    /// Whether a line from there to the point passes no other point and no name.
+    fn can_lead(&self, point: (i32, i32), block: &Block) -> bool {
+        let line = [point, block.nearest(point)];
+        let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
+        let others: Vec<_> = others.filter(|other| distance(point, **other) > PAST).collect();
+        (0..=STEPS).map(|step| along(&line, (step, STEPS))).all(|(x, y)| {
+            let on = |name: &Block| name.meets(&Block::new((x - 1, y - 1), (x + 1, y + 1)));
+            !self.names.iter().any(on)
+                && others.iter().all(|other| distance((x, y), **other) > PAST)
+        })
     }
 
     fn is_free(&self, block: &Block) -> bool {
         self.panel.holds(block) && !self.taken.iter().any(|taken| taken.meets(block))
     }
 
-    /// Takes a block and writes in it.
-    fn fill(&mut self, area: &Area<'_>, block: Block, name: &str, size: i32) -> Drawn<()> {
+    /// Takes a block and writes in it, at the side that is towards a place.
+    fn fill(
+        &mut self,
+        area: &Area<'_>,
+        block: Block,
+        (name, size): (&str, i32),
+        (x, _): (i32, i32),
+    ) -> Drawn<()> {
+        self.take(block);
+        let quarter = (block.right - block.left) / 4;
+        let (side, edge) = match x {
+            _ if x <= block.left + quarter => (HPos::Left, block.left),
+            _ if x >= block.right - quarter => (HPos::Right, block.right),
+            _ => (HPos::Center, (block.left + block.right) / 2),
+        };
+        let style = TextStyle::from((FONT, size)).color(&BLACK).pos(Pos::new(side, VPos::Center));
+        area.draw(&Text::new(name.to_owned(), (edge, (block.top + block.bottom) / 2), style))
+    }
+
+    fn take(&mut self, block: Block) {
         self.taken.push(block);
-        let middle = ((block.left + block.right) / 2, (block.top + block.bottom) / 2);
-        let style = TextStyle::from((FONT, size)).color(&BLACK);
-        let style = style.pos(Pos::new(HPos::Center, VPos::Center));
-        area.draw(&Text::new(name.to_owned(), middle, style))
+        self.names.push(block);
+    }
+
+    /// Writes words, a line each, beside an upright line: on its left if there is room, else on its
+    /// right, the `highest` first or the lowest; where there is none, where they cover the least.
+    pub fn write_along(
+        &mut self,
+        area: &Area<'_>,
+        x: i32,
+        words: &[String],
+        (size, highest): (i32, bool),
+    ) -> Drawn<()> {
+        let width = words.iter().map(|word| width_of(word, size)).max().unwrap_or(0);
+        let row = size * 5 / 4;
+        let height = row * words.len() as i32;
+        let lowest = self.panel.bottom - GAP - height;
+        let mut tops: Vec<_> = (self.panel.top + GAP..=lowest).step_by(GAP as usize).collect();
+        if !highest {
+            tops.reverse();
+        }
+        let sides = [x - GAP - width, x + GAP];
+        let corners = sides.iter().flat_map(|left| tops.iter().map(move |top| (*left, *top)));
+        let blocks = corners.map(|(x, y)| Block::new((x, y), (x + width, y + height)));
+        let covered = |block: &Block| self.taken.iter().filter(|taken| taken.meets(block)).count();
+        let inside = blocks.filter(|block| self.panel.holds(block));
+        let Some(block) = inside.min_by_key(covered) else { return Ok(()) };
+        self.take(block);
+        let (side, edge) = match block.left < x {
+            true => (HPos::Right, block.right),
+            false => (HPos::Left, block.left),
+        };
+        let style = TextStyle::from((FONT, size)).color(&BLACK).pos(Pos::new(side, VPos::Center));
+        for (index, word) in words.iter().enumerate() {
+            let place = (edge, block.top + row * index as i32 + row / 2);
+            area.draw(&Text::new(word.clone(), place, style.clone()))?;
+        }
+        Ok(())
     }
 
     /// Writes a word beside a level line, above or below it, as far to the left as there is room.
@@ -116,12 +243,15 @@ impl Labels {
         let corners = (self.panel.left..self.panel.right).step_by(GAP as usize).flat_map(column);
         let block = |(x, y): (i32, i32)| Block::new((x, y), (x + width, y + height));
         match corners.map(block).find(|block| self.is_free(block)) {
-            Some(block) => self.fill(area, block, word, size),
+            Some(block) => {
+                self.fill(area, block, (word, size), ((block.left + block.right) / 2, y))
+            }
             None => Ok(()),
         }
     }
 
-    /// Writes a name beside a point, with a thin line to it where it had to go far.
+    /// Writes a name beside a point, with a thin line to it where it had to go far, or is nearer to
+    /// another point.
     pub fn write(
         &mut self,
         area: &Area<'_>,
@@ -129,16 +259,24 @@ impl Labels {
         name: &str,
         size: i32,
     ) -> Drawn<()> {
-        let Some(block) = self.place(point, (width_of(name, size), size)) else { return Ok(()) };
-        let nearest =
-            (point.0.clamp(block.left, block.right), point.1.clamp(block.top, block.bottom));
-        let far = (nearest.0 - point.0).abs().max((nearest.1 - point.1).abs()) > 2 * GAP;
-        if far {
-            let line = BLACK.mix(0.4).stroke_width(UNITS / 2);
-            area.draw(&PathElement::new(vec![point, nearest], line))?;
+        let Some(spot) = self.place(point, (width_of(name, size), size)) else { return Ok(()) };
+        if spot.is_led {
+            let line = BLACK.mix(0.7).stroke_width(UNITS * 3 / 4);
+            area.draw(&PathElement::new(vec![point, spot.block.nearest(point)], line))?;
         }
-        self.fill(area, block, name, size)
+        self.fill(area, spot.block, (name, size), point)
     }
+}
+
+fn distance(a: (i32, i32), b: (i32, i32)) -> f64 {
+    f64::from(a.0 - b.0).hypot(f64::from(a.1 - b.1))
+}
+
+/// The place after so many of all steps from the first of two to the second.
+fn along(pair: &[(i32, i32)], (step, steps): (i32, i32)) -> (i32, i32) {
+    let part = f64::from(step) / f64::from(steps);
+    let mix = |a: i32, b: i32| a + (part * f64::from(b - a)).round() as i32;
+    (mix(pair[0].0, pair[1].0), mix(pair[0].1, pair[1].1))
 }
 
 /// Width of a name, or a little more.
@@ -155,11 +293,11 @@ mod tests {
         let panel = Block::new((0, 0), (units(400), units(300)));
         let mut labels = Labels::within(panel);
         let points: Vec<_> = (0..12).map(|i| (units(20 * i + 40), units(10 * i + 60))).collect();
-        points.iter().for_each(|&point| labels.keep_clear(point, units(4)));
+        points.iter().for_each(|&point| labels.mark(point, units(4)));
         let size = (units(90), units(13));
         let mut place = |&point: &(i32, i32)| {
-            let found = labels.place(point, size).unwrap();
-            labels.taken.push(found);
+            let found = labels.place(point, size).unwrap().block;
+            labels.take(found);
             found
         };
         let placed: Vec<_> = points.iter().map(&mut place).collect();
@@ -171,5 +309,44 @@ mod tests {
         }
         // Where there is no room there is no name.
         assert_eq!(labels.place((0, 0), (units(500), units(13))), None);
+    }
+
+    #[test]
+    fn a_name_is_nearest_to_its_own_point_or_a_line_leads_there() {
+        let mut labels = Labels::within(Block::new((0, 0), (units(400), units(300))));
+        let row = |i: i32| (units(150 + 12 * i), units(150));
+        let points: Vec<_> = (0..9).map(row).chain([(units(300), units(80))]).collect();
+        points.iter().for_each(|&point| labels.mark(point, units(4)));
+        let mut led = Vec::new();
+        for &point in &points {
+            let spot = labels.place(point, (units(50), units(13))).unwrap();
+            labels.take(spot.block);
+            let others = points.iter().filter(|other| **other != point);
+            let nearest = others.map(|other| spot.block.distance(*other)).fold(1e9, f64::min);
+            assert!(spot.is_led || spot.block.distance(point) < nearest, "{point:?} {spot:?}");
+            led.push(spot.is_led);
+        }
+        assert!(led[4] && !led[9], "{led:?}");
+    }
+
+    #[test]
+    fn a_name_along_a_line_is_where_no_curve_is() {
+        let panel = Block::new((0, 0), (units(400), units(300)));
+        let mut labels = Labels::within(panel);
+        let x = units(300);
+        labels.keep_clear_along((x, 0), (x, units(300)));
+        // It takes the place on the left all the way down, but for some of the middle.
+        for (from, to) in [(0, 140), (200, 300)] {
+            labels.keep_clear_of(&[(units(250), units(from)), (units(250), units(to))], units(4));
+        }
+        let mut svg = String::new();
+        let backend = SVGBackend::with_string(&mut svg, (400 * UNITS, 300 * UNITS));
+        let area = backend.into_drawing_area();
+        let words = ["critical line".to_owned(), "-delta = -0.0001".to_owned()];
+        labels.write_along(&area, units(399), &["bound".to_owned()], (units(14), false)).unwrap();
+        labels.write_along(&area, x, &words, (units(14), true)).unwrap();
+        let [bound, line] = labels.names[..] else { panic!("two names") };
+        assert!(panel.holds(&bound) && bound.bottom > units(270), "{bound:?}");
+        assert!(line.right < x && line.top > units(140) && line.bottom < units(200), "{line:?}");
     }
 }

@@ -59,6 +59,7 @@ pub fn limits(
     if rates.start >= rates.end || stiffness.start <= 0.0 || ripple.start <= 0.0 {
         return Err(ChartError::TooFewPoints);
     }
+    meets("vertical", wanted.as_ref(), &stiffness)?;
     let height = |range: &Range<f64>| range.end / range.start;
     let left = stiffness.start / (height(&ripple) * APART * APART)..stiffness.end * APART;
     let right = ripple.start / APART..ripple.end * height(&stiffness) * APART * APART;

@@ -93,6 +93,20 @@ pub struct Window {
     pub y: Option<Range<f64>>,
 }
 
+/// Refuses an axis, if one is asked for, on which nothing of this range would be seen.
+fn meets(
+    axis: &'static str,
+    wanted: Option<&Range<f64>>,
+    there: &Range<f64>,
+) -> Result<(), ChartError> {
+    match wanted {
+        Some(wanted) if wanted.end < there.start || there.end < wanted.start => {
+            Err(ChartError::NothingThere { axis, wanted: wanted.clone(), there: there.clone() })
+        }
+        _ => Ok(()),
+    }
+}
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn<T> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;

@@ -67,10 +67,14 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
         return Err(ChartError::TooFewPoints);
     }
     let reasons = reasons(trace);
-    let words = wrapped(&words(trace));
+    meets("horizontal", wanted.x.as_ref(), &trace.times())?;
+    let times = wanted.x.clone().unwrap_or(trace.times());
+    let seen = seen(&trace.position, trace, &times).chain(seen(&trace.hand, trace, &times));
+    meets("vertical", wanted.y.as_ref(), &span(seen))?;
+    let angles = wanted.y.clone().unwrap_or(angle_axis(trace, &times));
+    let words = wrapped(&words(trace, &times, &angles));
     let key = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
     let height = TITLE_ROOM + key + PANELS.iter().sum::<i32>() + LINE + 4;
-    let times = wanted.x.clone().unwrap_or(trace.times());
     draw_sized((SIZE.0, height as u32), |area| {
         let area =
             area.margin(units(TOP), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
@@ -84,7 +88,7 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
         let (first, area) = area.split_vertically(units(PANELS[0]));
         let (second, area) = area.split_vertically(units(PANELS[1]));
         let (third, signs) = area.split_vertically(units(PANELS[2]));
-        position(&first, trace, &times, wanted.y.clone())?;
+        position(&first, trace, &times, &angles)?;
         velocity(&second, trace, &times)?;
         torque(&third, trace, &times, &reasons)?;
         let place = (units(SIZE.0 as i32 / 2), units(LINE / 2));
@@ -94,27 +98,28 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     })
 }
 
-fn position(
-    area: &Area<'_>,
-    trace: &Trace,
-    times: &Range<f64>,
-    wanted: Option<Range<f64>>,
-) -> Drawn<()> {
-    let range = span(seen(&trace.position, trace, times).chain(seen(&trace.hand, trace, times)));
-    let y = wanted.unwrap_or(padded(range, 0.16));
-    let mut chart = panel(area, times, &y, None, "angle (rad)")?;
+/// The axis of the angle, unless another is asked for.
+fn angle_axis(trace: &Trace, times: &Range<f64>) -> Range<f64> {
+    let all = seen(&trace.position, trace, times).chain(seen(&trace.hand, trace, times));
+    padded(span(all), 0.16)
+}
+
+fn position(area: &Area<'_>, trace: &Trace, times: &Range<f64>, y: &Range<f64>) -> Drawn<()> {
+    let mut chart = panel(area, times, y, None, "angle (rad)")?;
     if let Some(face) = trace.face.filter(|face| y.contains(face)) {
         let line = [(times.start, face), (times.end, face)];
         chart.draw_series(broken(line, 2, 4, 1))?;
     }
     draw_in(&chart, trace, &trace.hand, HAND, 1)?;
     draw_in(&chart, trace, &trace.position, SOLID, 2)?;
-    release(&mut chart, trace, times, &y, true)
+    release(&mut chart, trace, times, y, true)
 }
 
 fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
     let velocity = trace.velocities();
-    let y = padded(span(seen(&velocity, trace, times)), 0.12);
+    // One from angles has steps, which are small beside the velocity itself.
+    let rest = trace.velocity.is_empty().then_some(0.0);
+    let y = padded(span(seen(&velocity, trace, times).chain(rest)), 0.12);
     let name = match trace.clock {
         Clock::Seconds => "velocity (rad/s)",
         Clock::Ticks => "velocity (rad/tick)",
@@ -187,10 +192,15 @@ const HAND: Dash = Dash::new(&[6, 4]);
 const LIMIT: Dash = Dash::new(&[12, 4, 2, 4]);
 
 /// What the lines are, above the picture, where no curve can come in the way.
-fn words(trace: &Trace) -> Vec<String> {
+fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> {
     let mut words = vec!["solid: device".to_owned()];
-    if trace.face.is_some() {
-        words.push("dotted: face of the wall".to_owned());
+    if let Some(face) = trace.face {
+        words.push(match angles.contains(&face) {
+            true => "dotted: face of the wall".to_owned(),
+            false => {
+                format!("face of the wall, {} rad, is outside of the picture", significant(face, 4))
+            }
+        });
     }
     if !trace.hand.is_empty() {
         words.push("broken: angle that the hand wants".to_owned());
@@ -199,7 +209,11 @@ fn words(trace: &Trace) -> Vec<String> {
         words.push("broken: torque of the hand".to_owned());
     }
     if let Some(limit) = trace.torque_limit {
-        words.push(format!("dash-dotted: torque limit, {} N m", significant(limit, 4)));
+        let limit = significant(limit, 4);
+        words.push(match torque_axis(trace, times).1.is_empty() {
+            false => format!("dash-dotted: torque limit, {limit} N m"),
+            true => format!("torque limit {limit} N m is outside of the picture"),
+        });
     }
     if trace.velocity.is_empty() {
         let few = match trace.window() {
@@ -265,12 +279,8 @@ fn name(served: Served) -> &'static str {
     }
 }
 
-fn torque(
-    area: &Area<'_>,
-    trace: &Trace,
-    times: &Range<f64>,
-    reasons: &[(Served, Ground)],
-) -> Drawn<()> {
+/// The axis of the torque, and the limits that are drawn along it.
+fn torque_axis(trace: &Trace, times: &Range<f64>) -> (Range<f64>, Vec<f64>) {
     let torques = seen(&trace.torque, trace, times).chain(seen(&trace.hand_torque, trace, times));
     let range = span(torques);
     // The limit on the side that the torque is on, and on the other if that is used, too.
@@ -281,6 +291,16 @@ fn torque(
     };
     let limits: Vec<f64> = limits.filter(near).collect();
     let y = padded(span([range.start, range.end].into_iter().chain(limits.iter().copied())), 0.12);
+    (y, limits)
+}
+
+fn torque(
+    area: &Area<'_>,
+    trace: &Trace,
+    times: &Range<f64>,
+    reasons: &[(Served, Ground)],
+) -> Drawn<()> {
+    let (y, limits) = torque_axis(trace, times);
     let axis = match trace.clock {
         Clock::Seconds => "time (s)",
         Clock::Ticks => "time (ticks)",

@@ -178,7 +178,7 @@ impl Panel<'_> {
         stairs.windows(2).for_each(|step| labels.keep_clear_along(step[0], step[1]));
         for (family, place) in &places {
             Mark::of(*family).draw(&plain, pixel(place))?;
-            labels.keep_clear(pixel(place), Mark::SIZE);
+            labels.mark(pixel(place), Mark::SIZE);
         }
         let levels = [(self.axis().floor, self.axis().at_floor), (top, "fails")];
         for (level, word) in levels {

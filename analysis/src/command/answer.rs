@@ -53,6 +53,25 @@ pub enum CommandError {
         /// The programs that there are.
         programs: String,
     },
+    /// No program of that name, where only a program will do.
+    #[error("there is no scene {name}: the programs are {programs}")]
+    NoProgram {
+        /// What was asked for.
+        name: String,
+        /// The programs that there are.
+        programs: String,
+    },
+    /// A scene file has no program for a twin.
+    #[error(
+        "{file} is a file, and a twin runs a scene's program by its name: the programs are {programs}; \
+         `cargo haptic new NAME` begins one"
+    )]
+    FileOnTwin {
+        /// The file.
+        file: String,
+        /// The programs that there are.
+        programs: String,
+    },
     /// A scene file has no program for the board.
     #[error(
         "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
@@ -149,6 +168,15 @@ pub enum CommandError {
         word: String,
         /// What there is.
         there: String,
+    },
+    /// A table that is to be drawn has not been measured.
+    #[error(
+        "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
+         ones without -o", table.display()
+    )]
+    NothingKept {
+        /// The table's file.
+        table: PathBuf,
     },
     /// A picture that does not show all of a run; exit status 1, for it shows the rest.
     #[error(

@@ -1,5 +1,6 @@
 //! `haptic flash`: a scene's program onto a board.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -41,12 +42,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     spinner.finish_and_clear();
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
-    println!("program: {}", program.path.display());
-    println!("chip: {chip}");
-    println!("flash: {} of {} bytes{}", sizes.flash(), board.flash(), spared(board, memory));
-    println!("variables: {} of {} bytes of RAM", sizes.ram(), memory.ram);
-    println!("stack: {} bytes of RAM", memory.stack);
-    println!("fast memory: {} of {} bytes", sizes.fast, memory.fast);
+    let mut out = io::stdout();
+    writeln!(out, "program: {}", program.path.display())?;
+    writeln!(out, "chip: {chip}")?;
+    writeln!(out, "flash: {} of {} bytes{}", sizes.flash(), board.flash(), spared(board, memory))?;
+    writeln!(out, "variables: {} of {} bytes of RAM", sizes.ram(), memory.ram)?;
+    writeln!(out, "stack: {} bytes of RAM", memory.stack)?;
+    writeln!(out, "fast memory: {} of {} bytes", sizes.fast, memory.fast)?;
     if !arguments.build_only {
         probe::run(&program.path, &chip, arguments.probe.as_deref())?;
     }

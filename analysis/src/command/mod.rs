@@ -67,14 +67,17 @@ impl Arguments {
 /// Ends the program with a help that was asked for, or with what is wrong with its arguments, which
 /// clap does not break into lines.
 fn refuse(error: &clap::Error) -> ! {
-    if !error.use_stderr() {
-        error.exit();
-    }
     let rendered = error.render();
-    let text = match terminal::has_colour(io::stderr().is_terminal()) {
+    let text = |is_terminal| match terminal::has_colour(is_terminal) {
         true => rendered.ansi().to_string(),
         false => rendered.to_string(),
     };
+    if !error.use_stderr() {
+        let text = text(io::stdout().is_terminal());
+        let said = io::stdout().write_all(text.as_bytes()).map(|()| Answer::Yes);
+        std::process::exit(status(said.map_err(CommandError::Output)).into());
+    }
+    let text = text(io::stderr().is_terminal());
     // Nobody is left to be told if this fails.
     let _ = write!(io::stderr(), "{}", terminal::wrapped(&text, terminal::error_width(), 2));
     std::process::exit(error.exit_code())
@@ -175,16 +178,20 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Failures(arguments) => failures::run(&arguments),
     };
-    match answer {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::FAILURE,
+    status(answer).into()
+}
+
+/// The exit status of an answer, all of which must have been written.
+fn status(answer: Result<Answer, CommandError>) -> u8 {
+    let written = || io::stdout().flush().map_err(CommandError::Output);
+    match answer.and_then(|answer| written().map(|()| answer)) {
+        Ok(Answer::Yes) => 0,
+        Ok(Answer::No) => 1,
         // Whoever reads the answer has seen enough of it: `haptic ... | head` is no error.
-        Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
+        Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(error) => {
             complain(&error);
-            if error.is_a_no() { ExitCode::FAILURE } else { ExitCode::from(2) }
+            if error.is_a_no() { 1 } else { 2 }
         }
     }
 }

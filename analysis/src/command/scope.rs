@@ -35,7 +35,7 @@ pub struct Arguments {
           allow_negative_numbers = true)]
     pub duration: Option<Duration>,
     /// Have only every so many ticks sent; as many as a terminal shows if left out
-    #[arg(long, value_name = "TICKS")]
+    #[arg(long, value_name = "TICKS", value_parser = ticks, allow_negative_numbers = true)]
     pub every: Option<NonZeroU32>,
     /// Seconds that the view shows
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds)]
@@ -80,6 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         writeln!(io::stderr(), "{} ticks recorded", recorder.count())?;
     }
     Ok(Answer::Yes)
+}
+
+fn ticks(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().map_err(|_| format!("`{text}` must be a whole number from 1 to {}", u32::MAX))
 }
 
 fn create(path: &Path) -> Result<File, CommandError> {

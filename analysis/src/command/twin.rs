@@ -1,10 +1,14 @@
 //! `haptic twin`: a board without hardware, to try `tune` and `scope` on.
 
 use std::io::{self, Write};
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::answer::{Answer, CommandError};
 use super::flashed::Flashed;
@@ -41,17 +45,14 @@ const SCRIPT: f64 = 3600.0;
 /// Longest time between two looks at what has ended.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Runs a program in a simulated hand until the time is up or Ctrl-C.
+/// Runs a program in a simulated hand until the time is up, Ctrl-C, or it is told to end.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let name = &arguments.scene;
-    let program = Program::find(name)
-        .ok_or_else(|| CommandError::NoScene { name: name.clone(), programs: own::scenes() })?;
-    let (enough, wait) = mpsc::channel();
-    ctrlc::set_handler(move || {
-        // Asked more than once, it ends as well.
-        let _ = enough.send(());
-    })
-    .map_err(io::Error::other)?;
+    let program = Program::find(name).ok_or_else(|| no_program(name))?;
+    let enough = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, enough.clone())?;
+    }
     let script = (program.script)().over_and_over(SCRIPT);
     let (device, period) = (program.scene.device, program.scene.timing.period);
     let device = SimulatedDevice::new(device, script, period, &program.transducers)?;
@@ -66,12 +67,19 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let twin = twin.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
     writeln!(io::stdout(), "{name} listens on {}", twin.address())?;
     let end = arguments.duration.map(|duration| Instant::now() + duration);
-    while !twin.has_ended() && end.is_none_or(|end| Instant::now() < end) {
-        // A disconnection would be that nobody can say that it is enough.
-        if wait.recv_timeout(LOOK) != Err(RecvTimeoutError::Timeout) {
-            break;
-        }
+    let is_over = || enough.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() >= end);
+    while !twin.has_ended() && !is_over() {
+        thread::sleep(LOOK);
     }
     twin.end()?;
     Ok(Answer::Yes)
+}
+
+/// Why there is no twin of that name: a scene file may have been meant.
+fn no_program(name: &str) -> CommandError {
+    let (name, programs) = (name.to_owned(), own::scenes());
+    match Path::new(&name).is_file() {
+        true => CommandError::FileOnTwin { file: name, programs },
+        false => CommandError::NoProgram { name, programs },
+    }
 }

@@ -94,6 +94,15 @@ fn shows_everything_that_is_to_be_watched() {
 }
 
 #[test]
+fn a_narrow_terminal_cuts_the_port_and_not_the_state() {
+    let port = "unix:/tmp/some/folder/of/somebody/board".to_owned();
+    let scope = Scope { address: port, ..connected() };
+    let shown = screen(&scope, 40, 24);
+    let first = shown.lines().next().unwrap();
+    assert!(first.contains("damper_wall on unix:") && first.contains("...   running"), "{shown}");
+}
+
+#[test]
 fn shows_the_worst_trouble() {
     let mut scope = connected();
     let fault = Some(Fault::MissedTick { missed: 3, tolerated: 1 }.into());

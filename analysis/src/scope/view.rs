@@ -10,7 +10,7 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 use super::control::{self, Control};
 use super::sample::Sample;
 use super::{Scope, words};
-use crate::quantity::significant;
+use crate::quantity::{shortened, significant};
 
 /// Dots side by side in a character.
 const DOTS: usize = 2;
@@ -28,7 +28,7 @@ pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
         Constraint::Length(1),
     ])
     .areas(frame.area());
-    frame.render_widget(Paragraph::new(heading(scope)), head);
+    frame.render_widget(Paragraph::new(heading(scope, width)), head);
     draw_curve(frame, position, scope, "position, rad", |sample| sample.position);
     draw_curve(frame, torque, scope, "coupling torque, N m", |sample| sample.torque);
     frame.render_widget(Paragraph::new(facts_of(scope)), facts);
@@ -62,21 +62,25 @@ pub fn without_colour(frame: &mut Frame<'_>) {
     }
 }
 
-fn heading(scope: &Scope) -> Vec<Line<'static>> {
+fn heading(scope: &Scope, width: usize) -> Vec<Line<'static>> {
     let program = scope.known.as_ref().map_or("", |known| &known.program);
-    let mut first = vec![Span::from(format!("{program} on {}", scope.address)).bold()];
+    let mut state = Vec::new();
     if let Some((status, _)) = &scope.status {
         let colour = match (status.fault, status.state.is_armed()) {
             (Some(_), _) => Color::Red,
             (None, true) => Color::Green,
             (None, false) => Color::Yellow,
         };
-        first.push(Span::from("   "));
-        first.push(Span::styled(status.state.as_str(), Style::new().fg(colour).bold()));
+        state.push(Span::from("   "));
+        state.push(Span::styled(status.state.as_str(), Style::new().fg(colour).bold()));
         if status.link_lost {
-            first.push(Span::from("   the board counts its host as lost").yellow());
+            state.push(Span::from("   the board counts its host as lost").yellow());
         }
     }
+    // The state is what must be seen, and the port is known to whoever has named it.
+    let taken: usize = state.iter().take(2).map(Span::width).sum();
+    let name = shortened(&format!("{program} on {}", scope.address), width.saturating_sub(taken));
+    let first = [Span::from(name).bold()].into_iter().chain(state).collect::<Vec<_>>();
     vec![Line::from(first), trouble(scope)]
 }
 

@@ -3,9 +3,11 @@
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
 #[cfg(unix)]
+use std::os::unix::fs::FileTypeExt;
+#[cfg(unix)]
 use std::os::unix::net::{UnixListener, UnixStream};
 #[cfg(unix)]
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use firmware::number::Number;
@@ -17,6 +19,9 @@ use crate::link::Address;
 
 /// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
 const BYTES: usize = 256;
+
+/// What is wrong with an address that is none of a socket.
+const NO_SOCKET: &str = "a twin listens on a socket, tcp://HOST:PORT or unix:PATH; at a serial port there is a real board";
 
 /// Frames that are sent at a time at most.
 const FRAMES: usize = 16;
@@ -55,11 +60,11 @@ impl Listener {
             }
             #[cfg(unix)]
             Address::Unix(path) => {
-                let listener = UnixListener::bind(path)?;
+                let listener = bind_unix(path)?;
                 listener.set_nonblocking(true)?;
                 (Socket::Unix(listener, path.clone()), address.clone())
             }
-            _ => return Err(ErrorKind::Unsupported.into()),
+            _ => return Err(io::Error::new(ErrorKind::Unsupported, NO_SOCKET)),
         };
         Ok((Self { socket, client: None, next: None }, address))
     }
@@ -109,6 +114,26 @@ impl Listener {
             self.client = None;
             Vec::new()
         })
+    }
+}
+
+/// A socket of this machine, also where a program that was killed has left its own behind.
+#[cfg(unix)]
+fn bind_unix(path: &Path) -> io::Result<UnixListener> {
+    let taken = |why: &str| io::Error::new(ErrorKind::AddrInUse, why);
+    match UnixListener::bind(path) {
+        Err(error) if error.kind() == ErrorKind::AddrInUse => {}
+        bound => return bound,
+    }
+    if !std::fs::symlink_metadata(path)?.file_type().is_socket() {
+        return Err(taken("a file of that name is there, and is no socket"));
+    }
+    match UnixStream::connect(path) {
+        Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
+            std::fs::remove_file(path)?;
+            UnixListener::bind(path)
+        }
+        _ => Err(taken("another program listens there")),
     }
 }
 

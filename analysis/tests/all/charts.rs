@@ -140,6 +140,21 @@ fn axes_end_where_they_are_told_to() {
 }
 
 #[test]
+fn the_ripple_is_that_of_the_scenes_encoder() {
+    let folder = folder();
+    let step = "[limits]\nencoder_step = 0.00153398\n";
+    std::fs::write(folder.path().join("coarse.toml"), format!("{WALL}{step}")).unwrap();
+    for (arguments, counts) in [
+        (&["limits", "wall.toml"][..], "65536"),
+        (&["limits", "coarse.toml"], "4096"),
+        (&["limits", "coarse.toml", "--counts-per-rev", "1000"], "1000"),
+    ] {
+        let note = format!("ripple of half a count of {counts} a turn");
+        assert!(svg(folder.path(), arguments).contains(&note), "{arguments:?}");
+    }
+}
+
+#[test]
 fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     let folder = folder();
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
@@ -154,13 +169,22 @@ fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     assert!(drawn.contains("free_mode") && !drawn.contains("delayed_spring"));
     assert!(drawn.contains("limit cycle (rad)") && !drawn.contains("error of the torque"));
     for (more, words) in [
-        (&["--case", "none"][..], "there is no case `none`; there are delayed_spring, damper_wall"),
-        (&["--error", "noise"], "there is no error `noise`; there are error, error_at_1_rad"),
+        (
+            &["--case", "none"][..],
+            "there is no case `none`; there are `delayed_spring`, `damper_wall`",
+        ),
+        (&["--error", "noise"], "there is no error `noise`; there are `error`, `error_at_1_rad`"),
     ] {
         let run = chosen(more);
         let said = String::from_utf8(run.stderr).unwrap();
         assert!(run.status.code() == Some(2) && said.contains(words), "{said}");
     }
+    let nothing = chart(folder.path(), &["tradeoff", "servo", "--draw-only", "-o", "new"]);
+    let said = String::from_utf8(nothing.stderr).unwrap();
+    let words =
+        "new/servo.csv: there is no such table; --draw-only reads the tables from the folder of -o";
+    assert!(nothing.status.code() == Some(2) && said.contains(words), "{said}");
+    assert!(!folder.path().join("new").exists());
     let all = chart(folder.path(), &["tradeoff", "--draw-only", "-o", kept, "--picture", "a.svg"]);
     assert!(String::from_utf8(all.stderr).unwrap().contains("one picture shows one topic"));
     let alone = chart(folder.path(), &["tradeoff", "servo", "--case", "damper_wall"]);
@@ -223,6 +247,24 @@ fn a_trace_names_the_reasons_that_occur_and_no_others() {
     assert!(svg(folder.path(), &["trace", "simulated.csv"]).contains("tick missed"));
 }
 
+#[test]
+fn a_line_that_a_trace_does_not_show_is_not_in_its_key() {
+    let folder = folder();
+    let small = "[simulation]\nsamples = 50\nvelocity = 0.01\n[limits]\ntorque = 0.1\n";
+    let text = format!("{WALL}one_sided = true\nface = 9.0\n{small}");
+    std::fs::write(folder.path().join("small.toml"), text).unwrap();
+    let drawn = svg(folder.path(), &["trace", "small.toml"]);
+    for words in ["torque limit 0.1 N m is outside of the picture", "face of the wall, 9 rad, is"] {
+        assert!(drawn.contains(words), "{words}");
+    }
+    assert!(!drawn.contains("dash-dotted") && !drawn.contains("dotted: face"));
+    let report = program(&["report", "small.toml", "-o", "small.html"]);
+    let report = { report }.current_dir(folder.path()).output().unwrap();
+    assert!(report.status.code().is_some_and(|status| status < 2), "{report:?}");
+    let page = std::fs::read_to_string(folder.path().join("small.html")).unwrap();
+    assert!(page.contains("torque limit 0.1 N m is outside of the picture"));
+}
+
 /// Numbers that a file may have and no machine has: a picture, or a sentence that names what is out
 /// of range; never a computation without end.
 #[test]
@@ -271,7 +313,7 @@ fn extreme_numbers_come_to_an_end() {
 fn what_cannot_be_drawn_is_a_bad_question() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("taken.svg")).unwrap();
-    let questions: [(&[&str], &str); 24] = [
+    let questions: [(&[&str], &str); 31] = [
         (&["nyquist", "wall.toml", "-o", "a.eps"], "a.eps: the name of a picture must end in"),
         (
             &["nyquist", "wall.toml", "-o", "a.svg", "--csv", "b.txt"],
@@ -303,6 +345,17 @@ fn what_cannot_be_drawn_is_a_bad_question() {
         (&["limits", "damped.toml", "-o", "a.svg"], "no stiffness is certified"),
         (&["limits", "wall.toml", "--rates", "0:10", "-o", "a.svg"], "0 must be above 0"),
         (&["trace", "moving.toml", "--period", "1", "-o", "a.svg"], "its times are in seconds"),
+        (
+            &["trace", "moving.toml", "--x=-5..-1", "-o", "a.svg"],
+            "there is nothing to draw from -5 to -1 on the horizontal axis: what there is goes from 0 \
+             to 0.05",
+        ),
+        (&["trace", "moving.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
+        (&["nyquist", "wall.toml", "--x=-5..-1", "-o", "a.svg"], "goes from -0.022 to -0.001"),
+        (&["nyquist", "free.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
+        (&["bode", "wall.toml", "--x=1e6..1e7", "-o", "a.svg"], "goes from 0.005 to 500"),
+        (&["bode", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
+        (&["limits", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
         (&["trace", "none.csv", "-o", "a.svg"], "none.csv: cannot be read"),
         (&["trace", "wall.toml", "-o", "a.svg"], "a simulation needs a [simulation] table"),
     ];

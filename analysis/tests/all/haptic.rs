@@ -29,6 +29,44 @@ fn yes_no_and_a_bad_question_have_their_exit_status() {
     assert_eq!(haptic(&["conjure"], b"").status.code(), Some(2));
 }
 
+/// The program with a standard output that takes nothing, opened or closed by a shell.
+fn status_into(output: &str, arguments: &[&str]) -> Option<i32> {
+    let words = format!("exec \"$@\" {output}");
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", &words, "sh", env!("CARGO_BIN_EXE_haptic")]).args(arguments);
+    let output = shell.stdin(Stdio::null()).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code() == Some(2), !output.stderr.is_empty(), "{output:?}");
+    output.status.code()
+}
+
+#[test]
+fn an_answer_that_cannot_be_written_is_a_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wall.json");
+    std::fs::write(&path, WALL).unwrap();
+    let wall = path.to_str().unwrap();
+    let kept = concat!(env!("CARGO_MANIFEST_DIR"), "/pictures/tradeoff");
+    let picture = folder.path().join("a.svg");
+    let picture = ["--picture", picture.to_str().unwrap(), "-o", kept];
+    for arguments in [
+        &["--help"][..],
+        &["--version"],
+        &["chart", "map", "--help"],
+        &["certify", wall],
+        &["certify", "--json", wall],
+        &["stability", wall],
+        &["schema"],
+        &["schema", "--reference"],
+        &["schema", "--example", "damper-wall"],
+        &["run", "damper_wall", "--csv"],
+        &[&["chart", "tradeoff", "servo", "--draw-only"][..], &picture].concat(),
+    ] {
+        for (output, status) in [(">/dev/full", 2), (">&-", 2), (">/dev/null", 0)] {
+            assert_eq!(status_into(output, arguments), Some(status), "{arguments:?} {output}");
+        }
+    }
+}
+
 /// Next to the line a number and its coefficient in fixed point lie on different sides of it.
 #[test]
 fn coefficients_are_judged_as_a_format_rounds_them() {
@@ -303,6 +341,15 @@ fn failures_are_rows_and_objects_by_name() {
     let output = haptic(&["failures", "--case", "luck"], b"");
     assert_eq!(output.status.code(), Some(2));
     assert!(complaint(output).contains("luck"));
+}
+
+#[test]
+fn the_usage_of_advice_has_what_it_cannot_do_without() {
+    let help = haptic(&["advise", "--help"], b"");
+    let help = String::from_utf8(help.stdout).unwrap();
+    for usage in ["<SCENE> --hum <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"] {
+        assert!(help.contains(&format!("haptic advise {usage}\n")), "{help}");
+    }
 }
 
 #[test]

@@ -229,6 +229,17 @@ print(json.dumps(board.sent))";
 
 #[test]
 #[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
+fn says_how_it_is_used() {
+    let usage =
+        |text: &[u8]| String::from_utf8_lossy(text).starts_with("A client of a haptic board");
+    let help = python(&["client.py", "--help"]);
+    assert!(help.status.code() == Some(0) && usage(&help.stdout), "{help:?}");
+    let nothing = python(&["client.py"]);
+    assert!(nothing.status.code() == Some(2) && usage(&nothing.stderr), "{nothing:?}");
+}
+
+#[test]
+#[cfg_attr(no_python, ignore = "this machine has no python3, and set-up may not install it")]
 fn talks_to_a_board() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
@@ -259,8 +270,18 @@ fn talks_to_a_board() {
     let later =
         |pair: &[Value]| pair[1]["tick"].as_u64().unwrap() - pair[0]["tick"].as_u64().unwrap();
     assert!(ticks.windows(2).all(|pair| later(pair) == 7), "{ticks:?}");
-    for wrong in [&["fly"][..], &["set", "stifness=3"], &["set", "stiffness"]] {
-        assert_eq!(ask(wrong).status.code(), Some(2), "{wrong:?}");
+    for (wrong, words) in [
+        (&["fly"][..], "there is no command fly"),
+        (&["set", "stifness=3"], "there is no parameter `stifness`; there are coupling.stiffness,"),
+        (&["set", "stiffness"], "`stiffness` is not NAME=VALUE"),
+        (&["set", "stiffness=much"], "`much` is no number for stiffness"),
+        (&["set"], "set takes a NAME=VALUE or more"),
+        (&["stream"], "stream takes two numbers: TICKS and EVERY"),
+        (&[], "a command must follow the port"),
+    ] {
+        let said = ask(wrong);
+        assert_eq!(said.status.code(), Some(2), "{wrong:?}");
+        assert!(String::from_utf8_lossy(&said.stderr).starts_with(words), "{said:?}");
     }
     twin.kill().unwrap();
     twin.wait().unwrap();

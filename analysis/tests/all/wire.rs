@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::num::NonZeroU32;
 use std::os::unix::net::UnixStream;
-use std::process::{Output, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -202,6 +202,7 @@ fn a_bad_question_is_status_2() {
         (["tune", "stiffness"], "NAME=VALUE"),
         (["tune", "damping=nan"], "no finite number"),
         (["scope", "--for=-1"], "greater than 0"),
+        (["scope", "--every=0"], "`0` must be a whole number from 1 to 4294967295"),
     ] {
         let output = rig.haptic(&arguments);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
@@ -513,11 +514,51 @@ fn a_twin_is_a_board_to_try_things_on() {
     // Somebody else is there already.
     let second = haptic(&["twin", "free_mode", "--port", &port]);
     assert_eq!(second.status.code(), Some(2), "{second:?}");
-    assert!(text(&second.stderr).contains("cannot listen on unix:"), "{second:?}");
+    let said = text(&second.stderr);
+    assert!(said.contains("cannot listen on unix:"), "{said}");
+    assert!(said.ends_with("another program listens there\n"), "{said}");
     assert_eq!(twin.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
     assert!(
         text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"),
         "{unknown:?}"
     );
+}
+
+#[test]
+fn a_twin_that_is_told_to_end_or_killed_is_in_nobodys_way() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("board");
+    let port = format!("unix:{}", path.display());
+    let start = || {
+        let mut twin = program(&["twin", "free_mode", "--port", &port, "--for", "60"])
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+        assert_eq!(said.next().unwrap().unwrap(), format!("free_mode listens on {port}"));
+        twin
+    };
+    let mut killed = start();
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(path.exists());
+    let mut told = start();
+    let id = told.id().to_string();
+    assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+    assert_eq!(told.wait().unwrap().code(), Some(0));
+    assert!(!path.exists());
+    // A file that somebody keeps there is not removed.
+    std::fs::write(&path, "a scene").unwrap();
+    for (arguments, words) in [
+        (["free_mode", "--port", &port], "a file of that name is there, and is no socket"),
+        (["free_mode", "--port", "/dev/ttyACM0"], "tcp://HOST:PORT or unix:PATH"),
+        ([path.to_str().unwrap(), "--port", &port], "is a file, and a twin runs a scene's program"),
+    ] {
+        let output = haptic(&[&["twin"][..], &arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = text(&output.stderr);
+        assert!(said.contains(words) && !said.contains("no such file"), "{said}");
+    }
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "a scene");
 }

@@ -50,13 +50,6 @@ pub(super) fn frames(sheet: &Sheet<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
     curves.iter().map(|curve| curve.poles.iter().map(&mut frame).collect()).collect()
 }
 
-/// The highest place below all frames, as a part of the upper half's height.
-pub(super) fn below(sheet: &Sheet<'_>, frames: &[Vec<Frame>]) -> f64 {
-    let half = 0.5 * sheet.all().bottom;
-    let lowest = frames.iter().flatten().map(|frame| frame.top).fold(0.0, f64::max);
-    0.99 - lowest / half
-}
-
 /// Draws the ways of one curve through infinity, and gives them back.
 pub(super) fn draw(sheet: &Sheet<'_>, curve: &Curve, frames: &[Frame]) -> Drawn<Vec<Vec<Place>>> {
     let drawn = (0..curve.poles.len()).filter(|&pole| is_drawn(&curve.poles[pole]));

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use super::{Curve, Judged};
 use crate::chart::labels::{Block, Labels};
 use crate::chart::sheet::{Frame, Place, Sheet, whole};
-use crate::chart::{Drawn, LABEL, UNITS, units};
+use crate::chart::{Drawn, LABEL, units};
 use crate::quantity::significant;
 
 /// Half the width of a frequency's mark and of a margin's.
@@ -17,38 +17,31 @@ const SQUARE: i32 = units(6);
 const APART: f64 = units(46) as f64;
 /// Frequencies that are marked, in each decade.
 const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
-/// Pieces of a curve that names keep clear of.
-const PIECES: usize = 60;
+/// Room on both sides of a curve.
+const CLEAR: i32 = units(5);
 
-/// Marks frequencies inside of a frame on what is judged, and where its phase margin is reached.
-///
-/// Names keep clear of what is `written` already: corners of rectangles.
+/// What has a name besides frequencies.
+pub(super) struct Names<'n> {
+    /// The critical lines, with what they are called.
+    pub(super) criticals: &'n [(f64, &'static str)],
+    /// The points of least real part, with the numbers of their scenes.
+    pub(super) minima: &'n [(Place, String)],
+    /// The ways through infinity.
+    pub(super) ways: &'n [Vec<Place>],
+}
+
+/// Marks frequencies inside of a frame on what is judged, and where its phase margin is reached, and
+/// writes all names: on no curve and no line, as long as there is room beside them.
 pub(super) fn draw(
     sheet: &Sheet<'_>,
     scenes: &[Judged],
     frame: Frame,
-    written: &[[(f64, f64); 2]],
+    names: &Names<'_>,
 ) -> Drawn<()> {
-    let all = sheet.all();
-    let corner = whole(&(all.right, all.bottom));
-    let mut labels = Labels::within(Block::new((0, 0), corner));
+    let corners = [(frame.left, frame.top), (frame.right, frame.bottom)].map(|place| whole(&place));
+    let mut labels = Labels::within(Block::new(corners[0], corners[1]));
+    keep_clear_of_lines(sheet, scenes, names, &mut labels);
     let judged = || scenes.iter().flat_map(judged_curves);
-    for corners in written {
-        let [from, to] = corners.map(|corner| whole(&sheet.place(corner)));
-        labels.keep_clear_along(from, to);
-    }
-    let origin = sheet.place((0.0, 0.0));
-    let lines = scenes.iter().filter_map(|scene| Some(sheet.place((-scene.limit?, 0.0)).0));
-    for x in lines.chain([origin.0]).filter(|x| all.contains((*x, 0.0))) {
-        labels.keep_clear_along(whole(&(x, all.top)), whole(&(x, all.bottom)));
-    }
-    if all.contains((0.0, origin.1)) {
-        labels.keep_clear_along(whole(&(all.left, origin.1)), whole(&(all.right, origin.1)));
-    }
-    for (_, curve) in judged() {
-        keep_clear(sheet, curve, &mut labels);
-    }
-    let mut taken: Vec<Place> = Vec::new();
     for (scene, curve) in judged() {
         if let Some((_, _, value)) = scene.phase_margin(curve) {
             let (x, y) = whole(&sheet.place(value));
@@ -56,17 +49,87 @@ pub(super) fn draw(
                 let corners = [(x - half, y - half), (x + half, y + half)];
                 sheet.area.draw(&Rectangle::new(corners, colour.filled()))?;
             }
+            labels.mark((x, y), SQUARE);
         }
+    }
+    let mut marked: Vec<(Place, String)> = Vec::new();
+    for (scene, curve) in judged() {
         for (hertz, place) in frequencies(sheet, scene, curve) {
-            let far = |other: &Place| (other.0 - place.0).hypot(other.1 - place.1) >= APART;
-            if !frame.contains(place) || !taken.iter().all(far) {
-                continue;
+            let far =
+                |(other, _): &(Place, _)| (other.0 - place.0).hypot(other.1 - place.1) >= APART;
+            if frame.contains(place) && marked.iter().all(far) {
+                sheet.area.draw(&Circle::new(whole(&place), DOT, BLACK.filled()))?;
+                marked.push((place, format!("{} Hz", significant(hertz, 3))));
             }
-            taken.push(place);
-            let style = BLACK.filled();
-            sheet.area.draw(&Circle::new(whole(&place), DOT, style))?;
-            let name = format!("{} Hz", significant(hertz, 3));
-            labels.write(&sheet.area, whole(&place), &name, LABEL - units(2))?;
+        }
+    }
+    let minima = names.minima.iter().map(|(value, number)| (sheet.place(*value), number));
+    let minima: Vec<_> = minima.map(|(place, number)| (whole(&place), number)).collect();
+    minima.iter().for_each(|(point, _)| labels.mark(*point, SQUARE));
+    marked.iter().for_each(|(place, _)| labels.mark(whole(place), DOT));
+    name_lines(sheet, scenes, names, &mut labels)?;
+    for (point, number) in minima {
+        labels.write(&sheet.area, point, number, LABEL)?;
+    }
+    for (place, name) in marked {
+        labels.write(&sheet.area, whole(&place), &name, LABEL - units(2))?;
+    }
+    Ok(())
+}
+
+/// Lets no name be on a line or a curve, whatever they are.
+fn keep_clear_of_lines(
+    sheet: &Sheet<'_>,
+    scenes: &[Judged],
+    names: &Names<'_>,
+    labels: &mut Labels,
+) {
+    let all = sheet.all();
+    let curves = || scenes.iter().flat_map(|scene| &scene.curves);
+    let limits = scenes.iter().flat_map(|scene| [scene.limit, scene.bound]).flatten();
+    let hairlines = curves().filter(|curve| curve.role.is_judged()).filter_map(|c| c.asymptote);
+    let upright = limits.map(|value| -value).chain(hairlines).chain([0.0]);
+    for x in upright.map(|value| sheet.place((value, 0.0)).0) {
+        if all.contains((x, 0.0)) {
+            labels.keep_clear_along(whole(&(x, all.top)), whole(&(x, all.bottom)));
+        }
+    }
+    let level = sheet.place((0.0, 0.0)).1;
+    if all.contains((0.0, level)) {
+        labels.keep_clear_along(whole(&(all.left, level)), whole(&(all.right, level)));
+    }
+    for curve in curves() {
+        let upper: Vec<_> = curve.values().map(|&value| sheet.place(value)).collect();
+        let lower: Vec<_> = upper.iter().map(|&place| sheet.mirrored(place)).collect();
+        for half in [upper, lower] {
+            for part in Frame::clip(&half, |_| all) {
+                labels.keep_clear_of(&part.iter().map(whole).collect::<Vec<_>>(), CLEAR);
+            }
+        }
+    }
+    for way in names.ways {
+        labels.keep_clear_of(&way.iter().map(whole).collect::<Vec<_>>(), CLEAR);
+    }
+}
+
+/// Names the critical lines from above, and the bounds from below.
+fn name_lines(
+    sheet: &Sheet<'_>,
+    scenes: &[Judged],
+    names: &Names<'_>,
+    labels: &mut Labels,
+) -> Drawn<()> {
+    let (all, x) = (sheet.all(), |value: f64| sheet.place((value, 0.0)).0);
+    for (line, name) in names.criticals {
+        let words = ["critical line".to_owned(), format!("{name} = {}", significant(*line, 4))];
+        labels.write_along(&sheet.area, x(*line).round() as i32, &words, (LABEL, true))?;
+    }
+    for (index, scene) in scenes.iter().enumerate() {
+        let Some(line) = scene.bound.map(|bound| -bound) else { continue };
+        if all.contains((x(line), 0.0)) {
+            let number = if scenes.len() > 1 { format!("{}: ", index + 1) } else { String::new() };
+            let words = [format!("{number}bound, {}", significant(line, 4))];
+            labels.write_along(&sheet.area, x(line).round() as i32, &words, (LABEL, false))?;
         }
     }
     Ok(())
@@ -76,21 +139,6 @@ pub(super) fn draw(
 fn judged_curves(scene: &Judged) -> impl Iterator<Item = (&Judged, &Curve)> {
     let judged = scene.curves.iter().filter(|curve| curve.role.is_judged());
     judged.map(move |curve| (scene, curve))
-}
-
-/// Lets no name be on a curve or its mirror image.
-fn keep_clear(sheet: &Sheet<'_>, curve: &Curve, labels: &mut Labels) {
-    let mut last: Option<Place> = None;
-    for &(re, im) in curve.values() {
-        let place = sheet.place((re, im));
-        let step = sheet.all().right / PIECES as f64;
-        let moved = last.is_none_or(|last| (last.0 - place.0).hypot(last.1 - place.1) > step);
-        if moved && sheet.all().contains(place) {
-            labels.keep_clear(whole(&place), UNITS as i32 * 6);
-            labels.keep_clear(whole(&sheet.mirrored(place)), UNITS as i32 * 6);
-            last = Some(place);
-        }
-    }
 }
 
 /// Frequencies in Hz up to half the sample rate, the round ones last: they give way to the ends.

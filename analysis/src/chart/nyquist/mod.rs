@@ -7,13 +7,12 @@ mod marks;
 
 use firmware::scene::Scene;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::dash::Dash;
 use super::sheet::{Frame, Place, Sheet};
 use super::*;
-use crate::quantity::{shortened, significant};
+use crate::quantity::shortened;
 
 pub use judged::{Curve, Judged, Role};
 
@@ -70,6 +69,13 @@ pub fn nyquist(
         return Err(ChartError::TooFewPoints);
     }
     let scenes = judged(scenes)?;
+    let values = || scenes.iter().flat_map(|scene| &scene.curves).flat_map(Curve::values);
+    let lines = critical_lines(&scenes).into_iter().map(|line| line.0);
+    let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
+    let real = span(values().map(|value| value.0).chain(lines).chain(bounds));
+    let tallest = span(values().map(|value| value.1.abs())).end;
+    meets("horizontal", wanted.x.as_ref(), &real)?;
+    meets("vertical", wanted.y.as_ref(), &(-tallest..tallest))?;
     let key = key::height(&scenes);
     let size = (SIZE.0, SIZE.1 + key as u32 / UNITS);
     draw_sized(size, |area| {
@@ -156,16 +162,12 @@ fn paint(area: &Area<'_>, scenes: &[Judged], wanted: &Window) -> Drawn<()> {
     for (line, frames) in patterns.iter().flatten().zip(&frames) {
         ways.extend(draw_curve(&sheet, line, frames)?);
     }
-    let mut written = draw_bounds(&mut chart, scenes, &x, &y)?;
+    draw_bounds(&mut chart, scenes, &x, &y)?;
     infinity::name(&sheet, &ways)?;
-    let top = infinity::below(&sheet, &frames);
-    for (row, (line, name)) in shown.iter().enumerate() {
-        let top = top - 0.15 * row as f64;
-        written.push(name_line(&mut chart, (*line, name), top, (&x, &y))?);
-    }
-    label_minima(&mut chart, scenes, &x, y.end)?;
+    let minima = draw_minima(&mut chart, scenes, &x, y.end)?;
     let inner = frames.iter().flatten().last().copied().unwrap_or(sheet.all());
-    marks::draw(&sheet, scenes, inner, &written)
+    let names = marks::Names { criticals: &shown, minima: &minima, ways: &ways };
+    marks::draw(&sheet, scenes, inner, &names)
 }
 
 /// The lines at minus the largest index that passes, each once and from the left, with what they are
@@ -179,33 +181,19 @@ fn critical_lines(scenes: &[Judged]) -> Vec<(f64, &'static str)> {
 }
 
 /// What is judged in place of a curve: an upright line that all of the scene's motion keeps right
-/// of. Gives the grounds of their names back.
+/// of.
 fn draw_bounds(
     chart: &mut Plane<'_, '_>,
     scenes: &[Judged],
     x: &Range<f64>,
     y: &Range<f64>,
-) -> Drawn<Vec<[(f64, f64); 2]>> {
-    let mut written = Vec::new();
-    for (index, scene) in scenes.iter().enumerate() {
-        let Some(line) = scene.bound.map(|bound| -bound).filter(|line| x.contains(line)) else {
-            continue;
-        };
+) -> Drawn<()> {
+    let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
+    for line in bounds.filter(|line| x.contains(line)) {
         let style = BLACK.stroke_width(3 * UNITS);
         chart.draw_series([PathElement::new([(line, y.start), (line, y.end)], style)])?;
-        let number = if scenes.len() > 1 { format!("{}: ", index + 1) } else { String::new() };
-        let name = format!("{number}bound, {}", significant(line, 4));
-        let (width, height) = (x.end - x.start, y.end - y.start);
-        let level = y.start + (0.06 + 0.06 * index as f64) * height;
-        let left = line + 0.012 * width;
-        let right = left + (0.008 + 0.0086 * name.len() as f64) * width;
-        let ground = [(left, level - 0.025 * height), (right, level + 0.025 * height)];
-        chart.draw_series([Rectangle::new(ground, WHITE.filled())])?;
-        written.push(ground);
-        let place = (left + 0.004 * width, level);
-        chart.draw_series([Text::new(name, place, anchored(HPos::Left, VPos::Center))])?;
     }
-    Ok(written)
+    Ok(())
 }
 
 /// Ranges of the axes.
@@ -241,30 +229,6 @@ fn window(scenes: &[Judged], wanted: &Window) -> (Range<f64>, Range<f64>) {
         (1.3 * tallest.end).max(0.1 * width)
     };
     (x, wanted.y.clone().unwrap_or(-height..height))
-}
-
-/// Writes the name of a critical line on ground of its own, where curves may pass behind it; `top`
-/// is a part of the upper half of the picture. Gives the ground back.
-fn name_line(
-    chart: &mut Plane<'_, '_>,
-    (line, name): (f64, &str),
-    top: f64,
-    (x, y): (&Range<f64>, &Range<f64>),
-) -> Drawn<[(f64, f64); 2]> {
-    let width = x.end - x.start;
-    let right = line - 0.012 * width;
-    // A part of the upper half as a height, wherever the axis is.
-    let level = |part: f64| y.end - 0.5 * (1.0 - part) * (y.end - y.start);
-    let names = ["critical line".to_owned(), format!("{name} = {}", significant(line, 4))];
-    let longest = names.iter().map(String::len).max().unwrap_or(0);
-    let left = right - 0.0074 * longest as f64 * width;
-    let ground = [(right + 0.004 * width, level(top)), (left, level(top - 0.14))];
-    chart.draw_series([Rectangle::new(ground, FORBIDDEN.filled())])?;
-    for (part, name) in names.into_iter().enumerate() {
-        let place = (right, level(top - 0.04 - 0.07 * part as f64));
-        chart.draw_series([Text::new(name, place, anchored(HPos::Right, VPos::Center))])?;
-    }
-    Ok(ground)
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
@@ -309,13 +273,14 @@ fn draw_curve(sheet: &Sheet<'_>, line: &Line<'_>, frames: &[Frame]) -> Drawn<Vec
     if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(sheet, curve, frames) }
 }
 
-/// Marks the minima; what is said about several at one place stands in a row.
-fn label_minima(
+/// Marks the minima, and gives them with what is said about them: about several at one place in a
+/// row, and about a scene alone nothing, for that stands in the key.
+fn draw_minima(
     chart: &mut Plane<'_, '_>,
     scenes: &[Judged],
     x: &Range<f64>,
     height: f64,
-) -> Drawn<()> {
+) -> Drawn<Vec<((f64, f64), String)>> {
     let width = x.end - x.start;
     let near = |a: (f64, f64), b: (f64, f64)| {
         (a.0 - b.0).abs() < 0.04 * width && (a.1 - b.1).abs() < 0.1 * height
@@ -334,7 +299,6 @@ fn label_minima(
             Circle::new(at, units(5), WHITE.filled()),
             Circle::new(at, units(5), pen(2)),
         ])?;
-        // What is said about a scene alone stands in the key, where nothing crosses it.
         if scenes.len() == 1 {
             continue;
         }
@@ -344,20 +308,7 @@ fn label_minima(
             labels.push((at, (index + 1).to_string()));
         }
     }
-    for ((re, im), label) in labels {
-        // Above the axis, where the mirrored half of the curve leaves the point to the right.
-        let (left, bottom) = (re + 0.02 * width, im + 0.06 * height);
-        // On ground of its own, where curves may pass behind it.
-        let right = left + (0.004 + 0.0115 * label.len() as f64) * width;
-        let ground = [(left - 0.004 * width, bottom), (right, bottom + 0.08 * height)];
-        chart.draw_series([Rectangle::new(ground, WHITE.filled())])?;
-        chart.draw_series([Text::new(
-            label,
-            (left, bottom + 0.04 * height),
-            anchored(HPos::Left, VPos::Center),
-        )])?;
-    }
-    Ok(())
+    Ok(labels)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use crate::chart::limits::{DelayCurve, Own};
 use crate::chart::{self, Chart, ChartError, Data};
 use crate::command::answer::CommandError;
 use crate::command::common::SceneArgument;
+use crate::command::file_scene::transducers_of;
 use crate::command::values::{number, positive_range};
 use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
 use crate::map::MapError;
@@ -30,9 +31,9 @@ pub struct Arguments {
     /// Stiffness in N m/rad, the vertical axis; otherwise all that there is to see
     #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
     pub y: Option<Range<f64>>,
-    /// Counts of the encoder a turn
-    #[arg(long, value_name = "N", value_parser = counts, default_value = "65536")]
-    pub counts_per_rev: f64,
+    /// Counts of the encoder a turn; those of the scene's `[limits] encoder_step`, or 65536, if left out
+    #[arg(long, value_name = "N", value_parser = counts)]
+    pub counts_per_rev: Option<f64>,
     /// Part of the largest stiffness that is used, for the ripple: at all of it there is no bound
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
     pub used: f64,
@@ -57,7 +58,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let curves = Curves {
         rates: arguments.rates.clone(),
         points: RATES,
-        counts_per_turn: arguments.counts_per_rev,
+        counts_per_turn: transducers_of(&file, arguments.counts_per_rev, None).counts_per_turn,
         used: arguments.used,
     };
     let bar = progress::bar(DELAYS as u64 + 1, "limits");
@@ -78,7 +79,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     };
     let note = format!(
         "ripple of half a count of {} a turn, at {} % of the largest stiffness, {coupling}",
-        significant(curves.counts_per_turn, 7),
+        significant(whole(curves.counts_per_turn), 7),
         significant(100.0 * curves.used, 3)
     );
     let title = format!("{}: how stiff, how fast", shortened(&file.name, 48));
@@ -97,6 +98,12 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let header =
         &["delay (samples)", "sample rate (Hz)", "largest stiffness (N m/rad)", "ripple (N m)"];
     Ok(Chart { picture, data: Data::new(header, rows) })
+}
+
+/// The whole number that a step in rad was rounded from, where there is one so near.
+fn whole(counts: f64) -> f64 {
+    let nearest = counts.round();
+    if (counts - nearest).abs() <= 1e-5 * nearest { nearest } else { counts }
 }
 
 fn counts(text: &str) -> Result<f64, String> {

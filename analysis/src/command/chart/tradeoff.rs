@@ -1,6 +1,7 @@
 //! `haptic chart tradeoff`: speed against accuracy, measured, kept as a table and drawn.
 
 use std::fs::File;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -29,7 +30,8 @@ pub struct Arguments {
     /// Draw the tables that are kept instead of measuring
     #[arg(long)]
     pub draw_only: bool,
-    /// Folder of the tables and pictures; that of this repository's unless it is given
+    /// Folder of the tables and pictures, with --draw-only also that in which the tables are looked
+    /// for; that of this repository's unless it is given
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Draw into this file only, .svg, .png or .pdf, the panels of these cases and errors
@@ -114,7 +116,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         return Err(CommandError::NoTopic { picture: picture.clone(), topics });
     }
     let picture = arguments.picture.as_deref().map(Output::new).transpose()?;
-    std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    if !arguments.draw_only {
+        std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    }
     for topic in arguments.topic.topics() {
         let file = |extension| folder.join(topic.subject().name).with_extension(extension);
         let table = file("csv");
@@ -128,6 +132,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
                 all_ticks()?.write(out).map_err(unwritable(&table))?;
             }
         }
+        if arguments.draw_only && !table.exists() {
+            return Err(CommandError::NothingKept { table });
+        }
         let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
         match &picture {
             Some(output) => {
@@ -136,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             }
             None => draw(&tradeoff, folder)?,
         }
-        print!("{}", fronts(&tradeoff));
+        write!(io::stdout(), "{}", fronts(&tradeoff))?;
     }
     Ok(Answer::Yes)
 }
@@ -165,6 +172,7 @@ impl Arguments {
             .find(|word| !there.contains(&word.as_str()))
         {
             Some(word) => {
+                let there: Vec<_> = there.iter().map(|name| format!("`{name}`")).collect();
                 Err(CommandError::NoPanel { what, word: word.clone(), there: there.join(", ") })
             }
             None => Ok(()),
