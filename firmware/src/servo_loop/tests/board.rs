@@ -108,7 +108,7 @@ impl Startup for Board {
 /// A board with its cycle, and both ends of what connects it.
 pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub board: Board,
-    pub cycle: ServoLoop<E, N, M>,
+    pub servo_loop: ServoLoop<E, N, M>,
     pub inbox: Inbox<'static, PreparedServo<E, N, M>>,
     pub requests: Requests<'static, PreparedServo<E, N, M>>,
     pub frames: Frames<'static, 8>,
@@ -123,8 +123,9 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, Step> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
-        let Booted { cycle, reset, left, arms_because, .. } = boot(program, &mut board, &requests)?;
-        Ok(Self { board, cycle, inbox, requests, frames, seen, reset, left, arms_because })
+        let Booted { servo_loop, reset, left, arms_because, .. } =
+            boot(program, &mut board, &requests)?;
+        Ok(Self { board, servo_loop, inbox, requests, frames, seen, reset, left, arms_because })
     }
 
     /// Boots the board and asks for it to be armed.
@@ -137,7 +138,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
     /// One tick with the device at this count; gives its frame.
     pub fn tick(&mut self, count: i32) -> Frame {
         self.board.count = count;
-        self.cycle.run(&mut self.board, &mut self.inbox, &mut self.frames);
+        self.servo_loop.run(&mut self.board, &mut self.inbox, &mut self.frames);
         self.seen.take().expect("every tick leaves a frame")
     }
 

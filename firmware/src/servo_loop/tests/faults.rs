@@ -5,8 +5,8 @@ use crate::reset::ResetCause;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
 fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
-    assert_eq!(bench.cycle.state(), State::Faulted);
-    assert_eq!(bench.cycle.fault(), Some(fault));
+    assert_eq!(bench.servo_loop.state(), State::Faulted);
+    assert_eq!(bench.servo_loop.fault(), Some(fault));
     assert!(!bench.board.is_on());
     assert_eq!(bench.board.codes().last(), Some(&2048));
     assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
@@ -16,7 +16,7 @@ fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
     bench.board.events.clear();
     bench.stand(bench.board.count, 50);
     assert!(bench.board.codes().iter().all(|code| *code == 2048) && !bench.board.is_on());
-    assert_eq!(bench.cycle.fault(), Some(fault));
+    assert_eq!(bench.servo_loop.fault(), Some(fault));
 }
 
 /// Arms again, which works: the clamp opens from nothing.
@@ -24,7 +24,7 @@ fn assert_armed_again(bench: &mut Bench<Spring, f32, Latched>) {
     bench.requests.arm();
     bench.stand(bench.board.count, 102);
     assert_eq!(bench.notices(), [Notice::Armed]);
-    assert_eq!((bench.cycle.state(), bench.cycle.fault()), (State::Running, None));
+    assert_eq!((bench.servo_loop.state(), bench.servo_loop.fault()), (State::Running, None));
     assert!(bench.board.is_on());
     assert_eq!(bench.board.kept, FaultRecord::NOTHING);
 }
@@ -68,7 +68,7 @@ fn the_worst_period_is_how_many_updates_may_be_missed_in_a_row() {
         bench.tick(500);
     }
     bench.tick(500);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     assert_eq!(bench.status().missed, 6);
     // One more than that.
     bench.board.passed = 4;
@@ -106,7 +106,7 @@ fn where_updates_may_be_missed_a_tick_may_begin_late_instead() {
             (bench.board.passed, bench.board.elapsed) = (passed, late);
             bench.tick(500);
         }
-        bench.cycle.fault()
+        bench.servo_loop.fault()
     };
     assert_eq!(began(&[(BEGAN_LATE, 490), (1, 0), (BEGAN_LATE, 490)]), None);
     // With half a period or less to the latch, any next tick would have to be too early.
@@ -133,7 +133,7 @@ fn an_encoder_that_jumps() {
     // 100 rad/s are 977.8 counts a millisecond; one more for the encoder's edges.
     let mut bench = running(&SPRING, 500);
     bench.tick(500 + 978);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     bench.tick(500 - 1);
     assert_stopped(&mut bench, Fault::EncoderJump { counts: 979, largest: 978 });
     assert_armed_again(&mut bench);
@@ -158,7 +158,7 @@ fn an_encoder_that_goes_on_jumping_keeps_the_servo_from_being_armed() {
 #[test]
 fn a_torque_that_is_not_a_number() {
     let mut bench = running(&SPRING, 500);
-    bench.cycle.rendering.servo_mut().poison(f32::NAN);
+    bench.servo_loop.rendering.servo_mut().poison(f32::NAN);
     let frame = bench.tick(500);
     assert_eq!((frame.code, frame.limit), (DacCode::MID_SCALE, LimitReason::NotANumber));
     assert_stopped(&mut bench, Fault::NotANumber);
@@ -210,12 +210,12 @@ fn a_host_that_falls_silent_lets_the_device_go() {
     for _ in 0..10 {
         bench.requests.heard();
         bench.stand(500, 199);
-        assert_eq!(bench.cycle.state(), State::Running);
+        assert_eq!(bench.servo_loop.state(), State::Running);
     }
     bench.tick(500);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     bench.tick(500);
-    assert_eq!(bench.cycle.state(), State::FadingOut);
+    assert_eq!(bench.servo_loop.state(), State::FadingOut);
     // At once, but step by step: 3 codes at most are the spring's own.
     let before = bench.board.codes();
     bench.stand(500, 100);
@@ -237,7 +237,7 @@ fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
     for (link, lost) in [(LinkPolicy::Hold, true), (LinkPolicy::Ignore, false)] {
         let mut bench = running(&with_link(link), 500);
         bench.stand(500, 500);
-        assert_eq!(bench.cycle.state(), State::Running);
+        assert_eq!(bench.servo_loop.state(), State::Running);
         assert_eq!(bench.status().link_lost, lost);
         bench.requests.heard();
         assert!(!bench.status().link_lost);

@@ -24,13 +24,13 @@ fn a_frame_says_what_its_tick_did() {
 fn a_reader_that_stalls_costs_frames_and_nothing_else() {
     let mut bench = running(&SPRING, 250);
     for _ in 0..50 {
-        bench.cycle.run(&mut bench.board, &mut bench.inbox, &mut bench.frames);
+        bench.servo_loop.run(&mut bench.board, &mut bench.inbox, &mut bench.frames);
     }
     let ticks: Vec<u32> = core::iter::from_fn(|| bench.seen.take()).map(|f| f.tick).collect();
     assert_eq!(ticks.len(), 8);
     assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1));
     assert_eq!(bench.status().dropped, 42);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn bench(program: &Program<Spring>) -> Bench<Spring, f32, Latched> {
 fn running(program: &Program<Spring>, count: i32) -> Bench<Spring, f32, Latched> {
     let mut bench = bench(program);
     bench.stand(count, 102);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     bench.notices();
     bench
 }
@@ -73,7 +73,7 @@ fn boots_in_an_order_in_which_nothing_can_move() {
     }
     bench.stand(900, 20);
     assert_eq!(bench.tick(900).code.offset(), -725);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     assert_eq!(bench.notices(), [Notice::Armed]);
 }
 
@@ -97,7 +97,7 @@ fn no_reset_arms_a_servo_that_nobody_has_asked_to_arm() {
         let board = Board { reset, ..Board::new() };
         let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
         bench.stand(900, 300);
-        assert_eq!(bench.cycle.state(), State::Disarmed, "{reset:?}");
+        assert_eq!(bench.servo_loop.state(), State::Disarmed, "{reset:?}");
         assert!(!bench.board.is_on(), "{reset:?}");
         assert!(bench.board.codes().iter().all(|code| *code == 2048), "{reset:?}");
         assert_eq!((bench.notices(), bench.reset), (vec![], reset));

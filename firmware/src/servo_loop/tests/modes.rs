@@ -20,7 +20,7 @@ where
     hand().for_each(|count| {
         bench.tick(count);
     });
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     bench.board.codes()
 }
 
@@ -67,7 +67,7 @@ fn injected_damping_is_felt_only_while_there_is_a_deficit() {
     let (mut injecting, mut plain) = (bench(&program), bench(&SPRING));
     let mut differed = 0;
     for count in hand() {
-        let deficit = injecting.cycle.energy.is_deficit();
+        let deficit = injecting.servo_loop.energy.is_deficit();
         let (with, without) = (injecting.tick(count).code, plain.tick(count).code);
         differed += usize::from(with != without);
         // What was injected before leaves with the coupling's own echo, a quarter a tick.

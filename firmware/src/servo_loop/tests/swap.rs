@@ -150,20 +150,20 @@ fn a_swap_takes_the_torque_away_for_as_long_as_it_says() {
 fn a_swap_does_not_hurry_an_arming() {
     let mut bench = bench(&SPRING);
     bench.stand(500, 30);
-    assert_eq!(bench.cycle.state(), State::FadingIn);
+    assert_eq!(bench.servo_loop.state(), State::FadingIn);
     bench.requests.submit(set(&SPRING, &[(Parameter::Stiffness, 12.0)])).unwrap();
     bench.stand(500, 130);
-    assert_eq!(bench.cycle.state(), State::FadingIn);
+    assert_eq!(bench.servo_loop.state(), State::FadingIn);
     assert!(largest_step(&bench.board.codes()) <= 9 + 3);
     bench.stand(500, 20);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     // Nor does one that is about to begin hurry a disarming.
     bench.requests.submit(set(&SPRING, &[])).unwrap();
     bench.tick(500);
     bench.requests.disarm();
     let before = bench.board.codes().len();
     bench.stand(500, 60);
-    assert_eq!(bench.cycle.state(), State::Disarmed);
+    assert_eq!(bench.servo_loop.state(), State::Disarmed);
     assert!(largest_step(&bench.board.codes()[before..]) <= 9 + 3);
 }
 
@@ -214,7 +214,7 @@ fn disarming_closes_from_the_torque_that_is_held() {
     bench.stand(100, 3);
     assert!(bench.board.codes().last().unwrap() - 2048 >= held + 15);
     bench.stand(100, 10);
-    assert_eq!(bench.cycle.state(), State::Disarmed);
+    assert_eq!(bench.servo_loop.state(), State::Disarmed);
 }
 
 #[test]
@@ -223,9 +223,9 @@ fn disarming_wins_over_arming_and_a_second_thought_over_both() {
     bench.requests.arm();
     bench.requests.disarm();
     bench.stand(500, 10);
-    assert_eq!(bench.cycle.state(), State::FadingOut);
+    assert_eq!(bench.servo_loop.state(), State::FadingOut);
     bench.requests.arm();
     bench.stand(500, 102);
-    assert_eq!(bench.cycle.state(), State::Running);
+    assert_eq!(bench.servo_loop.state(), State::Running);
     assert_eq!(bench.notices(), [Notice::Armed]);
 }
