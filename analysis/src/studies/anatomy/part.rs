@@ -33,7 +33,7 @@ pub enum Part {
 }
 
 /// How the function is called that does a tick: how its name begins and ends.
-const TICK: (&str, &str) = ("<firmware::servo::rendering::Rendering<", "::tick");
+const TICK: (&str, &str) = ("<firmware::servo::prepared_servo::PreparedServo<", "::tick");
 
 /// How the functions of a part are called: how the name begins, and what else is in it.
 const NAMES: [(&str, &str, Part); 16] = [
@@ -116,7 +116,7 @@ impl fmt::Display for Part {
 mod tests {
     use super::*;
 
-    const TICK: &str = "<firmware::servo::rendering::Rendering<Wall, f32, Latched>>::tick";
+    const TICK: &str = "<firmware::servo::prepared_servo::PreparedServo<Wall, f32, Latched>>::tick";
 
     fn of(inner: &[&str]) -> Option<Part> {
         let functions = inner.iter().chain(&[TICK, "interrupt"]);
@@ -130,7 +130,7 @@ mod tests {
                       firmware::environment::velocity::Velocity<f32>>::add_to";
         let filter = "<firmware::environment::velocity::Washout<f32>>::torque";
         let wall = "<firmware::environment::wall_law::WallLaw<f32, V, S, D>>::line";
-        let canceller = "<firmware::environment::free_mode::FreeModeLaw<f32, D> as Law>::offer";
+        let canceller = "<firmware::environment::free_mode::FreeModeLaw<f32, D> as Law>::evaluate";
         for (inner, part) in [
             (&[number, damper, wall][..], Part::Damper),
             (&[number, wall], Part::Spring),
