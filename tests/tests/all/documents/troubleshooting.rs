@@ -9,7 +9,7 @@ const DOCUMENT: &str = "firmware/TROUBLESHOOTING.md";
 /// The kinds of refusals, and where they are.
 const KINDS: [(&str, &str); 7] = [
     ("Rejection", "firmware/src/certificate/rejection.rs"),
-    ("Doubt", "firmware/src/passivity/poles.rs"),
+    ("UndecidedReason", "firmware/src/passivity/poles.rs"),
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
     ("BuildError", "firmware/src/build_error.rs"),
     ("TuningError", "firmware/src/tuning/error.rs"),
