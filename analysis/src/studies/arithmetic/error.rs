@@ -23,6 +23,15 @@ pub enum ArithmeticError {
     /// The scene cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// What a format leaves of a motion at rest cannot be told.
+    #[error(
+        "the motion of this device does not die away by half in {seconds} s, so that a limit cycle at \
+         rest cannot be told from it: give the device more damping, or the scene more margin"
+    )]
+    NoRest {
+        /// Longest time that is waited for, in s.
+        seconds: f64,
+    },
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),

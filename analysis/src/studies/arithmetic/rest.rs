@@ -22,8 +22,10 @@ pub struct Rest {
 pub const PRELOAD: f64 = 0.2;
 /// Starts in rad off zero.
 const STARTS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
-/// Time in s over which a motion is looked at.
+/// Shortest time in s over which a motion is looked at.
 const WINDOW: f64 = 0.25;
+/// Longest. A motion that does not die away by half within it is not waited for.
+const LONGEST: f64 = 4.0;
 /// Most windows until a motion has died away as far as it will.
 const WINDOWS: usize = 40;
 /// A motion that has not become smaller by this part from one window to the next has died away.
@@ -33,7 +35,8 @@ const STEADY: f64 = 0.9;
 /// the scene's, or with angles that no encoder has counted.
 ///
 /// # Errors
-/// Where the scene is refused, or cannot be had in this format.
+/// Where the scene is refused, cannot be had in this format, or does not come to rest in a time that
+/// is worth waiting for.
 pub fn at_rest(
     subject: &Subject,
     arithmetic: Arithmetic,
@@ -44,15 +47,40 @@ pub fn at_rest(
     let device = HeldDevice::new(scene.device, Hand::default(), scene.timing.period)?;
     let limit = scene.torque_limit.unwrap_or(subject.transducers.full_scale_torque);
     let push = if has_spring(&scene.environment) { PRELOAD.min(0.5 * limit) } else { 0.0 };
+    let window = window(subject, &device, push)?;
     let mut rest = Rest { hum: 0.0, cycle: f64::INFINITY };
     for start in STARTS {
         let servo = subject.servo(arithmetic)?;
         let motion = Motion { position: start, velocity: 0.0 };
         let mut settling = Settling { device: &device, servo, encoder, push, motion };
-        let left = settling.settle((WINDOW / scene.timing.period).ceil() as usize)?;
+        let left = settling.settle(ticks(window, scene.timing.period))?;
         rest = Rest { hum: rest.hum.max(left.hum), cycle: rest.cycle.min(left.cycle) };
     }
     Ok(rest)
+}
+
+/// Time in s in which the motion dies away by half at least, where nothing but inertia keeps it up: in
+/// `f64`, with angles that no encoder has counted.
+fn window(subject: &Subject, device: &HeldDevice, push: f64) -> Result<f64, ArithmeticError> {
+    let mut window = WINDOW;
+    while window <= LONGEST {
+        // Four windows at once, in which a slow oscillation shows its whole span.
+        let ticks = ticks(4.0 * window, subject.scene.timing.period);
+        let servo = subject.servo(Arithmetic::F64)?;
+        let motion = Motion { position: STARTS[0], velocity: 0.0 };
+        let mut settling = Settling { device, servo, encoder: None, push, motion };
+        let (first, second) = (settling.window(ticks)?, settling.window(ticks)?);
+        if second.hum <= first.hum / 16.0 {
+            return Ok(window);
+        }
+        window *= 2.0;
+    }
+    Err(ArithmeticError::NoRest { seconds: LONGEST })
+}
+
+/// Ticks in a time in s.
+fn ticks(time: f64, period: f64) -> usize {
+    (time / period).ceil() as usize
 }
 
 /// Whether there is something to lean on.
@@ -121,5 +149,53 @@ impl Span {
 
     fn length(&self) -> f64 {
         self.high - self.low
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::certificate::Resolution;
+    use firmware::encoder::CounterWidth;
+    use firmware::environment::Wall;
+    use firmware::scene::{Coupling, Device, Scene, Timing};
+    use firmware::transducers::Transducers;
+
+    use super::*;
+
+    /// A wall whose certificate leaves `margin` N m s/rad, on a device of so much inertia.
+    fn subject(inertia: f64, margin: f64) -> Subject {
+        let damping = 1e-4;
+        let stiffness = 2.0 * (damping - margin) / 1e-3;
+        let environment = Environment::DelayedSpring(Wall {
+            stiffness,
+            damping: 0.0,
+            delay: 1,
+            filter: None,
+            face: 0.0,
+            one_sided: false,
+        });
+        let transducers = Transducers {
+            counts_per_turn: 4096.0,
+            counter: CounterWidth::Bits16,
+            full_scale_torque: 0.2,
+            largest_speed: 100.0,
+        };
+        let scene = Scene {
+            device: Device { inertia, damping, passivity: None },
+            timing: Timing { period: 1e-3, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 0.2 },
+            environment,
+            torque_limit: None,
+        };
+        let steps = Resolution::of(&transducers, None);
+        Subject { scene, transducers, steps, range: 0.5 }
+    }
+
+    #[test]
+    fn a_motion_that_dies_away_slowly_is_waited_for_and_no_limit_cycle() {
+        let rest = at_rest(&subject(5e-5, 5e-5), Arithmetic::F64, false).unwrap();
+        assert!(rest.hum < 1e-9, "{rest:?}");
+        let endless = at_rest(&subject(5e-3, 1e-7), Arithmetic::F64, false);
+        assert!(matches!(endless, Err(ArithmeticError::NoRest { .. })), "{endless:?}");
     }
 }
