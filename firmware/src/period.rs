@@ -28,3 +28,14 @@ pub const fn check(period: f64) -> Result<(), BuildError> {
         Err(BuildError::Period { period, shortest: SHORTEST, longest: LONGEST })
     }
 }
+
+/// For constants: a compile error where no board can pace the period.
+///
+/// # Panics
+/// If none can; in a constant that is the compile error.
+#[track_caller]
+pub const fn checked(period: f64) {
+    if let Err(error) = check(period) {
+        error.refuse();
+    }
+}

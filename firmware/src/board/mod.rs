@@ -164,9 +164,10 @@ macro_rules! sweep_program {
         pub const GUARD: $crate::excitation::Guard =
             $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
 
-        // On every target, also where a simulated device needs no limits.
+        // On every target, also where a simulated device needs no limits and the host paces.
         const _: () = {
             let _ = GUARD;
+            $crate::period::checked($sweep.period());
         };
 
         /// Prints the plan.
