@@ -123,7 +123,7 @@ impl Trace {
     }
 
     /// Samples over which a velocity is taken that was not recorded: as many as a picture does not
-    /// show apart, and as many more, up to a [`SMEARED`] part of the run, as make a step of the
+    /// show apart, and as many more, up to a `SMEARED` part of the run, as make a step of the
     /// encoder a small part of the velocities.
     pub fn window(&self) -> usize {
         let last = self.time.len().saturating_sub(1).max(1);
