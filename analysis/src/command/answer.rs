@@ -61,9 +61,9 @@ pub enum CommandError {
         /// The programs that there are.
         programs: String,
     },
-    /// A scene file has no program for a twin.
+    /// A scene file has no program for a simulated board.
     #[error(
-        "{file} is a file, and a twin runs a scene's program by its name: the programs are {programs}; \
+        "{file} is a file, and a simulated board runs a scene's program by its name: the programs are {programs}; \
          `cargo haptic new NAME` begins one"
     )]
     FileOnTwin {

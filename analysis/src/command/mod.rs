@@ -94,11 +94,11 @@ fn with_exit_status(command: clap::Command) -> clap::Command {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Is a scene safe in every hand, and by how much?
+    /// Certify a scene: verdict, margin, assumptions and remedies.
     Certify(certify::Arguments),
-    /// How much passivity does a device have, rigid or a chain of masses?
+    /// Compute the passivity of a device, rigid or a chain of masses.
     Device(device::Arguments),
-    /// What are inertia, damping and passivity of a device that was measured?
+    /// Identify inertia, damping and passivity of a device from a measurement.
     Identify(identify::Arguments),
     /// Begin a scene of your own, as a copy of another one.
     New(new::Arguments),
@@ -114,28 +114,29 @@ pub enum Command {
     Report(report::Arguments),
     /// Measure what a certificate and a tick cost.
     Bench(bench::Arguments),
-    /// Show or change the parameters of a running board; it refuses what it cannot certify.
+    /// Show or change the parameters of a running board, which refuses what it cannot certify.
     Tune(tune::Arguments),
     /// Watch a running board, tune it, or record it.
     ///
     /// In the view t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. Torque
     /// is the coupling torque, as in every other trace; the motor applies its negative.
     Scope(scope::Arguments),
-    /// Be a board without hardware, in a simulated hand, for tune and scope to be tried on.
+    /// Simulate a board in a simulated hand, to try `tune` and `scope` without hardware.
+    #[command(name = "board-sim", alias = "twin")]
     Twin(twin::Arguments),
-    /// What would a scene do, certified or not?
+    /// Simulate a scene sample by sample, certified or not.
     Simulate(simulate::Arguments),
-    /// Does the motion of this device in this hand die away?
+    /// Compute the spectral radius of the loop, and up to which stiffness it is stable.
     Stability(stability::Arguments),
-    /// How far may one go, and what does it take? Answers are scenes that certify.
+    /// Find the largest stiffness, the least damping or the longest period that certifies.
     Design(design::Arguments),
-    /// How little is enough for a scene: which number format, which model of its device?
+    /// Find the cheapest number format, or the simplest device model, that is enough for a scene.
     Advise(advise::Arguments),
-    /// In which passive hand does a scene oscillate?
+    /// Search for a passive hand in which a scene oscillates.
     WorstHand(worst_hand::Arguments),
-    /// What may a scene file say? Prints a JSON schema, an example, or the reference of its keys.
+    /// Print the JSON schema of scene files, a commented example, or the reference of all keys.
     Schema(schema::Arguments),
-    /// Where do other methods fail, and what did the certificate say before?
+    /// Show loops that other methods judge wrongly, beside what the certificate says of them.
     Failures(failures::Arguments),
 }
 

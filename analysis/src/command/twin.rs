@@ -1,4 +1,4 @@
-//! `haptic twin`: a board without hardware, to try `tune` and `scope` on.
+//! `haptic board-sim`: a simulated board, to try `tune` and `scope` without hardware.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::rig::SimulatedDevice;
 use crate::toolchain::{Board, NumberFormat};
 use crate::twin::{Clock, Twin};
 
-/// Arguments of `haptic twin`.
+/// Arguments of `haptic board-sim`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of a scene's program in firmware/src/bin, as damper_wall

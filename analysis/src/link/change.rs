@@ -19,7 +19,7 @@ pub struct Twice {
 /// A sentence where it is not a name and a finite number.
 pub fn change(text: &str) -> Result<(Parameter, f64), String> {
     let (name, value) =
-        text.split_once('=').ok_or_else(|| format!("`{text}` is no change: NAME=VALUE"))?;
+        text.split_once('=').ok_or_else(|| format!("expected NAME=VALUE, got `{text}`"))?;
     let parameter = tuning::parameter(name).ok_or_else(|| {
         let names: Vec<&str> = TUNABLE.iter().map(|(name, _)| *name).collect();
         format!("there is no parameter `{name}` to tune; there are {}", names.join(", "))

@@ -86,7 +86,7 @@ fn shows_everything_that_is_to_be_watched() {
         "missed 2",
         "energy into the hand -0.005 J, at most 0.007 J",
         "limited by torque 25 %",
-        "ticks dropped 4, thinned 6   frames spoilt 8 there, 0 here",
+        "ticks dropped 4, thinned 6   bad frames: board 8, host 0",
         "q quits   t tunes   A arms   d disarms",
     ] {
         assert!(shown.contains(part), "{part:?} is not in\n{shown}");

@@ -78,5 +78,5 @@ pub fn limits(scope: &Scope) -> String {
 pub fn losses(status: &Status, here: Discarded) -> String {
     let (there, here) = (status.discarded.total(), here.total());
     let Status { dropped, thinned, .. } = status;
-    format!("ticks dropped {dropped}, thinned {thinned}   frames spoilt {there} there, {here} here")
+    format!("ticks dropped {dropped}, thinned {thinned}   bad frames: board {there}, host {here}")
 }

@@ -21,7 +21,7 @@ use crate::link::Address;
 const BYTES: usize = 256;
 
 /// What is wrong with an address that is none of a socket.
-const NO_SOCKET: &str = "a twin listens on a socket, tcp://HOST:PORT or unix:PATH; at a serial port there is a real board";
+const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH; at a serial port there is a real board";
 
 /// Frames that are sent at a time at most.
 const FRAMES: usize = 16;

@@ -347,7 +347,7 @@ fn failures_are_rows_and_objects_by_name() {
 fn the_usage_of_advice_has_what_it_cannot_do_without() {
     let help = haptic(&["advise", "--help"], b"");
     let help = String::from_utf8(help.stdout).unwrap();
-    for usage in ["<SCENE> --hum <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"] {
+    for usage in ["<SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"] {
         assert!(help.contains(&format!("haptic advise {usage}\n")), "{help}");
     }
 }
@@ -362,7 +362,7 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
         let formats = answer["formats"].as_array().unwrap();
         formats.iter().find(|format| format["format"] == name).unwrap().clone()
     };
-    let output = advise(&["--hum", "0.0005"]);
+    let output = advise(&["--max-limit-cycle", "0.0005"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let answer = &lines(&output)[0];
     assert_eq!(

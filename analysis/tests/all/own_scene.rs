@@ -68,7 +68,7 @@ fn a_new_file_is_all_that_the_commands_need() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
     let mut twin =
-        program(&["twin", NAME, "--port", &port]).stdout(Stdio::piped()).spawn().unwrap();
+        program(&["board-sim", NAME, "--port", &port]).stdout(Stdio::piped()).spawn().unwrap();
     let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
     assert_eq!(said.next().unwrap().unwrap(), format!("{NAME} listens on {port}"));
     let tuned = answer(&haptic(&["tune", "--json", "--port", &port]));

@@ -114,7 +114,7 @@ fn advice_on_models_as_json_and_bad_questions_named() {
     let message = complaint(haptic(&[&ask[..], &["--hum", "0.1"]].concat()));
     assert!(message.contains("'--model' cannot be used with"), "{message}");
     let message = complaint(haptic(&["advise", name(&moving)]));
-    assert!(message.contains("--hum") && message.contains("--rate"), "{message}");
+    assert!(message.contains("--max-limit-cycle") && message.contains("--rate"), "{message}");
     for (more, expected) in [("", "[simulation]"), (run, "nothing moves")] {
         let scene = scene(&folder, more);
         let message = complaint(haptic(&["advise", "--model", name(&scene)]));

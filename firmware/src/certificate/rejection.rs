@@ -166,7 +166,7 @@ impl Rejection {
             Self::NoPassivity { delta } => {
                 t.push("the device's passivity delta = ");
                 t.push_number(delta.midpoint());
-                t.push(" N m s/rad leaves nothing to spend; it must be greater than 0");
+                t.push(" N m s/rad must be greater than 0");
             }
             Self::UnstablePole { reflection, of_coupling, .. } => {
                 t.push(if *of_coupling { "behind this coupling " } else { "" });

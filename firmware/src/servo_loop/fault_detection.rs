@@ -83,7 +83,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    /// A torque that was none.
+    /// A torque that is not a number.
     #[cold]
     #[inline(never)]
     pub(super) fn not_a_number(

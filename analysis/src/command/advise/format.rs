@@ -1,4 +1,5 @@
-//! `haptic advise --hum --rate`: which number format, and which method of simulation, are enough?
+//! `haptic advise --max-limit-cycle --rate`: the cheapest number format that is enough, and the cheapest
+//! method of simulation.
 
 use std::f64::consts::TAU;
 
@@ -24,8 +25,8 @@ use crate::studies::tradeoff::{self, simulation};
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
 pub struct Wanted {
-    /// Most torque in N m, from its lowest to its highest, by which the servo may hum at rest
-    #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
+    /// Largest torque of a limit cycle at rest in N m, from its lowest to its highest
+    #[arg(long = "max-limit-cycle", alias = "hum", value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
           required = false, required_unless_present = "model")]
     pub hum: f64,
     /// Ticks a second
@@ -37,8 +38,8 @@ pub struct Wanted {
     pub error: Option<f64>,
     /// Part of a core of 170 MHz that a tick may take from count to code; the rest of the servo's
     /// interrupt is the same in every format
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.5,
-          allow_negative_numbers = true)]
+    #[arg(long = "cpu-share", alias = "share", value_name = "PART", value_parser = part,
+          default_value_t = 0.5, allow_negative_numbers = true)]
     pub share: f64,
     /// Encoder counts a turn; the scene's own if left out
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
@@ -47,12 +48,12 @@ pub struct Wanted {
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
     pub friction: Option<f64>,
     /// Largest angle in rad to each side that a scaled format has to hold
-    #[arg(long, value_name = "ANGLE", value_parser = positive, default_value_t = HALF_A_TURN,
-          allow_negative_numbers = true)]
+    #[arg(long = "max-angle", alias = "range", value_name = "ANGLE", value_parser = positive,
+          default_value_t = HALF_A_TURN, allow_negative_numbers = true)]
     pub range: f64,
     /// Part by which the largest stable stiffness of a simulation may be off
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.01,
-          allow_negative_numbers = true)]
+    #[arg(long = "stiffness-error", alias = "verdict", value_name = "PART", value_parser = part,
+          default_value_t = 0.01, allow_negative_numbers = true)]
     pub verdict: f64,
     /// Count the instructions of this scene on the emulated board instead of taking the kept ones
     #[arg(long)]

@@ -1,4 +1,4 @@
-//! `haptic advise`: how little is enough for a scene?
+//! `haptic advise`: the cheapest number format, or the simplest device model, that is enough for a scene.
 
 mod format;
 mod model;
@@ -11,7 +11,7 @@ use super::common::ForWhom;
 
 /// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]
-#[command(override_usage = "haptic advise <SCENE> --hum <TORQUE> --rate <HZ> [OPTIONS]\n       \
+#[command(override_usage = "haptic advise <SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]\n       \
                             haptic advise <SCENE> --model [OPTIONS]")]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, as damper_wall, or a scene file; a file with `--model`

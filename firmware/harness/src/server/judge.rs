@@ -19,7 +19,7 @@ pub fn run() -> ! {
     })
 }
 
-/// A question that is none, or a host that does not take the reply.
+/// A malformed request, or a host that does not take the reply.
 struct Unanswerable;
 
 fn serve(mut questions: File, mut replies: File, scale: meter::Scale) -> Result<(), Unanswerable> {
