@@ -23,7 +23,8 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
 
 /// A time on the command line.
 pub fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().map_err(|_| format!("`{text}` is not a valid duration in seconds"))?;
+    let seconds =
+        text.parse().map_err(|_| format!("`{text}` is not a valid duration in seconds"))?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(duration) if !duration.is_zero() => Ok(duration),
         _ => Err(format!("`{text}` must be a number of seconds greater than 0")),

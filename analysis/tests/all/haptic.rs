@@ -347,7 +347,9 @@ fn failures_are_rows_and_objects_by_name() {
 fn the_usage_of_advice_has_what_it_cannot_do_without() {
     let help = haptic(&["advise", "--help"], b"");
     let help = String::from_utf8(help.stdout).unwrap();
-    for usage in ["<SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"] {
+    for usage in
+        ["<SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]", "<SCENE> --model [OPTIONS]"]
+    {
         assert!(help.contains(&format!("haptic advise {usage}\n")), "{help}");
     }
 }

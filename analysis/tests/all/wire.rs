@@ -553,7 +553,10 @@ fn a_twin_that_is_told_to_end_or_killed_is_in_nobodys_way() {
     for (arguments, words) in [
         (["free_mode", "--port", &port], "a file of that name is there, and is no socket"),
         (["free_mode", "--port", "/dev/ttyACM0"], "tcp://HOST:PORT or unix:PATH"),
-        ([path.to_str().unwrap(), "--port", &port], "is a file, and a simulated board runs a scene's program"),
+        (
+            [path.to_str().unwrap(), "--port", &port],
+            "is a file, and a simulated board runs a scene's program",
+        ),
     ] {
         let output = haptic(&[&["twin"][..], &arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{output:?}");

@@ -11,8 +11,10 @@ use super::common::ForWhom;
 
 /// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]
-#[command(override_usage = "haptic advise <SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]\n       \
-                            haptic advise <SCENE> --model [OPTIONS]")]
+#[command(
+    override_usage = "haptic advise <SCENE> --max-limit-cycle <TORQUE> --rate <HZ> [OPTIONS]\n       \
+                            haptic advise <SCENE> --model [OPTIONS]"
+)]
 pub struct Arguments {
     /// Name of a program in firmware/src/bin, as damper_wall, or a scene file; a file with `--model`
     #[arg(value_name = "SCENE")]
