@@ -238,20 +238,11 @@ pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
 ) -> Result<Limited, TimingError> {
-    let n = LoopIntervals::of(scene, assessment.format);
-    agreed::<M>(scene, assessment.rule, assessment.bound, &n)
-}
-
-const fn agreed<M: OutputMode>(
-    scene: &Scene,
-    rule: Rule,
-    bound: Option<Interval>,
-    n: &LoopIntervals,
-) -> Result<Limited, TimingError> {
     if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
     }
-    let bound = limited_bound(scene, rule, bound, n);
+    let n = &LoopIntervals::of(scene, assessment.format);
+    let bound = limited_bound(scene, assessment.rule, assessment.bound, n);
     let limited = match bound {
         Some(bound) => Limited::of(scene, n, bound),
         None => None,
