@@ -1,7 +1,7 @@
 //! The stiffest wall that is certified, and what an encoder's step does to its torque.
 
 use firmware::certificate::PassivityProblem;
-use firmware::environment::{Environment, Wall};
+use firmware::environment::Wall;
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::{Coupling, Scene, Timing};
 
@@ -37,16 +37,11 @@ const SMALL: f64 = 1e-12;
 /// The scene with another stiffness in N m/rad, and with another delay in samples if one is given;
 /// unchanged where its environment is no wall.
 pub fn with_wall(scene: &Scene, stiffness: f64, delay: Option<usize>) -> Scene {
-    let changed = |wall: Wall| Wall { stiffness, delay: delay.unwrap_or(wall.delay), ..wall };
-    let environment = match scene.environment {
-        Environment::DelayedSpring(wall) => Environment::DelayedSpring(changed(wall)),
-        Environment::DamperWall(wall) => Environment::DamperWall(changed(wall)),
-        Environment::FreeModeWall { residual, wall } => {
-            Environment::FreeModeWall { residual, wall: changed(wall) }
-        }
-        other => other,
-    };
-    Scene { environment, ..*scene }
+    let mut changed = *scene;
+    if let Some(wall) = changed.environment.wall_mut() {
+        *wall = Wall { stiffness, delay: delay.unwrap_or(wall.delay), ..*wall };
+    }
+    changed
 }
 
 /// The scene at another period in s. A worst period keeps its ratio to it, and a coupling spring
@@ -174,6 +169,8 @@ impl Curves {
 
 #[cfg(test)]
 mod tests {
+    use firmware::environment::Environment;
+
     use super::*;
     use firmware::scene::Device;
 

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use firmware::environment::{Environment, Wall};
 use firmware::number::{Format, OutOfRange};
+use firmware::parameter::Parameter;
 use firmware::scene::Scene;
 
 /// The format of a name such as `f32`, `f64`, `i8f24`, `i8f24-truncated` or `q8.24`.
@@ -65,15 +65,8 @@ pub fn fits(scene: &Scene, format: Format) -> Result<(), DoesNotFit> {
         return Ok(());
     };
     let bound = f64::from(i32::MAX) / (1_u64 << fraction_bits) as f64;
-    let face = match scene.environment {
-        Environment::DelayedSpring(Wall { face, .. })
-        | Environment::DamperWall(Wall { face, .. })
-        | Environment::FreeModeWall { wall: Wall { face, .. }, .. } => face,
-        Environment::FreeMode { .. } | Environment::Rational(_) => 0.0,
-    };
-    for (key, value) in
-        [("environment.face", face), ("limits.torque", scene.torque_limit.unwrap_or(0.0))]
-    {
+    for parameter in [Parameter::Face, Parameter::TorqueLimit] {
+        let (key, value) = (parameter.key(), scene.get(parameter).unwrap_or(0.0));
         if value.abs() > bound {
             return Err(DoesNotFit { key, reason: OutOfRange { value, bound, format } });
         }

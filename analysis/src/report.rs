@@ -1,6 +1,6 @@
 //! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
 
-use firmware::environment::{Environment, Wall};
+use firmware::parameter::Parameter;
 use firmware::scene::{Coupling, Scene};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -128,33 +128,22 @@ fn origin(page: &Page<'_>) -> Markup {
 fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     let mut rows = vec![("Environment", write::kind(&file.scene.environment).to_owned())];
     let number = |name, value: f64, unit| (name, format!("{} {unit}", significant(value, 6)));
-    let wall = |rows: &mut Vec<_>, wall: &Wall| {
+    let environment = &file.scene.environment;
+    rows.extend(environment.residual().map(|left| number("Residual damping", left, "N m s/rad")));
+    if let Some(wall) = environment.wall() {
         rows.push(number("Stiffness", wall.stiffness, "N m/rad"));
         rows.push(number("Damping", wall.damping, "N m s/rad"));
         rows.extend(wall.filter.map(|pole| number("Pole of the velocity filter", pole, "")));
         rows.push(number("Face", wall.face, "rad"));
         let sides = if wall.one_sided { "felt beyond the face only" } else { "felt everywhere" };
         rows.push(("Sides", sides.to_owned()));
-        rows.push(delayed(wall.delay));
-    };
-    match &file.scene.environment {
-        Environment::DelayedSpring(spring) => wall(&mut rows, &Wall { damping: 0.0, ..*spring }),
-        Environment::DamperWall(behind) => wall(&mut rows, behind),
-        Environment::FreeMode { residual, delay } => {
-            rows.push(number("Residual damping", *residual, "N m s/rad"));
-            rows.push(delayed(*delay));
-        }
-        Environment::FreeModeWall { residual, wall: behind } => {
-            rows.push(number("Residual damping", *residual, "N m s/rad"));
-            wall(&mut rows, behind);
-        }
-        Environment::Rational(rational) => {
-            rows.push(("Numerator", format!("{:?}", rational.numerator.as_slice())));
-            rows.push(("Denominator", format!("{:?}", rational.denominator.as_slice())));
-            rows.push(number("Zeros at z = 1", rational.unit_zeros as f64, ""));
-            rows.push(delayed(rational.delay));
-        }
     }
+    if let Some(rational) = environment.rational() {
+        rows.push(("Numerator", format!("{:?}", rational.numerator.as_slice())));
+        rows.push(("Denominator", format!("{:?}", rational.denominator.as_slice())));
+        rows.push(number("Zeros at z = 1", rational.unit_zeros as f64, ""));
+    }
+    rows.extend(environment.get(Parameter::Delay).map(|samples| delayed(samples as usize)));
     if !file.chain.is_rigid() {
         rows.push(("Device", format!("a chain of {} masses", file.chain.masses().len())));
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::file::SceneFile;
 use crate::simulation::drive::Drive;
 use crate::simulation::served::Served;
-use crate::simulation::{Experiment, SimulationError, Stride, simulate, wall};
+use crate::simulation::{Experiment, SimulationError, Stride, simulate};
 
 /// A step of the encoder is at most one in so many of the largest velocity.
 const STEPS: f64 = 20.0;
@@ -79,7 +79,7 @@ impl Trace {
             hand_torque: driven.unwrap_or_default(),
             torque_limit: file.scene.torque_limit,
             limit: motion.limit,
-            face: wall(&file.scene).filter(|wall| wall.one_sided).map(|wall| wall.face),
+            face: file.scene.environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face),
             ..Self::default()
         };
         Ok(trace)

@@ -49,6 +49,8 @@ pub enum BuildError {
         /// The most that there is.
         largest: usize,
     },
+    /// The environment is known by its bounds alone, and its law is in another crate.
+    LawElsewhere,
     /// A numerator of higher degree than its denominator, or a denominator that is zero.
     Improper {
         /// Degree of the numerator.
@@ -147,6 +149,11 @@ impl BuildError {
                 t.push(
                     " in contact, and must be positive; a stiffer coupling or a delayed \
                      environment has one",
+                );
+            }
+            Self::LawElsewhere => {
+                t.push(
+                    "the environment is known by its bounds alone: only its own crate renders it",
                 );
             }
             Self::Delay { delay, largest } => {

@@ -42,6 +42,7 @@ pub mod servo;
 pub mod build_error;
 pub mod number;
 pub mod output_timing;
+pub mod parameter;
 pub mod period;
 pub mod step;
 pub mod text;

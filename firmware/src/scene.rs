@@ -7,6 +7,7 @@ use crate::build_error::BuildError;
 use crate::environment::{Environment, LawContext};
 
 pub use crate::coupling::Coupling;
+use crate::parameter::{NamedParameters, Parameter};
 
 /// A haptic scene: everything the certificate and the servo need to know.
 ///
@@ -53,6 +54,15 @@ pub struct Timing {
 }
 
 impl<E> Scene<E> {
+    /// What an environment is told of the rest of the scene.
+    pub(crate) const fn context(&self) -> LawContext {
+        LawContext {
+            period: self.timing.period,
+            damping: self.device.damping,
+            coupling: self.coupling,
+        }
+    }
+
     /// What the environment's coefficients depend on.
     pub(crate) fn setting(&self) -> Result<LawContext, BuildError> {
         let (period, coupling) = (self.timing.period, self.coupling);
@@ -60,6 +70,85 @@ impl<E> Scene<E> {
         if let Coupling::Spring { stiffness } = coupling {
             BuildError::unless_positive("coupling stiffness", stiffness)?;
         }
-        Ok(LawContext { period, damping: self.device.damping, coupling })
+        Ok(self.context())
+    }
+}
+
+impl<E> Scene<E> {
+    /// The number of this name outside of the environment; `None` where the scene has none.
+    const fn own_value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match (parameter, &mut self.coupling) {
+            (Parameter::Inertia, _) => Some(&mut self.device.inertia),
+            (Parameter::DeviceDamping, _) => Some(&mut self.device.damping),
+            (Parameter::Passivity, _) => self.device.passivity.as_mut(),
+            (Parameter::Period, _) => Some(&mut self.timing.period),
+            (Parameter::WorstPeriod, _) => self.timing.worst_period.as_mut(),
+            (Parameter::CouplingStiffness, Coupling::Spring { stiffness }) => Some(stiffness),
+            (Parameter::TorqueLimit, _) => self.torque_limit.as_mut(),
+            _ => None,
+        }
+    }
+}
+
+impl<E: NamedParameters> NamedParameters for Scene<E> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match self.environment.value(parameter) {
+            // Asked twice, since a borrow that is returned in one branch lasts in all of them.
+            Some(_) => self.environment.value(parameter),
+            None => self.own_value(parameter),
+        }
+    }
+}
+
+impl Scene {
+    /// The value of a parameter; `None` where the scene has none, and for polynomials.
+    ///
+    /// ```
+    /// use firmware::certificate::Parameter;
+    /// # use firmware::environment::{Environment, Wall};
+    /// # use firmware::scene::{Coupling, Device, Scene, Timing};
+    /// # let scene = Scene {
+    /// #     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    /// #     timing: Timing { period: 1e-3, worst_period: None },
+    /// #     coupling: Coupling::Spring { stiffness: 44.0 },
+    /// #     environment: Environment::FreeMode { residual: 0.01, delay: 1 },
+    /// #     torque_limit: None,
+    /// # };
+    /// assert_eq!(scene.get(Parameter::Residual), Some(0.01));
+    /// assert_eq!(scene.get(Parameter::Stiffness), None);
+    /// let softer = scene.with(Parameter::CouplingStiffness, 40.0).unwrap();
+    /// assert_eq!(softer.coupling, Coupling::Spring { stiffness: 40.0 });
+    /// ```
+    pub const fn get(&self, parameter: Parameter) -> Option<f64> {
+        let mut scene = *self;
+        match scene.environment.get(parameter) {
+            Some(value) => Some(value),
+            None => match scene.own_value(parameter) {
+                Some(value) => Some(*value),
+                None => None,
+            },
+        }
+    }
+
+    /// The scene with this value, also where it had none that could be left out: a passivity, a worst
+    /// period, a coupling, a torque limit. `None` where there is no place for it.
+    pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
+        let mut changed = *self;
+        match parameter {
+            Parameter::Passivity => changed.device.passivity = Some(value),
+            Parameter::WorstPeriod => changed.timing.worst_period = Some(value),
+            Parameter::CouplingStiffness => {
+                changed.coupling = Coupling::Spring { stiffness: value }
+            }
+            Parameter::TorqueLimit => changed.torque_limit = Some(value),
+            _ => match changed.own_value(parameter) {
+                Some(place) => *place = value,
+                None => match changed.environment.with(parameter, value) {
+                    Some(environment) => changed.environment = environment,
+                    None => return None,
+                },
+            },
+        }
+        Some(changed)
     }
 }

@@ -153,12 +153,7 @@ fn write(folder: &Path, name: &str, picture: &Picture) -> Result<(), ChartError>
 
 /// Where a one-sided wall begins, in rad.
 fn face(environment: &Environment) -> Option<f64> {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.one_sided.then_some(wall.face),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
-    }
+    environment.wall().filter(|wall| wall.one_sided).map(|wall| wall.face)
 }
 
 /// Ticks in which the motion grows by a factor.

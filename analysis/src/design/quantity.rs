@@ -1,6 +1,6 @@
 //! The numbers of an environment that a design takes as far as they go.
 
-use firmware::environment::{Environment, Wall};
+use firmware::parameter::Parameter;
 use firmware::scene::Scene;
 
 /// Unit of a delay.
@@ -32,35 +32,11 @@ impl Quantity {
 
     /// The scene with this much of it; `None` where its environment has no such number.
     pub(super) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
-        let mut changed = *scene;
-        match (self, &mut changed.environment) {
-            (Self::Cancellation, Environment::FreeMode { residual, .. })
-            | (Self::Cancellation, Environment::FreeModeWall { residual, .. }) => {
-                *residual = scene.device.damping - value;
-            }
-            (Self::Delay, Environment::FreeMode { delay, .. }) => *delay = value as usize,
-            (Self::Delay, Environment::Rational(rational)) => rational.delay = value as usize,
-            (_, environment) => self.set_wall(wall_of(environment)?, value)?,
-        }
-        Some(changed)
-    }
-
-    fn set_wall(self, wall: &mut Wall, value: f64) -> Option<()> {
         match self {
-            Self::Stiffness => wall.stiffness = value,
-            Self::Damping => wall.damping = value,
-            Self::Delay => wall.delay = value as usize,
-            Self::Cancellation => return None,
+            Self::Stiffness => scene.with(Parameter::Stiffness, value),
+            Self::Damping => scene.with(Parameter::Damping, value),
+            Self::Delay => scene.with(Parameter::Delay, value),
+            Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
         }
-        Some(())
-    }
-}
-
-fn wall_of(environment: &mut Environment) -> Option<&mut Wall> {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => Some(wall),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
     }
 }

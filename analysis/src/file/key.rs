@@ -7,23 +7,15 @@
 //! Bounds here are about what a number can mean at all. Whether a scene with these numbers is
 //! safe is the certificate's question: a negative stiffness is a bad spring, not a bad file.
 
-use firmware::environment::{MAX_DEGREE, MAX_DELAY};
+use firmware::parameter::{Parameter, Range};
 
 use Presence::{Default, Needed, Optional};
 
-/// What a number must satisfy. Numbers are finite in every case.
+/// What a value must satisfy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// Any finite number.
-    Finite,
-    /// Greater than zero.
-    Positive,
-    /// Zero or more.
-    NotNegative,
-    /// At least zero and less than one.
-    Fraction,
-    /// A whole number from the first to the second, both included.
-    Whole(u32, u32),
+    /// A number in this range. Numbers are finite in every case.
+    Number(Range),
     /// Not a number at all, but this, in words that end a sentence.
     Other(Form, &'static str),
 }
@@ -48,28 +40,20 @@ pub enum Form {
 impl Bound {
     /// Whether `value` satisfies the bound.
     pub fn admits(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::Positive => value > 0.0,
-                Self::NotNegative => value >= 0.0,
-                Self::Fraction => (0.0..1.0).contains(&value),
-                Self::Whole(least, most) => {
-                    value.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&value)
-                }
-                Self::Other(..) => false,
-            }
+        matches!(self, Self::Number(range) if range.admits(value))
     }
 
     /// What the value must be, with its unit: ends a sentence that starts with "it must be".
     pub fn requirement(self, unit: &str) -> String {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         match self {
-            Self::Finite => format!("a finite number{}", unit_phrase(&unit)),
-            Self::Positive => format!("a finite number greater than 0{unit}"),
-            Self::NotNegative => format!("a finite number, 0{unit} or more"),
-            Self::Fraction => "a number of at least 0 and less than 1".to_owned(),
-            Self::Whole(least, most) => format!("a whole number from {least} to {most}{unit}"),
+            Self::Number(Range::Finite) => format!("a finite number{}", unit_phrase(&unit)),
+            Self::Number(Range::Positive) => format!("a finite number greater than 0{unit}"),
+            Self::Number(Range::NotNegative) => format!("a finite number, 0{unit} or more"),
+            Self::Number(Range::Fraction) => "a number of at least 0 and less than 1".to_owned(),
+            Self::Number(Range::Whole(least, most)) => {
+                format!("a whole number from {least} to {most}{unit}")
+            }
             Self::Other(_, text) => text.to_owned(),
         }
     }
@@ -105,13 +89,15 @@ pub struct Key {
     pub example: &'static str,
     /// What it is, in words.
     pub doc: &'static str,
+    /// The number of a scene that it is, if it is one.
+    pub parameter: Option<Parameter>,
 }
 
 impl Key {
     /// A file as a whole, which has no name.
     pub const fn root(requirement: &'static str) -> Self {
         let (bound, presence) = (Bound::Other(Form::Table, requirement), Presence::Needed);
-        Self { path: "", unit: "", bound, presence, example: "", doc: "" }
+        Self { path: "", unit: "", bound, presence, example: "", doc: "", parameter: None }
     }
 
     /// The name in its own table: what stands in the file.
@@ -130,16 +116,29 @@ impl Key {
     }
 }
 
+/// Name, unit and bound of a number of a scene, which are those of the firmware.
+const fn of(parameter: Parameter) -> Key {
+    Key {
+        path: parameter.key(),
+        unit: parameter.name_and_unit().1,
+        parameter: Some(parameter),
+        ..other("", "", Bound::Number(parameter.range()))
+    }
+}
+
+/// A key that is none.
+const fn other(path: &'static str, unit: &'static str, bound: Bound) -> Key {
+    let presence = Presence::Needed;
+    Key { path, unit, bound, presence, example: "", doc: "", parameter: None }
+}
+
 macro_rules! keys {
-    ($($(#[doc = $doc:literal])* $constant:ident = $path:literal, $unit:literal, $bound:expr,
-       $presence:expr, $example:literal;)*) => {
+    ($($(#[doc = $doc:literal])* $constant:ident = $key:expr, $presence:expr, $example:literal;)*) => {
         $($(#[doc = $doc])* pub const $constant: Key = Key {
-            path: $path,
-            unit: $unit,
-            bound: $bound,
             presence: $presence,
             example: $example,
             doc: concat!($($doc),*).trim_ascii(),
+            ..$key
         };)*
 
         /// All keys, in the order of the documentation.
@@ -147,10 +146,14 @@ macro_rules! keys {
     };
 }
 
-/// Largest degree as the bounds print it.
-const DEGREE: u32 = MAX_DEGREE as u32;
-/// Longest delay as the bounds print it.
-const DELAY: u32 = MAX_DELAY as u32;
+const FINITE: Bound = Bound::Number(Range::Finite);
+const POSITIVE: Bound = Bound::Number(Range::Positive);
+const NOT_NEGATIVE: Bound = Bound::Number(Range::NotNegative);
+const FRACTION: Bound = Bound::Number(Range::Fraction);
+
+const fn whole(least: u32, most: u32) -> Bound {
+    Bound::Number(Range::Whole(least, most))
+}
 
 const TABLE: Bound = Bound::Other(Form::Table, "a table");
 const POLYNOMIAL: Bound = Bound::Other(
@@ -165,199 +168,199 @@ const DELAYED_POLYNOMIAL: Bound = Bound::Other(
 
 keys! {
     /// Name of the scene, as reports and pictures show it.
-    NAME = "name", "", Bound::Other(Form::Text, "a string"),
+    NAME = other("name", "", Bound::Other(Form::Text, "a string")),
         Needed, "\"a wall\"";
 
     /// The machine that the hand holds.
-    DEVICE = "device", "", TABLE,
+    DEVICE = other("device", "", TABLE),
         Needed, "";
     /// Inertia of a rigid device. The certificate does not use it; simulations do.
-    INERTIA = "device.inertia", "kg m^2", Bound::Positive,
+    INERTIA = of(Parameter::Inertia),
         Needed, "2.2e-5";
     /// Viscous damping of a rigid device.
-    DEVICE_DAMPING = "device.damping", "N m s/rad", Bound::NotNegative,
+    DEVICE_DAMPING = of(Parameter::DeviceDamping),
         Needed, "0.022";
     /// Passivity `delta` of the device from torque to velocity, where less of it is to be counted on.
-    PASSIVITY = "device.passivity", "N m s/rad", Bound::NotNegative,
+    PASSIVITY = Key { bound: NOT_NEGATIVE, ..of(Parameter::Passivity) },
         Optional("the device's damping; of a chain, what is computed for it"), "0.0219";
     /// Dry (Coulomb) friction at the motor.
-    DEVICE_FRICTION = "device.friction", "N m", Bound::NotNegative,
+    DEVICE_FRICTION = other("device.friction", "N m", NOT_NEGATIVE),
         Optional("none that is counted on: the verdict does not say whether the device comes to rest"), "0.003";
     /// Masses of a chain, in place of inertia and damping: the motor's first, the hand's last.
-    MASS = "device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables"),
+    MASS = other("device.mass", "", Bound::Other(Form::Tables, "a list of 1 to 10 tables")),
         Optional("one rigid body, of `device.inertia` and `device.damping`"), "";
     /// Inertia of this mass.
-    MASS_INERTIA = "device.mass.inertia", "kg m^2", Bound::Positive,
+    MASS_INERTIA = other("device.mass.inertia", "kg m^2", POSITIVE),
         Needed, "2.0e-5";
     /// Viscous damping between this mass and the ground.
-    MASS_DAMPING = "device.mass.damping", "N m s/rad", Bound::NotNegative,
+    MASS_DAMPING = other("device.mass.damping", "N m s/rad", NOT_NEGATIVE),
         Default(0.0), "0.02";
     /// Shafts or cables of a chain: the first joins the first two masses.
-    LINK = "device.link", "", Bound::Other(Form::Tables, "a list of tables, one fewer than masses"),
+    LINK = other("device.link", "", Bound::Other(Form::Tables, "a list of tables, one fewer than masses")),
         Optional("none, which one mass needs"), "";
     /// Stiffness of this link. With no stiffness it must have damping.
-    LINK_STIFFNESS = "device.link.stiffness", "N m/rad", Bound::NotNegative,
+    LINK_STIFFNESS = other("device.link.stiffness", "N m/rad", NOT_NEGATIVE),
         Needed, "40.0";
     /// Viscous damping along this link.
-    LINK_DAMPING = "device.link.damping", "N m s/rad", Bound::NotNegative,
+    LINK_DAMPING = other("device.link.damping", "N m s/rad", NOT_NEGATIVE),
         Default(0.0), "0.015";
     /// Which end of the chain the encoder is on. At the hand's end of a flexible chain the device has
     /// no passivity, and nothing certifies.
-    ENCODER = "device.encoder", "", Bound::Other(Form::OneOf(&["motor", "hand"]), "\"motor\" or \"hand\""),
+    ENCODER = other("device.encoder", "", Bound::Other(Form::OneOf(&["motor", "hand"]), "\"motor\" or \"hand\"")),
         Optional("\"motor\""), "\"motor\"";
     /// Time constant of the amplifier's first-order lag. A device with one has no passivity, and
     /// nothing certifies; `simulate`, `stability` and `device` take it.
-    ACTUATOR_LAG = "device.actuator_lag", "s", Bound::NotNegative,
+    ACTUATOR_LAG = other("device.actuator_lag", "s", NOT_NEGATIVE),
         Default(0.0), "0.0";
 
     /// When the servo runs.
-    SERVO = "servo", "", TABLE,
+    SERVO = other("servo", "", TABLE),
         Needed, "";
     /// Time from one update of the torque to the next.
-    PERIOD = "servo.period", "s", Bound::Positive,
+    PERIOD = of(Parameter::Period),
         Needed, "0.001";
     /// Longest tolerated time between two updates, not less than the period.
-    WORST_PERIOD = "servo.worst_period", "s", Bound::Positive,
+    WORST_PERIOD = of(Parameter::WorstPeriod),
         Optional("the period: no update may be missed"), "0.001";
 
     /// The virtual spring between device and environment.
-    COUPLING = "coupling", "", TABLE,
+    COUPLING = other("coupling", "", TABLE),
         Optional("the connection is rigid"), "";
     /// Its stiffness. The paper's is twice the passivity over the period.
-    COUPLING_STIFFNESS = "coupling.stiffness", "N m/rad", Bound::Positive,
+    COUPLING_STIFFNESS = of(Parameter::CouplingStiffness),
         Needed, "44.0";
 
     /// What the hand shall feel.
-    ENVIRONMENT = "environment", "", TABLE,
+    ENVIRONMENT = other("environment", "", TABLE),
         Needed, "";
     /// Which environment.
-    TYPE = "environment.type", "", Bound::Other(
+    TYPE = other("environment.type", "", Bound::Other(
         Form::OneOf(&[]),
         "\"delayed-spring\", \"damper-wall\", \"free-mode\", \"free-mode-wall\" or \"rational\""
-    ),
+    )),
         Needed, "\"damper-wall\"";
     /// Stiffness of the spring or wall.
-    STIFFNESS = "environment.stiffness", "N m/rad", Bound::Finite,
+    STIFFNESS = of(Parameter::Stiffness),
         Needed, "20.0";
     /// Damping of the wall.
-    DAMPING = "environment.damping", "N m s/rad", Bound::Finite,
+    DAMPING = of(Parameter::Damping),
         Needed, "0.005";
     /// Delay from a sample to its torque: 1 where the torque is latched at the next tick, as on every
     /// board; 0 where it is written at once.
-    DELAY_SAMPLES = "environment.delay", "samples", Bound::Whole(0, DELAY),
+    DELAY_SAMPLES = of(Parameter::Delay),
         Default(0.0), "1";
     /// Pole of the low-pass filter on the wall's velocity; 0 filters nothing.
-    FILTER = "environment.filter", "", Bound::Fraction,
+    FILTER = of(Parameter::Filter),
         Optional("no filter"), "0.1";
     /// Angle at which the wall is at rest, or where it begins.
-    FACE = "environment.face", "rad", Bound::Finite,
+    FACE = of(Parameter::Face),
         Default(0.0), "0.05";
     /// Whether the wall is felt only beyond its face.
-    ONE_SIDED = "environment.one_sided", "", Bound::Other(Form::Boolean, "true or false"),
+    ONE_SIDED = other("environment.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
         Optional("false: the wall pulls as well as it pushes"), "true";
     /// Damping that free mode leaves in the hand.
-    RESIDUAL = "environment.residual", "N m s/rad", Bound::Finite,
+    RESIDUAL = of(Parameter::Residual),
         Needed, "0.018";
     /// Numerator of the environment, from position to torque.
-    NUMERATOR = "environment.numerator", "", POLYNOMIAL,
+    NUMERATOR = other("environment.numerator", "", POLYNOMIAL),
         Needed, "[5.0, -2.0]";
     /// Denominator of the environment.
-    DENOMINATOR = "environment.denominator", "", DELAYED_POLYNOMIAL,
+    DENOMINATOR = other("environment.denominator", "", DELAYED_POLYNOMIAL),
         Needed, "[1.0, -0.3, 0.1, 0.0]";
     /// Zeros at z = 1 that multiply the numerator. With them its degree is at most 8.
-    UNIT_ZEROS = "environment.unit_zeros", "", Bound::Whole(0, DEGREE),
+    UNIT_ZEROS = of(Parameter::UnitZeros),
         Default(0.0), "0";
 
     /// What a simulation starts from, and the torque of the hand. `run` does not read it.
-    SIMULATION = "simulation", "", TABLE,
+    SIMULATION = other("simulation", "", TABLE),
         Optional("nothing that `simulate` could start from"), "";
     /// Number of samples.
-    SAMPLES = "simulation.samples", "samples", Bound::Whole(1, 100_000_000),
+    SAMPLES = other("simulation.samples", "samples", whole(1, 100_000_000)),
         Needed, "2000";
     /// Position at sample 0.
-    POSITION = "simulation.position", "rad", Bound::Finite,
+    POSITION = other("simulation.position", "rad", FINITE),
         Default(0.0), "0.001";
     /// Velocity at sample 0.
-    VELOCITY = "simulation.velocity", "rad/s", Bound::Finite,
+    VELOCITY = other("simulation.velocity", "rad/s", FINITE),
         Default(0.0), "0.1";
     /// Torque of the hand, a value a sample, held over it; none after the last. The hand has one of
     /// `torque`, `torque_file`, `torque_sine` and `torque_pulses`.
-    TORQUE = "simulation.torque", "", Bound::Other(Form::Numbers, "a list of finite numbers in N m"),
+    TORQUE = other("simulation.torque", "", Bound::Other(Form::Numbers, "a list of finite numbers in N m")),
         Optional("no torque of this kind"), "[0.1, 0.2]";
     /// The same in a file, one number a line; its name is relative to the scene file.
-    TORQUE_FILE = "simulation.torque_file", "", Bound::Other(Form::Text, "the name of a file"),
+    TORQUE_FILE = other("simulation.torque_file", "", Bound::Other(Form::Text, "the name of a file")),
         Optional("no torque of this kind"), "\"push.csv\"";
     /// A sine torque of the hand.
-    TORQUE_SINE = "simulation.torque_sine", "", TABLE,
+    TORQUE_SINE = other("simulation.torque_sine", "", TABLE),
         Optional("no torque of this kind"), "{ amplitude = 0.01, omega = 60.0 }";
     /// Amplitude of the sine.
-    SINE_AMPLITUDE = "simulation.torque_sine.amplitude", "N m", Bound::Finite,
+    SINE_AMPLITUDE = other("simulation.torque_sine.amplitude", "N m", FINITE),
         Needed, "0.01";
     /// Angular frequency of the sine.
-    SINE_OMEGA = "simulation.torque_sine.omega", "rad/s", Bound::NotNegative,
+    SINE_OMEGA = other("simulation.torque_sine.omega", "rad/s", NOT_NEGATIVE),
         Needed, "60.0";
     /// Phase of the sine at sample 0.
-    SINE_PHASE = "simulation.torque_sine.phase", "rad", Bound::Finite,
+    SINE_PHASE = other("simulation.torque_sine.phase", "rad", FINITE),
         Default(0.0), "0.5";
     /// Whether the sine is held over each sample.
-    SINE_HELD = "simulation.torque_sine.held", "", Bound::Other(Form::Boolean, "true or false"),
+    SINE_HELD = other("simulation.torque_sine.held", "", Bound::Other(Form::Boolean, "true or false")),
         Optional("false: continuous in time"), "true";
     /// Pulses of the hand's torque.
-    TORQUE_PULSES = "simulation.torque_pulses", "", TABLE,
+    TORQUE_PULSES = other("simulation.torque_pulses", "", TABLE),
         Optional("no torque of this kind"), "{ amplitude = 0.1, every = 500, length = 250 }";
     /// Height of the pulses.
-    PULSE_AMPLITUDE = "simulation.torque_pulses.amplitude", "N m", Bound::Finite,
+    PULSE_AMPLITUDE = other("simulation.torque_pulses.amplitude", "N m", FINITE),
         Needed, "0.1";
     /// From the start of one pulse to the start of the next.
-    PULSE_EVERY = "simulation.torque_pulses.every", "samples", Bound::Whole(1, 100_000_000),
+    PULSE_EVERY = other("simulation.torque_pulses.every", "samples", whole(1, 100_000_000)),
         Needed, "500";
     /// How long a pulse lasts.
-    PULSE_LENGTH = "simulation.torque_pulses.length", "samples", Bound::Whole(1, 100_000_000),
+    PULSE_LENGTH = other("simulation.torque_pulses.length", "samples", whole(1, 100_000_000)),
         Needed, "250";
 
     /// Dry friction in the simulation, where it is not that of the device.
-    FRICTION = "simulation.friction", "N m", Bound::NotNegative,
+    FRICTION = other("simulation.friction", "N m", NOT_NEGATIVE),
         Optional("`device.friction`, or none"), "0.002";
     /// Time from a sample to its torque, less than the period.
-    LATENCY = "simulation.latency", "s", Bound::NotNegative,
+    LATENCY = other("simulation.latency", "s", NOT_NEGATIVE),
         Default(0.0), "0.0002";
     /// Ticks in which the servo does not run: every so many, or by chance.
-    MISSED = "simulation.missed", "", TABLE,
+    MISSED = other("simulation.missed", "", TABLE),
         Optional("none is missed"), "{ fraction = 0.01, seed = 1 }";
     /// Of so many ticks the last is missed.
-    MISSED_EVERY = "simulation.missed.every", "ticks", Bound::Whole(2, 1_000_000),
+    MISSED_EVERY = other("simulation.missed.every", "ticks", whole(2, 1_000_000)),
         Optional("`simulation.missed.fraction` decides"), "2";
     /// Probability that a tick is missed.
-    MISSED_FRACTION = "simulation.missed.fraction", "", Bound::Fraction,
+    MISSED_FRACTION = other("simulation.missed.fraction", "", FRACTION),
         Optional("`simulation.missed.every` decides"), "0.01";
     /// Seed of the chance: the same seed misses the same ticks.
-    MISSED_SEED = "simulation.missed.seed", "", Bound::Whole(0, u32::MAX),
+    MISSED_SEED = other("simulation.missed.seed", "", whole(0, u32::MAX)),
         Default(0.0), "1";
 
     /// A passive hand that holds the device, for `simulate`, `stability` and `run`.
-    HUMAN = "human", "", TABLE,
+    HUMAN = other("human", "", TABLE),
         Optional("nobody holds the device; in `run`, the hand of the demonstration"), "";
     /// Inertia of the hand.
-    HUMAN_INERTIA = "human.inertia", "kg m^2", Bound::NotNegative,
+    HUMAN_INERTIA = other("human.inertia", "kg m^2", NOT_NEGATIVE),
         Default(0.0), "1e-4";
     /// Damping of the hand.
-    HUMAN_DAMPING = "human.damping", "N m s/rad", Bound::NotNegative,
+    HUMAN_DAMPING = other("human.damping", "N m s/rad", NOT_NEGATIVE),
         Default(0.0), "0.02";
     /// Stiffness of the hand.
-    HUMAN_STIFFNESS = "human.stiffness", "N m/rad", Bound::NotNegative,
+    HUMAN_STIFFNESS = other("human.stiffness", "N m/rad", NOT_NEGATIVE),
         Default(0.0), "6.0";
 
     /// Bounds of the hardware.
-    LIMITS = "limits", "", TABLE,
+    LIMITS = other("limits", "", TABLE),
         Optional("no limits"), "";
     /// Largest torque that the servo gives; it becomes part of what is certified.
-    TORQUE_LIMIT = "limits.torque", "N m", Bound::Positive,
+    TORQUE_LIMIT = of(Parameter::TorqueLimit),
         Optional("no limit: what is certified is the linear loop, and a board refuses it where only that passes"), "1.0";
     /// Angle of one encoder count.
-    ENCODER_STEP = "limits.encoder_step", "rad", Bound::Positive,
+    ENCODER_STEP = other("limits.encoder_step", "rad", POSITIVE),
         Optional("not known: nothing is said of rest, and `run` takes 65536 counts a turn"), "1e-4";
     /// Torque of the motor at the largest code of the DAC.
-    FULL_SCALE = "limits.full_scale", "N m", Bound::Positive,
+    FULL_SCALE = other("limits.full_scale", "N m", POSITIVE),
         Optional("not known: `run` takes the torque limit, or 5 N m"), "2.0";
 }
 
@@ -376,9 +379,9 @@ mod tests {
 
     #[test]
     fn bounds_at_their_edges() {
-        assert!(!Bound::Positive.admits(0.0) && Bound::Positive.admits(f64::MIN_POSITIVE));
-        assert!(Bound::NotNegative.admits(0.0) && !Bound::NotNegative.admits(-1e-300));
-        assert!(Bound::Fraction.admits(0.0) && !Bound::Fraction.admits(1.0));
+        assert!(!POSITIVE.admits(0.0) && POSITIVE.admits(f64::MIN_POSITIVE));
+        assert!(NOT_NEGATIVE.admits(0.0) && !NOT_NEGATIVE.admits(-1e-300));
+        assert!(FRACTION.admits(0.0) && !FRACTION.admits(1.0));
         let delay = DELAY_SAMPLES.bound;
         assert!(delay.admits(8.0) && !delay.admits(9.0) && !delay.admits(0.5));
     }

@@ -1,5 +1,7 @@
 //! The types of environment, and which keys each takes.
 
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
+
 use super::key::{self, Key};
 
 /// A type of environment.
@@ -13,6 +15,8 @@ pub struct Kind {
     pub needed: &'static [&'static Key],
     /// The keys that it may have.
     pub optional: &'static [&'static Key],
+    /// One without numbers.
+    pub blank: Environment,
     /// Values of its example, where those of the keys' would not certify.
     pub values: &'static [(&'static Key, &'static str)],
 }
@@ -21,6 +25,11 @@ pub struct Kind {
 /// that is forgotten is one that is not accounted for.
 const OF_A_WALL: &[&Key] = &[&key::FILTER, &key::FACE, &key::ONE_SIDED];
 
+const ZERO: Coefficients = match Coefficients::new(&[0.0]) {
+    Some(zero) => zero,
+    None => panic!("one coefficient fits"),
+};
+
 /// All types, in the order of the documentation.
 pub const ALL: &[Kind] = &[
     Kind {
@@ -28,6 +37,7 @@ pub const ALL: &[Kind] = &[
         doc: "A spring without a damper.",
         needed: &[&key::STIFFNESS, &key::DELAY_SAMPLES],
         optional: &[],
+        blank: Environment::DelayedSpring(Wall::spring(0.0, 0)),
         values: &[],
     },
     Kind {
@@ -35,6 +45,7 @@ pub const ALL: &[Kind] = &[
         doc: "A wall: spring and damper, everywhere or behind a face.",
         needed: &[&key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
         optional: OF_A_WALL,
+        blank: Environment::DamperWall(Wall::spring(0.0, 0)),
         values: &[],
     },
     Kind {
@@ -42,6 +53,7 @@ pub const ALL: &[Kind] = &[
         doc: "Free motion, with the device's own damping cancelled as far as the residual.",
         needed: &[&key::RESIDUAL],
         optional: &[&key::DELAY_SAMPLES],
+        blank: Environment::FreeMode { residual: 0.0, delay: 0 },
         values: &[],
     },
     Kind {
@@ -49,6 +61,7 @@ pub const ALL: &[Kind] = &[
         doc: "Free motion with a wall in it.",
         needed: &[&key::RESIDUAL, &key::STIFFNESS, &key::DAMPING, &key::DELAY_SAMPLES],
         optional: OF_A_WALL,
+        blank: Environment::FreeModeWall { residual: 0.0, wall: Wall::spring(0.0, 0) },
         values: &[(&key::STIFFNESS, "5.0"), (&key::DAMPING, "0.003")],
     },
     Kind {
@@ -56,6 +69,12 @@ pub const ALL: &[Kind] = &[
         doc: "Any rational transfer function from position to torque.",
         needed: &[&key::NUMERATOR, &key::DENOMINATOR],
         optional: &[&key::DELAY_SAMPLES, &key::UNIT_ZEROS],
+        blank: Environment::Rational(Rational {
+            numerator: ZERO,
+            denominator: ZERO,
+            delay: 0,
+            unit_zeros: 0,
+        }),
         values: &[],
     },
 ];
@@ -64,6 +83,22 @@ impl Kind {
     /// The type of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         ALL.iter().find(|kind| kind.name == name)
+    }
+
+    /// The type that a file has for an environment; `None` for what no file can say.
+    pub fn of(environment: &Environment) -> Option<&'static Self> {
+        let name = match environment {
+            // A spring with a face is a wall without damping to the reader of a file.
+            Environment::DelayedSpring(Wall { one_sided: false, face: 0.0, .. }) => {
+                "delayed-spring"
+            }
+            Environment::DelayedSpring(_) | Environment::DamperWall(_) => "damper-wall",
+            Environment::FreeMode { .. } => "free-mode",
+            Environment::FreeModeWall { .. } => "free-mode-wall",
+            Environment::Rational(_) => "rational",
+            Environment::Stated(_) => return None,
+        };
+        Self::find(name)
     }
 
     /// Its keys, first those that it must have.

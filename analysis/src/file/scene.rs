@@ -1,11 +1,11 @@
 //! A scene file's tables turned into a [`Scene`].
 
 use firmware::certificate::Resolution;
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall};
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
 use firmware::scene::{Coupling, Scene, Timing};
 
 use super::device::{self, Purpose};
-use super::faults::{Faults, Read};
+use super::faults::{Faults, Read, all};
 use super::key::{self, Key};
 use super::kind::Kind;
 use super::section::{Found, Section};
@@ -125,45 +125,24 @@ fn environment_of(mut section: Section<'_>) -> Read<Environment> {
 }
 
 fn of_kind(kind: &Kind, section: &mut Section<'_>) -> Read<Environment> {
-    match kind.name {
-        "delayed-spring" => spring(section).map(Environment::DelayedSpring),
-        "damper-wall" => wall(section).map(Environment::DamperWall),
-        "free-mode" => {
-            let residual = section.number(&key::RESIDUAL);
-            let delay = section.whole(&key::DELAY_SAMPLES);
-            Ok(Environment::FreeMode { residual: residual?, delay: delay? })
-        }
-        "free-mode-wall" => {
-            let residual = section.number(&key::RESIDUAL);
-            let wall = wall(section);
-            Ok(Environment::FreeModeWall { residual: residual?, wall: wall? })
-        }
-        // The last of the table of types.
-        _ => rational(section).map(Environment::Rational),
+    if matches!(kind.blank, Environment::Rational(_)) {
+        return rational(section).map(Environment::Rational);
     }
-}
-
-fn spring(section: &mut Section<'_>) -> Read<Wall> {
-    let stiffness = section.number(&key::STIFFNESS);
-    let delay = section.whole(&key::DELAY_SAMPLES);
-    let (stiffness, delay) = (stiffness?, delay?);
-    Ok(Wall { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false })
-}
-
-fn wall(section: &mut Section<'_>) -> Read<Wall> {
-    let [stiffness, damping, face] =
-        [&key::STIFFNESS, &key::DAMPING, &key::FACE].map(|key| section.number(key));
-    let filter = section.optional(&key::FILTER);
-    let delay = section.whole(&key::DELAY_SAMPLES);
-    let one_sided = section.boolean(&key::ONE_SIDED);
-    Ok(Wall {
-        stiffness: stiffness?,
-        damping: damping?,
-        filter: filter?,
-        delay: delay?,
-        face: face?,
-        one_sided: one_sided?.unwrap_or(false),
-    })
+    let numbers = kind.keys().filter_map(|key| Some((key, key.parameter?)));
+    let numbers = all(numbers.map(|(key, parameter)| Ok((parameter, section.value(key)?))));
+    let one_sided = match kind.keys().any(|key| *key == key::ONE_SIDED) {
+        true => section.boolean(&key::ONE_SIDED)?,
+        false => None,
+    };
+    let mut environment = kind.blank;
+    for (parameter, value) in numbers? {
+        let changed = value.and_then(|value| environment.with(parameter, value));
+        environment = changed.unwrap_or(environment);
+    }
+    if let Some(wall) = environment.wall_mut() {
+        wall.one_sided = one_sided.unwrap_or(false);
+    }
+    Ok(environment)
 }
 
 fn rational(section: &mut Section<'_>) -> Read<Rational> {

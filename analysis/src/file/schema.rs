@@ -1,6 +1,7 @@
 //! The JSON schema of a scene file, for editors: they complete keys, show what each means, and
 //! underline what is out of bounds. What depends on several keys is left to the reader of the file.
 
+use firmware::parameter::Range;
 use serde_json::{Map, Value, json};
 
 use super::key::{self, Bound, Form, Key, Presence};
@@ -56,11 +57,13 @@ fn object(keys: impl Iterator<Item = &'static Key>, is_needed: impl Fn(&Key) -> 
 
 fn property(key: &Key) -> Value {
     let mut schema = match key.bound {
-        Bound::Finite => json!({ "type": "number" }),
-        Bound::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Bound::NotNegative => json!({ "type": "number", "minimum": 0 }),
-        Bound::Fraction => json!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 }),
-        Bound::Whole(least, most) => {
+        Bound::Number(Range::Finite) => json!({ "type": "number" }),
+        Bound::Number(Range::Positive) => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Bound::Number(Range::NotNegative) => json!({ "type": "number", "minimum": 0 }),
+        Bound::Number(Range::Fraction) => {
+            json!({ "type": "number", "minimum": 0, "exclusiveMaximum": 1 })
+        }
+        Bound::Number(Range::Whole(least, most)) => {
             json!({ "type": "integer", "minimum": least, "maximum": most })
         }
         Bound::Other(form, _) => match form {

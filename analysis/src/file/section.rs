@@ -123,6 +123,14 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// The number of that key in the same way; `None` where it is left out and need not be there.
+    pub fn value(&mut self, key: &Key) -> Read<Option<f64>> {
+        match key.presence {
+            Presence::Optional(_) => self.optional(key),
+            _ => self.number(key).map(Some),
+        }
+    }
+
     /// The whole number of that key, in the same way.
     pub fn whole(&mut self, key: &Key) -> Read<usize> {
         Ok(self.number(key)? as usize)

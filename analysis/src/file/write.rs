@@ -4,9 +4,12 @@ mod moving;
 
 use std::fmt::Write;
 
-use firmware::environment::{Coefficients, Environment, Wall};
+use firmware::environment::{Coefficients, Environment};
+use firmware::parameter::{Parameter, Range};
 use firmware::scene::{Coupling, Device};
 
+use super::key::{self, Bound, Key, Presence};
+use super::kind::Kind;
 use super::scene::SceneFile;
 use crate::chain::{Chain, EncoderPlace};
 
@@ -75,53 +78,44 @@ fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Opt
 
 /// The type of an environment as a file has it.
 pub fn kind(environment: &Environment) -> &'static str {
-    match environment {
-        // A spring with a face is a wall without damping to the reader of a file.
-        Environment::DelayedSpring(wall) if !wall.one_sided && wall.face == 0.0 => "delayed-spring",
-        Environment::DelayedSpring(_) | Environment::DamperWall(_) => "damper-wall",
-        Environment::FreeMode { .. } => "free-mode",
-        Environment::FreeModeWall { .. } => "free-mode-wall",
-        Environment::Rational(_) => "rational",
-    }
+    Kind::of(environment).map_or("stated", |kind| kind.name)
 }
 
 fn environment(lines: &mut Vec<String>, environment: &Environment) {
-    let kind = kind(environment);
-    lines.push(format!("type = \"{kind}\""));
-    match environment {
-        Environment::DelayedSpring(spring) => {
-            wall(lines, &Wall { damping: 0.0, filter: None, ..*spring }, kind == "damper-wall");
+    let Some(kind) = Kind::of(environment) else { return };
+    lines.push(format!("type = \"{}\"", kind.name));
+    for key in kind.keys() {
+        let is_default =
+            |value| !kind.needed.contains(&key) && key.presence == Presence::Default(value);
+        // A spring that is written as a wall has a damping of 0.
+        let value = match key.parameter {
+            Some(Parameter::Damping) => environment.get(Parameter::Damping).or(Some(0.0)),
+            Some(parameter) => environment.get(parameter),
+            None => None,
+        };
+        match (value, environment.rational()) {
+            (Some(value), _) if !is_default(value) => {
+                lines.push(format!("{} = {}", key.name(), number_of(key, value)));
+            }
+            (None, Some(rational)) if *key == key::NUMERATOR => {
+                lines.push(format!("numerator = {}", list(&rational.numerator)));
+            }
+            (None, Some(rational)) if *key == key::DENOMINATOR => {
+                lines.push(format!("denominator = {}", list(&rational.denominator)));
+            }
+            _ => {}
         }
-        Environment::DamperWall(with_damper) => wall(lines, with_damper, true),
-        Environment::FreeMode { residual, delay } => {
-            lines.push(format!("residual = {residual:?}\ndelay = {delay}"));
-        }
-        Environment::FreeModeWall { residual, wall: behind } => {
-            lines.push(format!("residual = {residual:?}"));
-            wall(lines, behind, true);
-        }
-        Environment::Rational(rational) => {
-            lines.push(format!("numerator = {}", list(&rational.numerator)));
-            lines.push(format!("denominator = {}", list(&rational.denominator)));
-            lines.push(format!("delay = {}\nunit_zeros = {}", rational.delay, rational.unit_zeros));
-        }
+    }
+    if environment.wall().is_some_and(|wall| wall.one_sided) {
+        lines.push("one_sided = true".to_owned());
     }
 }
 
-fn wall(lines: &mut Vec<String>, wall: &Wall, is_wall: bool) {
-    lines.push(format!("stiffness = {:?}", wall.stiffness));
-    if is_wall {
-        lines.push(format!("damping = {:?}", wall.damping));
-    }
-    lines.push(format!("delay = {}", wall.delay));
-    if let Some(pole) = wall.filter {
-        lines.push(format!("filter = {pole:?}"));
-    }
-    if wall.face != 0.0 {
-        lines.push(format!("face = {:?}", wall.face));
-    }
-    if wall.one_sided {
-        lines.push("one_sided = true".to_owned());
+/// A number as TOML has it, a whole one without a point.
+fn number_of(key: &Key, value: f64) -> String {
+    match key.bound {
+        Bound::Number(Range::Whole(..)) => format!("{value}"),
+        _ => format!("{value:?}"),
     }
 }
 

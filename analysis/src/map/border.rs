@@ -71,7 +71,7 @@ impl Formula {
 }
 
 fn is_linear(scene: &Scene) -> bool {
-    scene.torque_limit.is_none() && crate::simulation::wall(scene).is_none_or(|w| !w.one_sided)
+    scene.torque_limit.is_none() && scene.environment.wall().is_none_or(|w| !w.one_sided)
 }
 
 /// The border on which a closed form reaches its limit: none of the points that it encloses is
@@ -118,6 +118,7 @@ fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
         }
         Environment::FreeModeWall { .. }
         | Environment::FreeMode { .. }
+        | Environment::Stated(_)
         | Environment::Rational(_) => None,
     }
 }

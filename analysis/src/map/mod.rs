@@ -112,7 +112,7 @@ impl Family {
     }
 
     fn on(name: &str, alone: Experiment) -> Result<Self, MapError> {
-        if crate::simulation::wall(&alone.scene).is_none() {
+        if alone.scene.environment.wall().is_none() {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
         let tick = alone.tick(Stride::default())?;

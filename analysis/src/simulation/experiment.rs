@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use firmware::environment::{Environment, Wall};
 use firmware::scene::Scene;
 
 use super::drive::Drive;
@@ -101,7 +100,8 @@ impl Experiment {
 
     /// Whether the loop is linear and the same in every tick.
     pub(super) fn is_linear(&self) -> bool {
-        let centred = wall(&self.scene).is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
+        let centred =
+            self.scene.environment.wall().is_none_or(|wall| !wall.one_sided && wall.face == 0.0);
         let unlimited = self.scene.torque_limit.is_none() && self.encoder_step.is_none();
         centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
     }
@@ -122,16 +122,6 @@ impl Experiment {
             period: self.scene.timing.period,
             latency: self.latency,
         }
-    }
-}
-
-/// The wall of a scene, if it has one.
-pub(crate) fn wall(scene: &Scene) -> Option<&Wall> {
-    match &scene.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => Some(wall),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
     }
 }
 

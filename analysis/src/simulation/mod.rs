@@ -40,7 +40,6 @@ mod trajectory;
 mod general;
 
 pub use error::SimulationError;
-pub(crate) use experiment::wall;
 pub use experiment::{Experiment, Stride};
 pub(crate) use general::Machine;
 pub use trajectory::{Columns, Trajectory};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use firmware::environment::Environment;
-use firmware::scene::{Coupling, Scene};
+use firmware::parameter::Parameter;
+use firmware::scene::Coupling;
 use nalgebra::Complex;
 
 use super::eigenvalues::eigenvalues;
@@ -12,18 +12,6 @@ use crate::simulation::closed::transfers;
 use crate::simulation::plant::POSITION;
 use crate::simulation::tick::Tick;
 use crate::simulation::{Experiment, SimulationError, Stride};
-
-/// The same scene with another stiffness of its environment; `None` where that has none.
-pub fn with_stiffness(scene: &Scene, stiffness: f64) -> Option<Scene> {
-    let mut scene = *scene;
-    match &mut scene.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.stiffness = stiffness,
-        Environment::FreeMode { .. } | Environment::Rational(_) => return None,
-    }
-    Some(scene)
-}
 
 /// The stiffnesses at which some eigenvalue is on the unit circle.
 pub(super) struct Borders {
@@ -42,7 +30,7 @@ impl Borders {
         // So stiff that what does not depend on the stiffness has no digits left in the sum.
         let unit = 1e6 * (device.damping / period + device.inertia / (period * period));
         let environment = |stiffness: f64| -> Result<Response, SimulationError> {
-            let changed = with_stiffness(scene, stiffness).unwrap_or(*scene);
+            let changed = scene.with(Parameter::Stiffness, stiffness).unwrap_or(*scene);
             Ok(Response::new(transfers(&changed)?.environment))
         };
         Ok(Self {

@@ -8,6 +8,7 @@
 mod borders;
 mod eigenvalues;
 
+use firmware::parameter::Parameter;
 use std::fmt;
 
 use nalgebra::{Complex, DMatrix};
@@ -16,7 +17,6 @@ use serde::Serialize;
 use crate::simulation::closed::ClosedLoop;
 use crate::simulation::{Experiment, SimulationError, Stride};
 
-pub use borders::with_stiffness;
 pub use eigenvalues::{eigenvalues, radius};
 
 use borders::Borders;
@@ -131,12 +131,14 @@ pub fn critical_stiffness(
 ) -> Result<Option<f64>, SimulationError> {
     /// What eigenvalues are off by, when the slowest of a heavy machine is next to 1.
     const ROUNDING: f64 = 1e-12;
-    if with_stiffness(&experiment.scene, 0.0).is_none() {
+    if experiment.scene.get(Parameter::Stiffness).is_none() {
         return Ok(None);
     }
     let borders = Borders::new(experiment, stride)?.all();
     let is_stable = |stiffness: f64| -> Result<bool, SimulationError> {
-        let Some(scene) = with_stiffness(&experiment.scene, stiffness) else { return Ok(false) };
+        let Some(scene) = experiment.scene.with(Parameter::Stiffness, stiffness) else {
+            return Ok(false);
+        };
         let changed = Experiment { scene, ..experiment.clone() };
         let closed = closed_loop(&changed, stride)?;
         Ok(radius(&eigenvalues(&closed.matrix)?) <= 1.0 + ROUNDING)

@@ -95,7 +95,7 @@ fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides
             continue;
         };
         let at = |stiffness: f64| {
-            let scene = with_stiffness(&experiment.scene, stiffness).unwrap();
+            let scene = experiment.scene.with(Parameter::Stiffness, stiffness).unwrap();
             judge(&Experiment { scene, ..experiment.clone() }, Stride::default()).unwrap()
         };
         near(at(limit).spectral_radius, 1.0, 1e-11);
@@ -149,7 +149,7 @@ fn the_crossing_is_the_first_that_a_scan_sees() {
         let Environment::DelayedSpring(wall) = experiment.scene.environment else { panic!() };
         experiment.scene.environment = Environment::DamperWall(Wall { damping, ..wall });
         let stable = |stiffness: f64| {
-            let scene = with_stiffness(&experiment.scene, stiffness).unwrap();
+            let scene = experiment.scene.with(Parameter::Stiffness, stiffness).unwrap();
             let experiment = Experiment { scene, ..experiment.clone() };
             let closed = closed_loop(&experiment, Stride::default()).unwrap();
             radius(&eigenvalues(&closed.matrix).unwrap()) <= 1.0

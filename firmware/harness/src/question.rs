@@ -3,7 +3,7 @@
 //! The certificate is judged by the compiler, by the host and by the board; this is how a test asks
 //! a board, so that the three can be compared bit for bit. It is not how a scene gets to a servo.
 
-use firmware::certificate::{Answer, Assessment, assess};
+use firmware::certificate::{Answer, Assessment, Parameter, assess};
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -14,9 +14,9 @@ const TERMS: usize = MAX_DEGREE + 1;
 /// A scene as 64-bit words; an `f64` is its bits.
 pub type Question = [u64; WORDS];
 
-/// Words of a scene: 11 around the environment, its kind, a wall and a residual, a rational
-/// function.
-const WORDS: usize = 11 + 1 + (7 + 1) + (2 + 2 * (1 + TERMS));
+/// Words of a scene: the type of its environment, each number with whether it is there, the side of a
+/// wall, and two polynomials.
+const WORDS: usize = 1 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
 
 /// An enclosure's ends as bits; `None` where the index does not exist.
 pub type Ends = Option<(u64, u64)>;
@@ -42,35 +42,23 @@ pub type ReplyWords = [u64; 9];
 /// The words of a scene.
 pub fn ask(scene: &Scene) -> Question {
     let mut words = Cursor { words: [0; _], next: 0 };
-    words.number(scene.device.inertia);
-    words.number(scene.device.damping);
-    words.optional(scene.device.passivity);
-    words.number(scene.timing.period);
-    words.optional(scene.timing.worst_period);
-    words.optional(match scene.coupling {
-        Coupling::Rigid => None,
-        Coupling::Spring { stiffness } => Some(stiffness),
+    words.push(match scene.environment {
+        Environment::DelayedSpring(_) => 0,
+        Environment::DamperWall(_) => 1,
+        Environment::FreeMode { .. } => 2,
+        Environment::FreeModeWall { .. } => 3,
+        Environment::Rational(_) => 4,
+        Environment::Stated(_) => 5,
     });
-    words.optional(scene.torque_limit);
-    let (kind, wall, residual, rational) = match scene.environment {
-        Environment::DelayedSpring(wall) => (0, wall, 0.0, NO_RATIONAL),
-        Environment::DamperWall(wall) => (1, wall, 0.0, NO_RATIONAL),
-        Environment::FreeMode { residual, delay } => {
-            (2, Wall { delay, ..NO_WALL }, residual, NO_RATIONAL)
-        }
-        Environment::FreeModeWall { residual, wall } => (3, wall, residual, NO_RATIONAL),
-        Environment::Rational(rational) => (4, NO_WALL, 0.0, rational),
-    };
-    words.push(kind);
-    words.wall(&wall);
-    words.number(residual);
-    words.rational(&rational);
+    for parameter in Parameter::ALL {
+        words.optional(scene.get(*parameter));
+    }
+    words.push(scene.environment.wall().is_some_and(|wall| wall.one_sided).into());
+    let rational = scene.environment.rational().unwrap_or(&NO_RATIONAL);
+    words.polynomial(&rational.numerator);
+    words.polynomial(&rational.denominator);
     words.words
 }
-
-/// Stands in where an environment has no wall.
-const NO_WALL: Wall =
-    Wall { stiffness: 0.0, damping: 0.0, filter: None, delay: 0, face: 0.0, one_sided: false };
 
 /// A polynomial that says nothing.
 const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
@@ -82,33 +70,44 @@ const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
 const NO_RATIONAL: Rational =
     Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
 
-/// The scene of the words; `None` if they are none.
+/// A scene without numbers.
+const BLANK: Scene = Scene {
+    device: Device { inertia: 0.0, damping: 0.0, passivity: None },
+    timing: Timing { period: 0.0, worst_period: None },
+    coupling: Coupling::Rigid,
+    environment: Environment::Rational(NO_RATIONAL),
+    torque_limit: None,
+};
+
+/// The scene of the words; `None` if they are none. Of what a type of environment only states, no board
+/// here knows a law.
 pub fn read(question: &Question) -> Option<Scene> {
     let mut words = Cursor { words: *question, next: 0 };
-    let device = Device {
-        inertia: words.take_number(),
-        damping: words.take_number(),
-        passivity: words.take_optional(),
-    };
-    let timing = Timing { period: words.take_number(), worst_period: words.take_optional() };
-    let coupling = match words.take_optional() {
-        None => Coupling::Rigid,
-        Some(stiffness) => Coupling::Spring { stiffness },
-    };
-    let torque_limit = words.take_optional();
     let kind = words.take();
-    let wall = words.take_wall();
-    let residual = words.take_number();
-    let rational = words.take_rational()?;
+    let wall = Wall::spring(0.0, 0);
     let environment = match kind {
         0 => Environment::DelayedSpring(wall),
         1 => Environment::DamperWall(wall),
-        2 => Environment::FreeMode { residual, delay: wall.delay },
-        3 => Environment::FreeModeWall { residual, wall },
-        4 => Environment::Rational(rational),
+        2 => Environment::FreeMode { residual: 0.0, delay: 0 },
+        3 => Environment::FreeModeWall { residual: 0.0, wall },
+        4 => Environment::Rational(NO_RATIONAL),
         _ => return None,
     };
-    Some(Scene { device, timing, coupling, environment, torque_limit })
+    let mut scene = Scene { environment, ..BLANK };
+    for parameter in Parameter::ALL {
+        if let Some(value) = words.take_optional() {
+            scene = scene.with(*parameter, value)?;
+        }
+    }
+    let one_sided = words.take() != 0;
+    if let Some(wall) = scene.environment.wall_mut() {
+        wall.one_sided = one_sided;
+    }
+    let (numerator, denominator) = (words.take_polynomial()?, words.take_polynomial()?);
+    if let Environment::Rational(rational) = &mut scene.environment {
+        (rational.numerator, rational.denominator) = (numerator, denominator);
+    }
+    Some(scene)
 }
 
 /// Judges the scene of a question; `None` if the question is not one. `count` measures the
@@ -192,42 +191,6 @@ impl<const N: usize> Cursor<N> {
         is_some.then_some(value)
     }
 
-    fn wall(&mut self, wall: &Wall) {
-        self.number(wall.stiffness);
-        self.number(wall.damping);
-        self.optional(wall.filter);
-        self.push(wall.delay as u64);
-        self.number(wall.face);
-        self.push(wall.one_sided as u64);
-    }
-
-    fn take_wall(&mut self) -> Wall {
-        Wall {
-            stiffness: self.take_number(),
-            damping: self.take_number(),
-            filter: self.take_optional(),
-            delay: self.take() as usize,
-            face: self.take_number(),
-            one_sided: self.take() != 0,
-        }
-    }
-
-    fn rational(&mut self, rational: &Rational) {
-        self.push(rational.delay as u64);
-        self.push(rational.unit_zeros as u64);
-        self.polynomial(&rational.numerator);
-        self.polynomial(&rational.denominator);
-    }
-
-    fn take_rational(&mut self) -> Option<Rational> {
-        Some(Rational {
-            delay: self.take() as usize,
-            unit_zeros: self.take() as usize,
-            numerator: self.take_polynomial()?,
-            denominator: self.take_polynomial()?,
-        })
-    }
-
     fn polynomial(&mut self, polynomial: &Coefficients) {
         let values = polynomial.as_slice();
         self.push(values.len() as u64);
@@ -286,7 +249,7 @@ mod tests {
             unit_zeros: 2,
         };
         for environment in [
-            Environment::DelayedSpring(wall),
+            Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..wall }),
             Environment::DamperWall(Wall { filter: None, ..wall }),
             Environment::FreeMode { residual: 0.25, delay: 1 },
             Environment::FreeModeWall { residual: 0.25, wall },
@@ -301,11 +264,14 @@ mod tests {
     fn words_that_are_no_scene_are_refused() {
         assert!(read(&[u64::MAX; WORDS]).is_none());
         assert!(read(&[0; WORDS]).is_none());
+        let mut stated = ask(&scene(Environment::FreeMode { residual: 0.0, delay: 1 }));
+        stated[0] = 5;
+        assert!(read(&stated).is_none());
     }
 
     #[test]
     fn a_reply_carries_the_bits_of_the_assessment() {
-        let spring = Wall { stiffness: 1.0, delay: 1, ..NO_WALL };
+        let spring = Wall::spring(1.0, 1);
         let scene = Scene {
             torque_limit: None,
             coupling: Coupling::Rigid,

@@ -118,7 +118,6 @@ macro_rules! scene_program {
         /// Prints the certificate.
         #[cfg(not(target_os = "none"))]
         pub fn main() {
-            let data = $certified.scene().as_data();
             #[allow(unused_mut, unused_assignments)]
             let mut friction = None;
             $(friction = Some($friction);)?
@@ -126,7 +125,7 @@ macro_rules! scene_program {
             let injection = PROGRAM.rendering.injection;
             print!(
                 "{}",
-                $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &data, &steps, injection)
+                $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &steps, injection)
             );
             if let $crate::servo_loop::Arming::AtPowerOn(reason) = PROGRAM.options.arming {
                 println!("armed at power-on: {}", reason.as_str());

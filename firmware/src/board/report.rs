@@ -18,15 +18,13 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a certified scene, of the same scene with its environment as data, of the machine, and of
-    /// the damping in N m s/rad that is injected.
+    /// Of a certified scene, of the machine, and of the damping in N m s/rad that is injected.
     pub fn new<E>(
         certified: &Certified<Scene<E>>,
-        data: &Scene,
         steps: &Resolution,
         injection: Option<f64>,
     ) -> Self {
-        let assessment = *certified.assessment();
+        let (data, assessment) = (certified.as_data(), *certified.assessment());
         let margin = assessment.margin_injecting(data, injection.unwrap_or(0.0));
         let assumptions = Assumptions::of(data, &assessment, steps);
         Self { assessment, margin, injection, assumptions }

@@ -1,11 +1,11 @@
 //! What both rules say of a scene, with the numbers behind the answers.
 
 use super::model::LoopIntervals;
-use super::parameter::first_invalid;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, exact_limit, is_nonlinear, paper_limit};
+use super::validity::first_invalid;
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;

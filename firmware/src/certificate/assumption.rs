@@ -268,10 +268,7 @@ impl Assumptions {
         let bound = assessment.bound.map(Interval::hi);
         list.push(one_sided.then_some(Assumption::OneSided { bound }));
         list.push(saturation(scene, assessment, steps));
-        let cancels = matches!(
-            scene.environment,
-            Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
-        );
+        let cancels = scene.environment.residual().is_some();
         let damping = scene.device.damping;
         list.push(cancels.then_some(Assumption::CancelledDamping { damping }));
         list.push(assessment.outcome.is_ok().then(|| quantisation(scene, assessment, steps)));

@@ -32,10 +32,10 @@
 //! change with it. Anywhere else coefficients that are rounded each by itself can leave a hole.
 
 use super::model::LoopIntervals;
-use super::parameter::Parameter;
 use super::rules::is_nonlinear;
 use crate::environment::Environment;
 use crate::number::Format;
+use crate::parameter::Parameter;
 use crate::scene::Scene;
 
 /// What is known of the values between two that pass.

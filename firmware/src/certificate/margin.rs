@@ -8,6 +8,7 @@ use super::assessment::Assessment;
 use super::model::{LoopIntervals, Missed, largest_gain, largest_solved};
 use super::problem::PassivityProblem;
 use super::rules::{Answer, Rule, paper_limit};
+use crate::environment::{Environment, EnvironmentModel};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::interval::Interval;
 use crate::scene::{Device, Scene};
@@ -108,19 +109,19 @@ impl Limited {
     /// known.
     pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
         match largest_solved(&scene.environment, None, n) {
-            Some(solved) => Self::of_solved::<true>(scene, n, bound, solved),
+            Some(solved) => Self::of_solved::<Environment>(scene, n, bound, solved),
             None => None,
         }
     }
 
     /// The same where [`largest_solved`] is known.
-    pub const fn of_solved<const CANCELS: bool>(
+    pub const fn of_solved<E: EnvironmentModel>(
         scene: &Scene,
         n: &LoopIntervals,
         bound: Interval,
         solved: Interval,
     ) -> Option<Self> {
-        let gain = largest_gain::<CANCELS>(&scene.environment, solved, n);
+        let gain = largest_gain::<E>(&scene.environment, solved, n);
         let (Some(coupling), Some(limit), Some(gain)) =
             (n.coupling_damping(), paper_limit(n), gain)
         else {

@@ -2,7 +2,7 @@
 //!
 //! At compile time and on the host all of it is known: the index, what stands against it, and what would
 //! pass. A board limits every torque, and asks when it starts, and for every change that arrives over the
-//! wire, for the part that decides then ([`Scene::timing_checked_in`]), by the same functions.
+//! wire, for the part that decides then ([`timing_checked`]), by the same functions.
 //!
 //! ```
 //! use firmware::certificate::Certified;
@@ -31,11 +31,9 @@
 mod assessment;
 mod assumption;
 mod between;
-mod certify_scene;
 mod digits;
 mod margin;
 mod model;
-mod parameter;
 mod problem;
 mod quantization;
 mod rejection;
@@ -44,19 +42,21 @@ mod remedy_search;
 mod rules;
 mod secant;
 mod timed;
+mod validity;
 mod varied;
 
 pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, AssumptionStatus, Assumptions};
-pub use certify_scene::CertifyScene;
 pub use model::LoopTransfers;
-pub use parameter::{InvalidParameter, Parameter};
 pub use problem::PassivityProblem;
 pub use quantization::{QuantizationBound, Resolution};
 pub use rejection::Rejection;
 pub use remedy::{Remedies, Remedy};
 pub use rules::{Answer, Rule, gamma};
 pub use timed::{TimingChecked, TimingError};
+pub use validity::InvalidParameter;
+
+pub use crate::parameter::Parameter;
 
 pub use crate::text::Sentence;
 
@@ -74,6 +74,8 @@ use assessment::{Extent, assessed};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<S> {
     scene: S,
+    /// What was judged.
+    data: Scene,
     assessment: Assessment,
 }
 
@@ -81,6 +83,11 @@ impl<S> Certified<S> {
     /// The scene that was certified.
     pub const fn scene(&self) -> &S {
         &self.scene
+    }
+
+    /// The same as data, which is what was judged.
+    pub const fn as_data(&self) -> &Scene {
+        &self.data
     }
 
     /// The numbers that the certificate rests on.
@@ -110,18 +117,136 @@ const fn refuse(sentence: &Sentence) -> ! {
     panic!("{}", sentence.as_str())
 }
 
+impl<E: Copy> Scene<E> {
+    /// The scene with other data for its environment.
+    const fn described_as(&self, environment: Environment) -> Scene {
+        Scene {
+            device: self.device,
+            timing: self.timing,
+            coupling: self.coupling,
+            environment,
+            torque_limit: self.torque_limit,
+        }
+    }
+
+    const fn judged(self, data: Scene, format: Format) -> Result<Certified<Self>, Rejection> {
+        match certify_in(&data, format) {
+            Ok(assessment) => Ok(Certified { scene: self, data, assessment }),
+            Err(rejection) => Err(rejection),
+        }
+    }
+}
+
+impl<E: StatedEnvironment> Scene<E> {
+    /// Judges the scene of an environment of another crate as that states itself to be. For constants;
+    /// where the scene is a value, [`certify_scene`] asks the environment.
+    ///
+    /// # Errors
+    /// Why the scene is not certified.
+    pub const fn certify_as(self, stated: StatedModel) -> Result<Certified<Self>, Rejection> {
+        self.judged(self.described_as(Environment::Stated(stated)), Format::F64)
+    }
+
+    /// For constants: the certified scene of an environment of another crate, or a compile error that
+    /// says why not.
+    ///
+    /// # Panics
+    /// If the scene is not certified; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn certified_as(self, stated: StatedModel) -> Certified<Self> {
+        match self.certify_as(stated) {
+            Ok(certified) => certified,
+            Err(rejection) => refuse(&rejection.sentence()),
+        }
+    }
+}
+
+/// The scene with its environment as data, whatever its type.
+pub fn scene_data<E: EnvironmentModel>(scene: &Scene<E>) -> Scene {
+    scene.described_as(scene.environment.as_data(&scene.context()))
+}
+
+/// Judges the coefficients that a servo in a number format multiplies by, whatever the type of the
+/// environment.
+///
+/// # Errors
+/// Why the scene is not certified, and what would be.
+pub fn certify_scene<E: EnvironmentModel>(
+    scene: Scene<E>,
+    format: Format,
+) -> Result<Certified<Scene<E>>, Rejection> {
+    scene.judged(scene_data(&scene), format)
+}
+
+/// The scene timed, if a board may render it: what [`certify_scene`] and then [`Certified::time`]
+/// allow, at a fraction of the cost, without numbers and remedies. What a board asks for, whose host
+/// has the words.
+///
+/// # Errors
+/// [`Step::Certificate`] where it may not.
+pub fn timing_checked<E: EnvironmentModel + SupportsTiming<M>, M: OutputMode>(
+    scene: Scene<E>,
+    format: Format,
+) -> Result<TimingChecked<Scene<E>, M>, Step> {
+    let data = scene_data(&scene);
+    // Asked here, where the type tells.
+    let is_late = data.environment.is_late();
+    timed::judged::<E, M>(&data, is_late, format)
+        .map(|limited| TimingChecked::new(scene, format, limited))
+}
+
+impl<E: Copy> Certified<Scene<E>> {
+    /// For constants: the same scene's certificate in the number format that it runs in,
+    /// or a compile error that says why it has none there.
+    ///
+    /// # Panics
+    /// If the coefficients as rounded to the format are not certified; in a constant that
+    /// is the compile error.
+    #[track_caller]
+    pub const fn certified_in(self, format: Format) -> Self {
+        match self.scene.judged(self.data, format) {
+            Ok(certified) => certified,
+            Err(rejection) => refuse(&rejection.sentence_in(format)),
+        }
+    }
+
+    /// Pairs the scene with the mode in which a board puts its torques out.
+    ///
+    /// # Errors
+    /// Where they do not agree; see [`TimingError`].
+    pub const fn time<M: OutputMode>(self) -> Result<TimingChecked<Scene<E>, M>, TimingError>
+    where
+        E: SupportsTiming<M>,
+    {
+        match timed::agree::<M>(&self.data, &self.assessment) {
+            Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// For constants: the timed scene, or a compile error that says why not, which is at
+    /// its clearest where the mode is named: `timed::<Latched>()`.
+    ///
+    /// # Panics
+    /// If scene and mode do not agree; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn timing_checked<M: OutputMode>(self) -> TimingChecked<Scene<E>, M>
+    where
+        E: SupportsTiming<M>,
+    {
+        match self.time() {
+            Ok(timed) => timed,
+            Err(error) => refuse(&error.sentence()),
+        }
+    }
+}
+
 macro_rules! certify_for {
     ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
         impl<$($generics)*> Scene<$environment> {
             /// The same scene with its environment as data.
             pub const fn as_data(&self) -> Scene {
-                Scene {
-                    device: self.device,
-                    timing: self.timing,
-                    coupling: self.coupling,
-                    environment: self.environment.as_data(),
-                    torque_limit: self.torque_limit,
-                }
+                self.described_as(self.environment.as_data())
             }
 
             /// Judges the scene as it was written; only one that is proved passive becomes
@@ -132,32 +257,7 @@ macro_rules! certify_for {
 
             /// Judges the coefficients that a servo in this number format multiplies by.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
-                match certify_in(&self.as_data(), format) {
-                    Ok(assessment) => Ok(Certified { scene: self, assessment }),
-                    Err(rejection) => Err(rejection),
-                }
-            }
-
-            /// The scene timed, if a board may render it: what [`Scene::certify_in`] and then
-            /// [`Certified::time`] allow, at a fraction of the cost, without numbers and remedies.
-            /// What a board asks for, whose host has the words.
-            ///
-            /// # Errors
-            /// [`Step::Certificate`] where it may not.
-            pub const fn timing_checked_in<M: OutputMode>(
-                self,
-                format: Format,
-            ) -> Result<TimingChecked<Self, M>, Step>
-            where
-                $environment: SupportsTiming<M>,
-            {
-                let scene = self.as_data();
-                // Asked here, where the type tells.
-                let is_late = scene.environment.is_late();
-                match timed::judged::<$cancels, M>(&scene, is_late, format) {
-                    Ok(limited) => Ok(TimingChecked::new(self, format, limited)),
-                    Err(step) => Err(step),
-                }
+                self.judged(self.as_data(), format)
             }
 
             /// For constants: the certified scene, or a compile error that says why not.
@@ -169,54 +269,6 @@ macro_rules! certify_for {
                 match self.certify() {
                     Ok(certified) => certified,
                     Err(rejection) => refuse(&rejection.sentence()),
-                }
-            }
-        }
-
-        impl<$($generics)*> Certified<Scene<$environment>> {
-            /// For constants: the same scene's certificate in the number format that it runs in,
-            /// or a compile error that says why it has none there.
-            ///
-            /// # Panics
-            /// If the coefficients as rounded to the format are not certified; in a constant that
-            /// is the compile error.
-            #[track_caller]
-            pub const fn certified_in(self, format: Format) -> Self {
-                match self.scene.certify_in(format) {
-                    Ok(certified) => certified,
-                    Err(rejection) => refuse(&rejection.sentence_in(format)),
-                }
-            }
-
-            /// Pairs the scene with the mode in which a board puts its torques out.
-            ///
-            /// # Errors
-            /// Where they do not agree; see [`TimingError`].
-            pub const fn time<M: OutputMode>(
-                self,
-            ) -> Result<TimingChecked<Scene<$environment>, M>, TimingError>
-            where
-                $environment: SupportsTiming<M>,
-            {
-                match timed::agree::<M>(&self.scene.as_data(), &self.assessment) {
-                    Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
-                    Err(error) => Err(error),
-                }
-            }
-
-            /// For constants: the timed scene, or a compile error that says why not, which is at
-            /// its clearest where the mode is named: `timed::<Latched>()`.
-            ///
-            /// # Panics
-            /// If scene and mode do not agree; in a constant that is the compile error.
-            #[track_caller]
-            pub const fn timing_checked<M: OutputMode>(self) -> TimingChecked<Scene<$environment>, M>
-            where
-                $environment: SupportsTiming<M>,
-            {
-                match self.time() {
-                    Ok(timed) => timed,
-                    Err(error) => refuse(&error.sentence()),
                 }
             }
         }

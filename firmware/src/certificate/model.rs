@@ -5,8 +5,8 @@
 //! rounds it, and the transfer function put together from these. For [`Format::F64`] a coefficient
 //! is what was written, to the digits of a double.
 
-use super::parameter::first_invalid;
-use crate::environment::{Environment, MAX_DEGREE, Rational, Wall};
+use super::validity::first_invalid;
+use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, Wall};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -99,11 +99,11 @@ impl LoopIntervals {
             }
             _ => (delta, None),
         };
-        let cancelled = match scene.environment {
-            Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. } => {
+        let cancelled = match scene.environment.residual() {
+            Some(residual) => {
                 Interval::decimal(scene.device.damping).sub(Interval::decimal(residual))
             }
-            _ => Interval::ZERO,
+            None => Interval::ZERO,
         };
         let (coupling, written) = match scene.coupling {
             Coupling::Rigid => (None, Interval::ZERO),
@@ -189,15 +189,19 @@ pub(super) const fn transfer(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Result<Transfer, Unbuildable> {
-    let built = match environment {
-        Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall(w, n)),
-        Environment::FreeMode { delay, .. } => {
+    let built = match (environment, environment.wall(), environment.rational()) {
+        (Environment::FreeModeWall { .. }, Some(w), _) => free_mode(n).plus(&wall(&w, n)),
+        (Environment::FreeMode { delay, .. }, ..) => {
             let mut free = free_mode(n);
             free.shift -= *delay as i32;
             Some(free)
         }
-        Environment::FreeModeWall { wall: w, .. } => free_mode(n).plus(&wall(w, n)),
-        Environment::Rational(r) => rational(r, n),
+        (_, Some(w), _) => Some(wall(&w, n)),
+        (_, _, Some(r)) => rational(r, n),
+        // Stated by its bound alone, and late: nothing is fed through.
+        _ => {
+            Some(Transfer::new(Polynomial::ascending(&[]), Polynomial::ascending(&[Interval::ONE])))
+        }
     };
     match built {
         None => Err(Unbuildable::OutOfRange),
@@ -342,14 +346,14 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
 /// `solved` is what the servo's gains make of the torque: [`largest_solved`]. For a rational
-/// environment none is known, and none is given for one that cancels damping where it does not
-/// `CANCELS`: a program whose environment's type tells so has nothing of what that takes.
-pub(super) const fn nonlinear_bound<const CANCELS: bool>(
+/// environment none is known, and none is given for one that cancels damping where the type `E` does
+/// not ([`EnvironmentModel::CANCELS_DAMPING`]): its program has nothing of what that takes.
+pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     environment: &Environment,
     solved: Interval,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    match exactly_solved_bound::<CANCELS>(environment, n) {
+    match exactly_solved_bound::<E>(environment, n) {
         Some(bound) if matches!(n.format, Format::F64) => Some(bound),
         Some(bound) => Some(bound.mul(solved)),
         None => None,
@@ -389,21 +393,27 @@ const fn scale(environment: &Environment, n: &LoopIntervals) -> Option<Interval>
     }
 }
 
-const fn exactly_solved_bound<const CANCELS: bool>(
+const fn exactly_solved_bound<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    // A spring that pulls away is no monotone law.
-    if matches!(environment.wall(), Some(w) if w.stiffness < 0.0) {
-        return None;
-    }
+    let wall = match environment.wall() {
+        // A spring that pulls away is no monotone law.
+        Some(w) if w.stiffness < 0.0 => return None,
+        Some(w) => wall_bound(&w, n),
+        None => Interval::ZERO,
+    };
     match environment {
-        Environment::DelayedSpring(w) | Environment::DamperWall(w) => Some(wall_bound(w, n)),
-        Environment::FreeMode { .. } if CANCELS => canceller_bound(n),
-        Environment::FreeModeWall { wall: w, .. } if CANCELS => match canceller_bound(n) {
-            Some(bound) => Some(bound.add(wall_bound(w, n))),
-            None => None,
-        },
+        Environment::DelayedSpring(_) | Environment::DamperWall(_) => Some(wall),
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
+            match canceller_bound(n) {
+                Some(bound) => Some(bound.add(wall)),
+                None => None,
+            }
+        }
+        Environment::Stated(StatedModel { bound: Some(bound), .. }) => {
+            Some(Interval::decimal(bound.index))
+        }
         _ => None,
     }
 }
@@ -415,21 +425,25 @@ const fn exactly_solved_bound<const CANCELS: bool>(
 /// A wall's torque is `K p + B(k) v(k)` with a damper that is switched between nothing and `B`, a
 /// canceller's the sum of past velocities by weights: two neighbours differ by at most twice the sum
 /// of their magnitudes.
-pub(super) const fn largest_gain<const CANCELS: bool>(
+pub(super) const fn largest_gain<E: EnvironmentModel>(
     environment: &Environment,
     solved: Interval,
     n: &LoopIntervals,
 ) -> Option<Interval> {
+    let wall = match environment.wall() {
+        Some(w) => wall_gain(&w, n),
+        None => Interval::ZERO,
+    };
     let gain = match environment {
-        Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall_gain(w, n),
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if CANCELS => {
-            let Some(canceller) = canceller_bound(n) else { return None };
-            match environment {
-                Environment::FreeModeWall { wall: w, .. } => {
-                    canceller.double().add(wall_gain(w, n))
-                }
-                _ => canceller.double(),
+        Environment::DelayedSpring(_) | Environment::DamperWall(_) => wall,
+        Environment::FreeMode { .. } | Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
+            match canceller_bound(n) {
+                Some(canceller) => canceller.double().add(wall),
+                None => return None,
             }
+        }
+        Environment::Stated(StatedModel { bound: Some(bound), .. }) => {
+            Interval::decimal(bound.gain)
         }
         _ => return None,
     };

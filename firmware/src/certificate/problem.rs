@@ -1,10 +1,10 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
 use super::model::{LoopIntervals, largest_solved, nonlinear_bound, transfer};
-use super::parameter::first_invalid;
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
+use super::validity::first_invalid;
 use crate::environment::Environment;
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
@@ -52,6 +52,8 @@ const ROUGHLY: f64 = 1e-4;
 pub struct PassivityProblem {
     pub(super) numbers: LoopIntervals,
     pub(super) environment: Transfer,
+    /// The index that is stated where there is no transfer function.
+    stated: Option<Interval>,
     pub(super) rule: Rule,
     /// Bound on the index of a one-sided or limited scene.
     pub(super) bound: Option<Interval>,
@@ -87,7 +89,7 @@ impl PassivityProblem {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
         };
-        if matches!(scene.environment, Environment::Rational(_))
+        if scene.environment.rational().is_some()
             && let Some(cos_theta) = hidden_mode(&environment)
         {
             return Err(Rejection::HiddenMode { cos_theta });
@@ -98,7 +100,9 @@ impl PassivityProblem {
             // agree.
             let contact = Some(environment.scale);
             let bound = match largest_solved(&scene.environment, contact, &numbers) {
-                Some(solved) => nonlinear_bound::<true>(&scene.environment, solved, &numbers),
+                Some(solved) => {
+                    nonlinear_bound::<Environment>(&scene.environment, solved, &numbers)
+                }
                 None => None,
             };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
@@ -108,7 +112,8 @@ impl PassivityProblem {
         if !solvable {
             return Err(Rejection::IllPosed { loop_gain });
         }
-        Ok(Self { numbers, environment, rule, bound })
+        let stated = if scene.environment.has_transfer() { None } else { bound };
+        Ok(Self { numbers, environment, stated, rule, bound })
     }
 
     /// The verdict: whether the rule that it follows proves the scene, that is, whether
@@ -278,6 +283,9 @@ impl PassivityProblem {
 
     /// Index of the environment alone.
     pub(super) const fn alone(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
+        if let Some(minimum) = self.stated {
+            return Ok(RealPart { minimum, cos_theta: Interval::new(-1.0, 1.0) });
+        }
         index_looked_at(&self.environment, self.numbers.period, true, closeness)
     }
 
@@ -292,6 +300,9 @@ impl PassivityProblem {
         alone: Option<Result<RealPart, IndexError>>,
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
+        if self.stated.is_some() {
+            return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
+        }
         let at_once = match alone {
             Some(alone) if self.is_standard() => alone,
             None if self.is_standard() => self.alone(closeness),
@@ -330,6 +341,9 @@ impl PassivityProblem {
         compliance: Interval,
         a_sample_late: bool,
     ) -> Result<Reduced, IndexError> {
+        if self.stated.is_some() {
+            return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
+        }
         let mut controller = match self.controller(compliance) {
             Ok(controller) => controller,
             Err(_) => return Err(IndexError::Undecided(UndecidedReason::OutOfRange)),

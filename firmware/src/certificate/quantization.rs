@@ -18,7 +18,7 @@ use core::fmt;
 use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
-use crate::environment::{Environment, Rational};
+use crate::environment::Rational;
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
@@ -188,13 +188,13 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
     // Torques where none is stated are small beside the positions that they come from.
     let torque = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
     let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(torque));
-    let at_torque = match &scene.environment {
+    let at_torque = match scene.environment.rational() {
         // Its sums may cancel: they are as large as the torque of a turn.
-        Environment::Rational(rational) => {
+        Some(rational) => {
             let sum = format.rounding_error(peak * TAU);
             sum * roundings(format, 2.0, 2.0) * sections(rational)?
         }
-        _ => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
+        None => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
     };
     let at_position = angle * roundings(format, 2.0, 3.0);
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
@@ -209,11 +209,8 @@ fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
         gain * angle * roundings(format, 1.0, 2.0) / (1.0 - state.pole.magnitude())
     };
     let filter = scene.environment.wall().filter(|wall| wall.filter.is_some());
-    let cancels = matches!(
-        scene.environment,
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
-    );
-    filter.map_or(0.0, |wall| stops(damper(wall, &n)))
+    let cancels = scene.environment.residual().is_some();
+    filter.map_or(0.0, |wall| stops(damper(&wall, &n)))
         + if cancels { stops(canceller(&n)) } else { 0.0 }
 }
 

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-use super::parameter::InvalidParameter;
 use super::remedy::{Remedies, Remedy};
+use super::validity::InvalidParameter;
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::passivity::poles::UndecidedReason;
@@ -286,6 +286,9 @@ const fn write_doubt(
         UndecidedReason::TooClose => "the index is too close to its limit to tell",
         UndecidedReason::NoNonlinearBound => {
             "no bound is known for a general rational environment with a torque limit"
+        }
+        UndecidedReason::NoTransferFunction => {
+            "the environment is stated by a bound, without a transfer function"
         }
     });
     if let (Some(index), Some(limit)) = (index, limit) {

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::parameter::Parameter;
+use crate::parameter::Parameter;
 use crate::text::Text;
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.

@@ -3,13 +3,13 @@
 use super::between::passes_upwards;
 use super::digits::{Digits, Side};
 use super::model::LoopIntervals;
-use super::parameter::Parameter;
 use super::problem::PassivityProblem;
 use super::rejection::Rejection;
 use super::remedy::{CANDIDATES, ORDER, Remedies, Remedy};
 use super::varied::{FARTHEST, Varied};
 use crate::environment::Environment;
 use crate::number::Format;
+use crate::parameter::Parameter;
 use crate::scene::{Coupling, Scene};
 
 /// The rejection with the remedies that there are, where a remedy makes sense.
@@ -34,6 +34,10 @@ pub(super) const fn with_remedies(
 }
 
 const fn search(scene: &Scene, format: Format) -> Remedies {
+    // What another crate states may change with any number of the scene.
+    if matches!(scene.environment, Environment::Stated(_)) {
+        return Remedies::NONE;
+    }
     let own = shortage(scene, format);
     let mut found = Remedies::NONE;
     let mut i = 0;
@@ -106,10 +110,7 @@ const fn standard_coupling(varied: &Varied) -> Option<Remedy> {
 /// A device with more damping; where its passivity was declared, with more of that, up to the
 /// damping. What a canceller leaves of the damping goes with it, so that there is no such remedy.
 const fn more_damping(scene: &Scene, format: Format) -> Option<Remedy> {
-    let cancels = matches!(
-        scene.environment,
-        Environment::FreeMode { .. } | Environment::FreeModeWall { .. }
-    );
+    let cancels = scene.environment.residual().is_some();
     let parameter = match scene.device.passivity {
         Some(_) => Parameter::Passivity,
         None if !cancels => Parameter::DeviceDamping,

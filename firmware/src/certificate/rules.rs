@@ -40,7 +40,9 @@ pub const fn gamma(stiffness: Interval, period: Interval, delta: Interval) -> Op
 
 /// Whether the scene is judged by the nonlinear bound.
 pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
-    scene.torque_limit.is_some() || matches!(scene.environment.wall(), Some(w) if w.one_sided)
+    scene.torque_limit.is_some()
+        || matches!(scene.environment.wall(), Some(w) if w.one_sided)
+        || !scene.environment.has_transfer()
 }
 
 /// What the index has to stay below for the paper's rule: `K_vc T / 2`, for the coupling spring to

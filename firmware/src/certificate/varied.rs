@@ -2,13 +2,12 @@
 
 use super::between::{Between, between};
 use super::digits::{Digits, Side};
-use super::parameter::Parameter;
 use super::problem::PassivityProblem;
 use super::remedy::Remedy;
 use super::secant::{Bracket, Look, Search};
-use crate::environment::Environment;
 use crate::number::Format;
-use crate::scene::{Coupling, Scene};
+use crate::parameter::Parameter;
+use crate::scene::Scene;
 
 /// The factor by which a number is moved at most in the search for a value that passes.
 pub(super) const FARTHEST: f64 = 64.0;
@@ -169,7 +168,7 @@ impl Varied<'_> {
 
     #[inline(never)]
     const fn posed(&self, value: f64) -> Option<PassivityProblem> {
-        let Some(scene) = with(self.scene, self.parameter, value) else { return None };
+        let Some(scene) = self.scene.with(self.parameter, value) else { return None };
         match PassivityProblem::in_format(&scene, self.format) {
             Ok(posed) => Some(posed),
             Err(_) => None,
@@ -177,54 +176,11 @@ impl Varied<'_> {
     }
 }
 
+/// The value that a search starts from; `None` where a change of the number does not leave everything
+/// else as it is, as of a period that has a worst one.
 const fn get(scene: &Scene, parameter: Parameter) -> Option<f64> {
-    match (parameter, &scene.environment) {
-        (
-            Parameter::Stiffness,
-            Environment::DelayedSpring(w)
-            | Environment::DamperWall(w)
-            | Environment::FreeModeWall { wall: w, .. },
-        ) => Some(w.stiffness),
-        (
-            Parameter::Damping,
-            Environment::DamperWall(w) | Environment::FreeModeWall { wall: w, .. },
-        ) => Some(w.damping),
-        (
-            Parameter::Residual,
-            Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. },
-        ) => Some(*residual),
-        (Parameter::Period, _) => match scene.timing.worst_period {
-            None => Some(scene.timing.period),
-            Some(_) => None,
-        },
-        _ => None,
+    match (parameter, scene.timing.worst_period) {
+        (Parameter::Period, Some(_)) => None,
+        _ => scene.get(parameter),
     }
-}
-
-const fn with(scene: &Scene, parameter: Parameter, value: f64) -> Option<Scene> {
-    let mut changed = *scene;
-    match (parameter, &mut changed.environment) {
-        (
-            Parameter::Stiffness,
-            Environment::DelayedSpring(w)
-            | Environment::DamperWall(w)
-            | Environment::FreeModeWall { wall: w, .. },
-        ) => w.stiffness = value,
-        (
-            Parameter::Damping,
-            Environment::DamperWall(w) | Environment::FreeModeWall { wall: w, .. },
-        ) => w.damping = value,
-        (
-            Parameter::Residual,
-            Environment::FreeMode { residual, .. } | Environment::FreeModeWall { residual, .. },
-        ) => *residual = value,
-        (Parameter::CouplingStiffness, _) => {
-            changed.coupling = Coupling::Spring { stiffness: value }
-        }
-        (Parameter::Period, _) => changed.timing.period = value,
-        (Parameter::Passivity, _) => changed.device.passivity = Some(value),
-        (Parameter::DeviceDamping, _) => changed.device.damping = value,
-        _ => return None,
-    }
-    Some(changed)
 }

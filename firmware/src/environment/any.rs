@@ -4,11 +4,13 @@ use super::delay_line::VariableDelay;
 use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
 use super::law::{Discretize, Law, LawContext};
 use super::rational::{Rational, RationalLaw};
+use super::stated::StatedModel;
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
+use crate::parameter::Parameter;
 
 /// A spring with an optional damper, as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +53,8 @@ pub enum Environment {
         /// The wall that ends the free motion.
         wall: Wall,
     },
+    /// One of another crate.
+    Stated(StatedModel),
     /// [`Rational`].
     // No board renders one, and none says so on its wire.
     #[cfg_attr(feature = "wire", serde(skip))]
@@ -58,14 +62,47 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// The wall, if it has one.
-    pub(crate) const fn wall(&self) -> Option<&Wall> {
+    /// The wall, if it has one. A spring has no damper, whatever its wall says.
+    pub const fn wall(&self) -> Option<Wall> {
+        match self {
+            Self::DelayedSpring(wall) => Some(Wall { damping: 0.0, filter: None, ..*wall }),
+            Self::DamperWall(wall) | Self::FreeModeWall { wall, .. } => Some(*wall),
+            Self::FreeMode { .. } | Self::Stated(_) | Self::Rational(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub const fn wall_mut(&mut self) -> Option<&mut Wall> {
         match self {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => Some(wall),
-            Self::FreeMode { .. } | Self::Rational(_) => None,
+            Self::FreeMode { .. } | Self::Stated(_) | Self::Rational(_) => None,
         }
+    }
+
+    /// Damping in N m s/rad that its canceller leaves; `None` where it has no canceller.
+    pub const fn residual(&self) -> Option<f64> {
+        match self {
+            Self::FreeMode { residual, .. } | Self::FreeModeWall { residual, .. } => {
+                Some(*residual)
+            }
+            _ => None,
+        }
+    }
+
+    /// The rational function that it is, or is stated to be.
+    pub const fn rational(&self) -> Option<&Rational> {
+        match self {
+            Self::Rational(rational) => Some(rational),
+            Self::Stated(StatedModel { transfer: Some(rational), .. }) => Some(rational),
+            _ => None,
+        }
+    }
+
+    /// Whether it is linear with neither face nor torque limit counted.
+    pub const fn has_transfer(&self) -> bool {
+        !matches!(self, Self::Stated(StatedModel { transfer: None, .. }))
     }
 
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
@@ -81,8 +118,37 @@ impl Environment {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => wall.delay,
-            Self::FreeMode { delay, .. } => *delay,
+            Self::FreeMode { delay, .. } | Self::Stated(StatedModel { delay, .. }) => *delay,
             Self::Rational(rational) => rational.whole_delay(),
+        }
+    }
+
+    /// The delay in whole samples as it was written.
+    pub(crate) const fn delay_mut(&mut self) -> &mut usize {
+        match self {
+            Self::DelayedSpring(wall)
+            | Self::DamperWall(wall)
+            | Self::FreeModeWall { wall, .. } => &mut wall.delay,
+            Self::FreeMode { delay, .. } | Self::Stated(StatedModel { delay, .. }) => delay,
+            Self::Rational(rational) => &mut rational.delay,
+        }
+    }
+}
+
+impl Wall {
+    /// A spring that pushes and pulls, at rest at zero.
+    pub const fn spring(stiffness: f64, delay: usize) -> Self {
+        Self { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false }
+    }
+
+    /// The number of this name, if it has one.
+    pub(crate) const fn number(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match parameter {
+            Parameter::Stiffness => Some(&mut self.stiffness),
+            Parameter::Damping => Some(&mut self.damping),
+            Parameter::Filter => self.filter.as_mut(),
+            Parameter::Face => Some(&mut self.face),
+            _ => None,
         }
     }
 }
@@ -168,6 +234,10 @@ impl<N: Number> Discretize<N> for Environment {
                 EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
             }
             Self::DamperWall(wall) => EnvironmentLaw::Wall(wall.law(setting)?),
+            Self::Stated(StatedModel { transfer: Some(rational), .. }) => {
+                EnvironmentLaw::Rational(rational.law(setting)?)
+            }
+            Self::Stated(_) => return Err(BuildError::LawElsewhere),
             Self::FreeMode { residual, delay } => EnvironmentLaw::FreeMode(FreeModeLaw {
                 canceller: canceller(*residual, setting)?,
                 delay: VariableDelay::at_rest(*delay)?,

@@ -6,6 +6,7 @@ use super::velocity::{Velocity, Washout};
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
 use crate::number::Number;
+use crate::parameter::{NamedParameters, named_parameters};
 
 /// Free mode: cancels the device's damping down to `residual` (equations 22 and 23).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,11 @@ pub struct FreeModeWall<W> {
     pub residual: f64,
     /// The wall, with its own delay.
     pub wall: W,
+}
+
+named_parameters! {
+    [const N: usize] FreeMode<N>: Residual => residual;
+    [W: NamedParameters] FreeModeWall<W>: Residual => residual; wall;
 }
 
 /// The canceller's high-pass.

@@ -5,15 +5,13 @@ use super::{
 };
 use crate::output_timing::{Latched, OutputMode, Simultaneous};
 
-mod sealed {
-    pub trait Sealed {}
-}
-
 /// An environment that is late by at least one sample, so that its torque is known one tick early.
 ///
 /// Of [`Environment`] and [`Rational`] only the numbers tell; they are looked at when the scene
 /// is [timed](crate::certificate::TimingChecked).
-pub trait Delayed: sealed::Sealed {}
+///
+/// The law of such an environment answers [`Response::Held`](crate::coupling::Response::Held).
+pub trait Delayed {}
 
 macro_rules! delayed {
     ($($delay:literal)*) => {$(delayed! { @
@@ -23,7 +21,6 @@ macro_rules! delayed {
         FreeMode<$delay>,
     })*};
     (@ $($environment:ty,)*) => {$(
-        impl sealed::Sealed for $environment {}
         impl Delayed for $environment {}
     )*};
 }

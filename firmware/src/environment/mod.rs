@@ -5,7 +5,8 @@
 //!
 //! Each environment is a type of its own, so that a program contains only what its scene uses.
 //! [`Environment`] is the same as data, for scenes that are read from a file or from the wire.
-//! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs.
+//! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs. A
+//! [`StatedEnvironment`] of another crate runs beside them.
 
 /// Gives a macro all environments, each with its generic parameters and with whether it may cancel the
 /// device's damping: the one list of them.
@@ -35,13 +36,20 @@ macro_rules! for_every_environment {
 }
 pub(crate) use for_every_environment;
 
+/// What only this crate says of a type.
+mod sealed {
+    pub trait Sealed {}
+}
+
 mod any;
 mod data;
 mod delay_line;
 mod free_mode;
 mod late;
 mod law;
+mod numbers;
 mod rational;
+mod stated;
 mod velocity;
 mod wall_law;
 mod walls;
@@ -51,10 +59,10 @@ pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
 pub use free_mode::{FreeMode, FreeModeLaw, FreeModeWall, FreeModeWallLaw};
 pub use late::{Delayed, SupportsTiming};
 pub use law::{Discretize, Law, LawContext};
-pub use rational::{Coefficients, MAX_DEGREE, Rational, RationalLaw};
+pub use rational::{Coefficients, Rational, RationalLaw};
+pub use stated::{EnvironmentModel, StatedBound, StatedEnvironment, StatedModel};
 pub use velocity::{AnyVelocity, Difference, NoDamping, Velocity, Washout};
 pub use wall_law::{AnySide, Centred, Displaced, Face, Side, WallLaw};
 pub use walls::{DamperWall, DelayedSpring, FilteredWall, OneSided, Placed, Spring};
 
-/// Longest delay in samples.
-pub const MAX_DELAY: usize = 8;
+pub use crate::parameter::{MAX_DEGREE, MAX_DELAY};

@@ -1,14 +1,12 @@
 //! Any proper rational environment.
 
-use super::MAX_DELAY;
 use super::delay_line::{DelayLine, VariableDelay};
 use super::law::{Discretize, Law, LawContext};
+use super::{MAX_DEGREE, MAX_DELAY};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
-
-/// Largest degree of a [`Rational`] numerator or denominator.
-pub const MAX_DEGREE: usize = 8;
+use crate::parameter::named_parameters;
 
 /// Any proper rational `E(z)` up to degree 8, with up to 8 samples of delay on top:
 /// `E(z) = z^-delay (z - 1)^unit_zeros numerator(z) / denominator(z)`.
@@ -26,6 +24,11 @@ pub struct Rational {
     /// Zeros at `z = 1` that multiply the numerator. Declaring them keeps them exact where the
     /// coefficients of the product would not sum to zero in binary.
     pub unit_zeros: usize,
+}
+
+// Its coefficients belong together; none is changed alone.
+named_parameters! {
+    [] Rational: ;
 }
 
 /// A polynomial's coefficients in descending powers, at most `MAX_DEGREE + 1` of them.

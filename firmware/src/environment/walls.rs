@@ -6,6 +6,7 @@ use super::velocity::{Difference, NoDamping, Velocity, Washout};
 use super::wall_law::{Centred, Displaced, Face, Side, WallLaw};
 use crate::build_error::BuildError;
 use crate::number::Number;
+use crate::parameter::{NamedParameters, named_parameters};
 
 /// Spring delayed by whole samples: `E(z) = stiffness * z^-DELAY`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +52,15 @@ pub struct OneSided<W> {
     pub face: f64,
     /// The wall behind the face.
     pub wall: W,
+}
+
+named_parameters! {
+    [const N: usize] DelayedSpring<N>: Stiffness => stiffness;
+    [const N: usize] DamperWall<N>: Stiffness => stiffness, Damping => damping;
+    [const N: usize] FilteredWall<N>:
+        Stiffness => stiffness, Damping => damping, Filter => filter;
+    [W: NamedParameters] Placed<W>: Face => face; wall;
+    [W: NamedParameters] OneSided<W>: Face => face; wall;
 }
 
 /// A wall at rest at zero that pushes and pulls: what may be [`Placed`] or [`OneSided`].

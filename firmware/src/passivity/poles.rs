@@ -69,6 +69,8 @@ pub enum UndecidedReason {
     TooClose,
     /// No bound is known for this environment with one-sidedness or a torque limit.
     NoNonlinearBound,
+    /// The environment is stated by a bound, without a transfer function.
+    NoTransferFunction,
 }
 
 /// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.

@@ -11,12 +11,12 @@ pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
 pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
-use crate::certificate::{Certified, CertifyScene};
+use crate::certificate::{Certified, certify_scene};
 use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Discretize, Law};
+use crate::environment::{Discretize, EnvironmentModel, Law};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -68,7 +68,7 @@ pub struct Servo<E: Discretize<N>, N: Number> {
     radians_per_count: f64,
 }
 
-impl<E: CertifyScene<N>, N: Number> Servo<E, N> {
+impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
     /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
     /// this number format's, such as the scene's as it was written, is taken again.
     ///
@@ -76,7 +76,7 @@ impl<E: CertifyScene<N>, N: Number> Servo<E, N> {
     /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if scene.assessment().format != format && E::certify(*scene.scene()).is_err() {
+        if scene.assessment().format != format && certify_scene(*scene.scene(), format).is_err() {
             return Err(BuildError::Uncertified { format });
         }
         Self::build(scene.scene(), transducers)

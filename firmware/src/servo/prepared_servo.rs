@@ -5,10 +5,10 @@ use core::marker::PhantomData;
 
 use super::{Output, Servo};
 use crate::build_error::BuildError;
-use crate::certificate::{CertifyScene, TimingChecked};
+use crate::certificate::{TimingChecked, timing_checked};
 use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
-use crate::environment::{Discretize, SupportsTiming};
+use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::{OutputMode, READ_WITHIN};
 use crate::scene::{Scene, Timing};
@@ -81,7 +81,10 @@ pub struct TimingLimits {
     span: u32,
 }
 
-impl<E: CertifyScene<N> + SupportsTiming<M>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
+impl<E, N: Number, M: OutputMode> PreparedServo<E, N, M>
+where
+    E: EnvironmentModel + Discretize<N> + SupportsTiming<M>,
+{
     /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
     /// coefficients than this number format's, such as the scene's as it was written, is taken
     /// again.
@@ -97,7 +100,7 @@ impl<E: CertifyScene<N> + SupportsTiming<M>, N: Number, M: OutputMode> PreparedS
         if timed.format() == format {
             return Self::build(timed, transducers, options);
         }
-        let again = E::timing_checked(*timed.scene());
+        let again = timing_checked(*timed.scene(), format);
         let again = again.map_err(|_| BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
     }

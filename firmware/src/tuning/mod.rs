@@ -4,43 +4,28 @@
 //! built as a whole and away from the servo's interrupt; what is refused changes nothing.
 
 mod error;
-mod named_parameters;
 mod render_error;
 
+pub use crate::parameter::{NamedParameters, TUNABLE};
 pub use error::TuningError;
-pub use named_parameters::NamedParameters;
 pub use render_error::RenderError;
 
 use core::fmt;
 
-use crate::certificate::{CertifyScene, Parameter};
-use crate::environment::{Discretize, SupportsTiming};
+use crate::certificate::{Parameter, certify_scene, timing_checked};
+use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::OutputMode;
-use crate::scene::{Coupling, Scene};
+use crate::scene::Scene;
 use crate::servo::{PreparedServo, RenderingOptions};
 use crate::step::Step;
 use crate::transducers::Transducers;
 
 /// An environment whose scenes can be judged, timed and rendered in the number format `N`, and changed
 /// while they run.
-pub trait Tunable<N: Number>: CertifyScene<N> + NamedParameters {}
+pub trait Tunable<N: Number>: EnvironmentModel + Discretize<N> {}
 
-impl<N: Number, E: CertifyScene<N> + NamedParameters> Tunable<N> for E {}
-
-/// The parameters that may be changed while the servo runs, with the names that people type.
-///
-/// The device is what it is and changes by no message; period and delay are those that the
-/// program was compiled and its board was set up for.
-pub const TUNABLE: [(&str, Parameter); 7] = [
-    ("stiffness", Parameter::Stiffness),
-    ("damping", Parameter::Damping),
-    ("filter", Parameter::Filter),
-    ("face", Parameter::Face),
-    ("residual", Parameter::Residual),
-    ("coupling.stiffness", Parameter::CouplingStiffness),
-    ("torque_limit", Parameter::TorqueLimit),
-];
+impl<N: Number, E: EnvironmentModel + Discretize<N>> Tunable<N> for E {}
 
 /// The tunable parameter of this name.
 pub fn parameter(name: &str) -> Option<Parameter> {
@@ -89,24 +74,12 @@ impl fmt::Display for Parameters {
     }
 }
 
-/// A scene's tunable parameter; `None` where the scene has no such number.
-fn value<E: NamedParameters>(scene: &mut Scene<E>, parameter: Parameter) -> Option<&mut f64> {
-    match parameter {
-        Parameter::CouplingStiffness => match &mut scene.coupling {
-            Coupling::Rigid => None,
-            Coupling::Spring { stiffness } => Some(stiffness),
-        },
-        Parameter::TorqueLimit => scene.torque_limit.as_mut(),
-        _ => scene.environment.value(parameter),
-    }
-}
-
 /// The parameters that a scene has.
 pub fn parameters<E: NamedParameters + Copy>(scene: &Scene<E>) -> Parameters {
     let mut scene = *scene;
     let mut bits = 0;
     for (i, (_, parameter)) in TUNABLE.iter().enumerate() {
-        bits |= u8::from(value(&mut scene, *parameter).is_some()) << i;
+        bits |= u8::from(scene.value(*parameter).is_some()) << i;
     }
     Parameters { bits }
 }
@@ -114,7 +87,7 @@ pub fn parameters<E: NamedParameters + Copy>(scene: &Scene<E>) -> Parameters {
 /// The value of a scene's parameter; `None` where the scene has no such number.
 pub fn get<E: NamedParameters + Copy>(scene: &Scene<E>, parameter: Parameter) -> Option<f64> {
     let mut scene = *scene;
-    value(&mut scene, parameter).copied()
+    scene.value(parameter).copied()
 }
 
 /// Whether these are changes of a scene that has these parameters.
@@ -148,7 +121,7 @@ pub fn apply<E: NamedParameters + Copy>(
     check(parameters(scene), changes)?;
     let mut changed = *scene;
     for &(parameter, to) in changes {
-        if let Some(value) = value(&mut changed, parameter) {
+        if let Some(value) = changed.value(parameter) {
             *value = to;
         }
     }
@@ -186,7 +159,7 @@ where
     M: OutputMode,
 {
     let scene = apply(scene, changes).map_err(|_| Step::Change)?;
-    let timed = E::timing_checked(scene)?;
+    let timed = timing_checked(scene, N::FORMAT)?;
     let rendering = PreparedServo::build(&timed, transducers, options).map_err(|_| Step::Servo)?;
     Ok(Prepared {
         scene,
@@ -211,7 +184,7 @@ where
     N: Number,
     M: OutputMode,
 {
-    let timed = E::time(E::certify(apply(scene, changes)?)?)?;
+    let timed = certify_scene(apply(scene, changes)?, N::FORMAT)?.time()?;
     PreparedServo::<E, N, M>::build(&timed, transducers, options)?;
     Ok(())
 }

@@ -3,7 +3,7 @@ use crate::encoder::CounterWidth;
 use crate::environment::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
 };
-use crate::scene::{Device, Timing};
+use crate::scene::{Coupling, Device, Timing};
 use crate::servo::Latched;
 
 const TRANSDUCERS: Transducers = Transducers {

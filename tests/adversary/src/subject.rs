@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 use firmware::certificate::{Answer, Assessment, QuantizationBound, Resolution};
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, Wall};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Simultaneous;
@@ -69,16 +68,6 @@ pub fn margin(assessment: &Assessment, scene: &Scene, injected: Option<f64>) -> 
     timed.and_then(Result::ok).map_or(0.0, |timed| timed.margin_with(injected.unwrap_or(0.0)))
 }
 
-/// The wall of an environment.
-pub const fn wall(environment: &Environment) -> Option<&Wall> {
-    match environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => Some(wall),
-        Environment::FreeMode { .. } | Environment::Rational(_) => None,
-    }
-}
-
 /// The passivity that a scene declares.
 pub fn declared(scene: &Scene) -> f64 {
     scene.device.passivity.unwrap_or(scene.device.damping)
@@ -128,7 +117,7 @@ impl Subject {
             if let Coupling::Spring { stiffness } = scene.coupling {
                 compliance = compliance.max(1.0 / stiffness);
             }
-            face = face.max(wall(&scene.environment).map_or(0.0, |wall| wall.face.abs()));
+            face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face.abs()));
             let lost = drawn.taken * margin(assessment, scene, drawn.rendering.injection);
             damping = damping.max(drawn.damping.unwrap_or(has - lost));
         }

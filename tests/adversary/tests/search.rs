@@ -6,7 +6,6 @@ use adversary::scenes::{self, Choice};
 use adversary::search::{Effort, Search};
 use adversary::subject::{declared, margin};
 use firmware::certificate::assess_in;
-use firmware::environment::Environment;
 use firmware::scene::Scene;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -43,11 +42,8 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
 /// The scene without its limits: that it never reaches them is one of the motions that it can have.
 fn linear(scene: &Scene) -> Scene {
     let mut linear = Scene { torque_limit: None, ..*scene };
-    match &mut linear.environment {
-        Environment::DelayedSpring(wall)
-        | Environment::DamperWall(wall)
-        | Environment::FreeModeWall { wall, .. } => wall.one_sided = false,
-        Environment::FreeMode { .. } | Environment::Rational(_) => {}
+    if let Some(wall) = linear.environment.wall_mut() {
+        wall.one_sided = false;
     }
     linear
 }

@@ -1,7 +1,7 @@
 //! Yes and no without the numbers against the assessment with them: the same answers, far from the
 //! line, next to it, and where rounding decides.
 
-use firmware::certificate::{Answer, PassivityProblem, Rejection, assess};
+use firmware::certificate::{Answer, PassivityProblem, Rejection, assess, timing_checked};
 use firmware::environment::{Environment, Wall};
 use firmware::number::{Format, Number};
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -35,7 +35,7 @@ fn compare_on_board<M: OutputMode>(scene: &Scene, format: Format) -> bool
 where
     Environment: SupportsTiming<M>,
 {
-    let quick = scene.timing_checked_in::<M>(format);
+    let quick = timing_checked::<_, M>(*scene, format);
     let (room, margin) = match scene.certify_in(format).map(|scene| scene.time::<M>()) {
         Ok(Ok(timed)) => (timed.injectable_damping(), timed.margin()),
         // A search may leave open what the bound in closed form settles, next to the line only.

@@ -99,15 +99,14 @@ fn is_finite(scene: &Scene) -> bool {
         let all = [w.stiffness, w.damping, w.filter.unwrap_or(0.0), w.face];
         all.iter().all(|x| x.is_finite())
     };
-    let environment = match &scene.environment {
-        Environment::DelayedSpring(w) | Environment::DamperWall(w) => wall(w),
-        Environment::FreeMode { residual, .. } => residual.is_finite(),
-        Environment::FreeModeWall { residual, wall: w } => residual.is_finite() && wall(w),
-        Environment::Rational(r) => {
-            let all = r.numerator.as_slice().iter().chain(r.denominator.as_slice());
-            all.into_iter().all(|x| x.is_finite())
-        }
-    };
+    let polynomials = scene.environment.rational().is_none_or(|r| {
+        let all = r.numerator.as_slice().iter().chain(r.denominator.as_slice());
+        all.into_iter().all(|x| x.is_finite())
+    });
+    // Of a spring only what it has: its wall's damper is not felt.
+    let environment = scene.environment.wall().is_none_or(|w| wall(&w))
+        && scene.environment.residual().is_none_or(f64::is_finite)
+        && polynomials;
     let stiffness = match scene.coupling {
         Coupling::Rigid => 1.0,
         Coupling::Spring { stiffness } => stiffness,

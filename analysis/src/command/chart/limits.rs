@@ -16,7 +16,6 @@ use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wal
 use crate::map::MapError;
 use crate::progress;
 use crate::quantity::{shortened, significant};
-use crate::simulation::wall;
 
 /// Arguments of `haptic chart limits`.
 #[derive(Debug, Args)]
@@ -50,7 +49,7 @@ const RATES: usize = 61;
 /// Looks for the limits and draws them.
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let file = arguments.scene.load()?;
-    let Some(wall) = wall(&file.scene) else {
+    let Some(wall) = file.scene.environment.wall() else {
         return Err(MapError::NoWall { scene: file.name }.into());
     };
     let rate = 1.0 / file.scene.timing.period;

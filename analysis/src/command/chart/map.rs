@@ -15,7 +15,6 @@ use crate::map::border::closed_form_border;
 use crate::map::{Family, Map, MapError, Region};
 use crate::progress;
 use crate::quantity::{shortened, significant};
-use crate::simulation::wall;
 
 /// Arguments of `haptic chart map`.
 #[derive(Debug, Args)]
@@ -66,7 +65,7 @@ pub fn of_file(
     let bar = progress::bar(side as u64, "judging walls");
     let map = Map::new(&family, stiffness, damping, side, || bar.inc(1));
     bar.finish_and_clear();
-    let wall = wall(&file.scene);
+    let wall = file.scene.environment.wall();
     let delay = wall.map_or(0, |wall| wall.delay);
     let period = significant(1e3 * file.scene.timing.period, 4);
     let overlay = Overlay {

@@ -13,7 +13,6 @@ use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::scenario::{Beside, Input, play};
-use crate::simulation::wall;
 use crate::studies::tradeoff::ticks::{self, Ticks};
 use crate::studies::tradeoff::{
     self, Subject, Tradeoff, certificate, rate, servo, simulation, sine,
@@ -203,7 +202,7 @@ fn all_ticks() -> Result<Ticks, CommandError> {
 fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
-    let has_wall = |program: &&Program| wall(&program.scene).is_some();
+    let has_wall = |program: &&Program| program.scene.environment.wall().is_some();
     let walls: Vec<_> = program::ALL.iter().filter(has_wall).collect();
     let names: Vec<_> = walls.iter().map(|program| program.name).collect();
     let spinner = progress::spinner("the programs of walls");

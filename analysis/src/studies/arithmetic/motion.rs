@@ -1,6 +1,6 @@
 //! A motion of contact and free, and how far a format's torques are from those of `f64` in it.
 
-use firmware::environment::{Environment, Wall};
+use firmware::environment::Environment;
 use firmware::number::Arithmetic;
 
 use super::{ArithmeticError, Subject};
@@ -48,17 +48,15 @@ impl Motion {
         let counts_per_radian = self.subject.transducers.counts_per_turn / std::f64::consts::TAU;
         let offset = (angle * counts_per_radian).round();
         let place = offset / counts_per_radian;
-        let moved = |wall: Wall| Wall { face: wall.face + place, ..wall };
         let mut subject = self.subject;
-        subject.scene.environment = match subject.scene.environment {
-            Environment::DelayedSpring(wall) => Environment::DelayedSpring(moved(wall)),
-            Environment::DamperWall(wall) => Environment::DamperWall(moved(wall)),
-            free @ Environment::FreeMode { .. } => free,
-            Environment::FreeModeWall { residual, wall } => {
-                Environment::FreeModeWall { residual, wall: moved(wall) }
+        match subject.scene.environment {
+            Environment::Rational(_) | Environment::Stated(_) => return None,
+            ref mut environment => {
+                if let Some(wall) = environment.wall_mut() {
+                    wall.face += place;
+                }
             }
-            Environment::Rational(_) => return None,
-        };
+        }
         let begin = (APPROACH / subject.scene.timing.period).ceil() as usize;
         let approach = (0..begin).map(|tick| {
             let part = tick as f64 / begin as f64;

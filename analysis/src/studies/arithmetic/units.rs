@@ -1,6 +1,7 @@
 //! Units of angle and torque: how a scene fits a format that holds nothing above 1.
 
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::parameter::Parameter;
 use firmware::scene::{Coupling, Device, Scene};
 use firmware::servo::Transducers;
 
@@ -55,32 +56,24 @@ impl Units {
     }
 
     fn environment(&self, environment: Environment) -> Environment {
-        let residual = |residual: f64| residual * self.angle / self.torque;
-        match environment {
-            Environment::DelayedSpring(wall) => Environment::DelayedSpring(self.wall(wall)),
-            Environment::DamperWall(wall) => Environment::DamperWall(self.wall(wall)),
-            Environment::FreeMode { residual: left, delay } => {
-                Environment::FreeMode { residual: residual(left), delay }
-            }
-            Environment::FreeModeWall { residual: left, wall } => {
-                Environment::FreeModeWall { residual: residual(left), wall: self.wall(wall) }
-            }
+        // N m/rad, and N m s/rad as well.
+        let slope = |value: f64| value * self.angle / self.torque;
+        let scaled = |environment: Environment, parameter| {
+            let value = environment.get(parameter).unwrap_or(0.0);
+            let value =
+                if parameter == Parameter::Face { value / self.angle } else { slope(value) };
+            environment.with(parameter, value).unwrap_or(environment)
+        };
+        let numbers =
+            [Parameter::Stiffness, Parameter::Damping, Parameter::Face, Parameter::Residual];
+        match numbers.into_iter().fold(environment, scaled) {
             Environment::Rational(rational) => {
                 let scaled: Vec<_> =
-                    rational.numerator.as_slice().iter().map(|n| residual(*n)).collect();
+                    rational.numerator.as_slice().iter().map(|n| slope(*n)).collect();
                 let numerator = Coefficients::new(&scaled).unwrap_or(rational.numerator);
                 Environment::Rational(Rational { numerator, ..rational })
             }
-        }
-    }
-
-    fn wall(&self, wall: Wall) -> Wall {
-        let stiffness = self.angle / self.torque;
-        Wall {
-            stiffness: wall.stiffness * stiffness,
-            damping: wall.damping * stiffness,
-            face: wall.face / self.angle,
-            ..wall
+            other => other,
         }
     }
 }

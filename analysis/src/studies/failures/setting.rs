@@ -12,7 +12,7 @@ use firmware::servo::Transducers;
 use super::fate::End;
 use super::trial::Trial;
 use crate::device::Motion;
-use crate::simulation::{Experiment, wall};
+use crate::simulation::Experiment;
 
 /// Period of all cases in s.
 pub const PERIOD: f64 = 1e-3;
@@ -68,7 +68,7 @@ pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
 
 /// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad.
 pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
-    let Some(wall) = wall(scene) else { return 0.0 };
+    let Some(wall) = scene.environment.wall() else { return 0.0 };
     let step = TAU / transducers.counts_per_turn;
     (0.5 * wall.stiffness + wall.damping / scene.timing.period) * step
 }

@@ -6,7 +6,6 @@ use std::f64::consts::TAU;
 use super::{Axis, Method, NUMBER, Subject, Tradeoff};
 use crate::limits::{Limit, at_period, largest_stiffness, with_wall};
 use crate::program::Program;
-use crate::simulation::wall;
 use crate::studies::bench::CORE_CLOCK;
 use crate::table::Column;
 
@@ -46,7 +45,7 @@ fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
         return None;
     };
     // What is found in one sample is felt in the next, whatever the coupling.
-    let damping = wall(&scene)?.damping;
+    let damping = scene.environment.wall()?.damping;
     let ripple = (stiffness + damping * rate) * TAU / COUNTS;
     let processor = 100.0 * instructions * rate / CORE_CLOCK;
     let family = program.name.replace('_', " ");

@@ -123,6 +123,7 @@ fn type_of(environment: &Environment) -> String {
         Environment::FreeModeWall { wall, .. } => {
             format!("free mode and {}, {}", wall_type(wall), delay(wall.delay))
         }
+        Environment::Stated(_) => "of another crate".to_owned(),
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
             format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))

@@ -168,7 +168,7 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     // Hidden from the optimiser, which would otherwise judge a constant scene when it compiles.
     let scene = core::hint::black_box(program.scene);
     let start = meter::now();
-    let judged = E::certify(scene);
+    let judged = crate::certificate::certify_scene(scene, N::FORMAT);
     let time = meter::now().wrapping_sub(start);
     let certified = judged.unwrap_or_else(|_| refuse(Step::Certificate.as_str()));
     log::certificate("compiler", compiler);

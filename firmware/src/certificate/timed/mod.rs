@@ -9,8 +9,9 @@ use super::Certified;
 use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{LoopIntervals, Missed, largest_solved, nonlinear_bound};
-use super::parameter::first_invalid;
 use super::rules::{Rule, paper_limit};
+use super::validity::first_invalid;
+use crate::environment::{Environment, EnvironmentModel};
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
 use crate::passivity::interval::Interval;
@@ -209,7 +210,7 @@ impl Assessment {
 /// what that takes: it is told that none is cancelled, and says no if some is.
 // In a frame of its own: what it takes is not on the stack of a small board when the servo is built.
 #[inline(never)]
-pub(super) const fn judged<const CANCELS: bool, M: OutputMode>(
+pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     scene: &Scene,
     is_late: bool,
     format: Format,
@@ -224,10 +225,10 @@ pub(super) const fn judged<const CANCELS: bool, M: OutputMode>(
         OutputTiming::Simultaneous => largest_solved(&scene.environment, None, n),
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
-    let Some(bound) = nonlinear_bound::<CANCELS>(&scene.environment, solved, n) else {
+    let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
         return Err(Step::Certificate);
     };
-    match Limited::of_solved::<CANCELS>(scene, n, bound, solved) {
+    match Limited::of_solved::<E>(scene, n, bound, solved) {
         Some(limited) if stands_counts_read_late::<M>(&limited, scene, n) => Ok(limited),
         _ => Err(Step::Certificate),
     }
@@ -307,7 +308,7 @@ pub(super) const fn limited_bound(
         return bound;
     }
     match largest_solved(&scene.environment, None, n) {
-        Some(solved) => nonlinear_bound::<true>(&scene.environment, solved, n),
+        Some(solved) => nonlinear_bound::<Environment>(&scene.environment, solved, n),
         None => None,
     }
 }

@@ -32,6 +32,7 @@ use super::message::{
     ToHost,
 };
 use crate::boot::Program;
+use crate::certificate::scene_data;
 use crate::environment::Discretize;
 use crate::fault::FaultRecord;
 use crate::number::Number;
@@ -267,7 +268,7 @@ where
 
     fn description(&self) -> Description {
         let Program { transducers, rendering, .. } = self.program;
-        let (scene, format, timing) = (E::as_data(&self.active.scene), N::FORMAT, M::TIMING);
+        let (scene, format, timing) = (scene_data(&self.active.scene), N::FORMAT, M::TIMING);
         Description { scene, transducers, rendering, format, timing }
     }
 

@@ -3,9 +3,9 @@
 
 use firmware::board::BAUD;
 use firmware::fault::Fault;
+use firmware::parameter::{Parameter, TUNABLE};
 use firmware::servo_loop::State;
 use firmware::torque::LimitReason;
-use firmware::tuning::TUNABLE;
 use firmware::wire::message::{LONGEST_TO_BOARD, LONGEST_TO_HOST, MAX_CHANGES, ToBoard};
 use firmware::wire::telemetry::BATCH;
 use firmware::wire::{PROTOCOL, encode, largest_frame};
@@ -95,7 +95,6 @@ fn every_variant_is_there_with_its_number() {
         ("firmware/src/servo_loop/state.rs", "State", "### State", None),
         ("firmware/src/reset.rs", "ResetCause", "### ResetCause", None),
         ("firmware/src/torque.rs", "LimitReason", "### LimitReason", None),
-        ("firmware/src/certificate/parameter.rs", "Parameter", "### Parameter", None),
     ] {
         let table = table(&document, heading);
         let variants = variants(path, name);
@@ -108,6 +107,17 @@ fn every_variant_is_there_with_its_number() {
             assert_eq!(column(&table, place), fields, "{name}");
         }
     }
+}
+
+#[test]
+fn every_parameter_is_there_with_its_number() {
+    let table = table(&read(DOCUMENT), "### Parameter");
+    let all: Vec<_> = Parameter::ALL
+        .iter()
+        .map(|parameter| (format!("{}", *parameter as u32), format!("{parameter:?}")))
+        .collect();
+    let said: Vec<_> = table.iter().map(|row| (row[0].clone(), row[1].clone())).collect();
+    assert_eq!(said, all);
 }
 
 #[test]

@@ -1,0 +1,156 @@
+//! The range in which each number of a scene makes sense at all.
+
+use crate::parameter::{Parameter, Range};
+use crate::scene::Scene;
+use crate::text::Text;
+
+/// A number that makes no sense whatever the rest of the scene is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InvalidParameter {
+    /// Which number.
+    pub parameter: Parameter,
+    /// Its value.
+    pub value: f64,
+    /// What it has to be.
+    pub bound: &'static str,
+    /// The number of the scene that `bound` ends in, in the same unit; `None` where it says all.
+    pub limit: Option<f64>,
+}
+
+impl InvalidParameter {
+    /// "the period is 0 s, and must be finite and greater than 0"
+    pub(super) const fn write<const N: usize>(&self, text: &mut Text<N>) {
+        let (name, unit) = self.parameter.name_and_unit();
+        text.push("the ");
+        text.push(name);
+        text.push(" is ");
+        text.push_number(self.value);
+        if !unit.is_empty() {
+            text.push(" ");
+            text.push(unit);
+        }
+        text.push(", and must be ");
+        text.push(self.bound);
+        if let Some(limit) = self.limit {
+            text.push(" ");
+            text.push_number(limit);
+            text.push(" ");
+            text.push(unit);
+        }
+    }
+}
+
+/// In a free hand, the slower the device moves, the nearer `Re(1/J)` comes to its damping.
+const NO_MORE_THAN_DAMPING: &str =
+    "finite and at most the device damping, which no device's passivity exceeds:";
+
+const fn requirement(range: Range) -> &'static str {
+    match range {
+        Range::Finite => "finite",
+        Range::Positive => "finite and greater than 0",
+        Range::NotNegative => "finite and not below 0",
+        Range::Fraction => "at least 0 and below 1",
+        Range::Whole(..) => "a whole number up to 8",
+    }
+}
+
+/// The first number of the scene that is out of its range.
+pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
+    let mut i = 0;
+    while i < Parameter::ALL.len() {
+        let parameter = Parameter::ALL[i];
+        if let Some(value) = scene.get(parameter) {
+            let bound = requirement(parameter.range());
+            if !parameter.range().admits(value) {
+                return Some(InvalidParameter { parameter, value, bound, limit: None });
+            }
+            if let Some(invalid) = unrelated(scene, parameter, value) {
+                return Some(invalid);
+            }
+        }
+        i += 1;
+    }
+    match scene.environment.rational() {
+        Some(rational) => match first_not_finite(rational.numerator.as_slice()) {
+            Some(value) => Some(not_finite(Parameter::Numerator, value)),
+            None => match first_not_finite(rational.denominator.as_slice()) {
+                Some(value) => Some(not_finite(Parameter::Denominator, value)),
+                None => None,
+            },
+        },
+        None => None,
+    }
+}
+
+/// What is in its range, and does not fit another number of the scene.
+const fn unrelated(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
+    let (bound, limit) = match parameter {
+        Parameter::Passivity if value > scene.device.damping => {
+            (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
+        }
+        Parameter::WorstPeriod if value < scene.timing.period => {
+            ("finite and not below the period", None)
+        }
+        Parameter::Delay if value == 0.0 && !scene.environment.has_transfer() => {
+            ("at least 1 where no transfer function is stated", None)
+        }
+        _ => return None,
+    };
+    Some(InvalidParameter { parameter, value, bound, limit })
+}
+
+const fn not_finite(parameter: Parameter, value: f64) -> InvalidParameter {
+    InvalidParameter { parameter, value, bound: requirement(parameter.range()), limit: None }
+}
+
+const fn first_not_finite(coefficients: &[f64]) -> Option<f64> {
+    let mut i = 0;
+    while i < coefficients.len() {
+        if !coefficients[i].is_finite() {
+            return Some(coefficients[i]);
+        }
+        i += 1;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::{Rejection, certify};
+    use crate::environment::{Environment, Wall};
+    use crate::scene::{Coupling, Device, Timing};
+
+    fn with_passivity(passivity: f64) -> Result<(), Rejection> {
+        let wall = Wall::spring(21.0, 1);
+        let scene = Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(passivity) },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment: Environment::DelayedSpring(wall),
+            torque_limit: None,
+        };
+        certify(&scene).map(|_| ())
+    }
+
+    #[test]
+    fn no_device_has_more_passivity_than_damping() {
+        assert_eq!(with_passivity(0.022), Ok(()));
+        for passivity in [0.022_f64.next_up(), 0.22, f64::MAX] {
+            let refused = with_passivity(passivity).unwrap_err();
+            assert!(matches!(refused, Rejection::Invalid(_)), "{refused:?}");
+        }
+        assert_eq!(
+            with_passivity(0.22).unwrap_err().sentence().as_str(),
+            "rejected: the device passivity is 0.22 N m s/rad, and must be finite and at most the \
+             device damping, which no device's passivity exceeds: 0.022 N m s/rad"
+        );
+        // What is no passivity at all keeps the reason that it had.
+        for passivity in [0.0, -1.0] {
+            let refused = with_passivity(passivity).unwrap_err();
+            assert!(matches!(refused, Rejection::NoPassivity { .. }), "{refused:?}");
+        }
+        let infinite = with_passivity(f64::INFINITY).unwrap_err().sentence();
+        assert!(infinite.as_str().ends_with("must be finite"), "{}", infinite.as_str());
+    }
+}

@@ -1,0 +1,122 @@
+//! Environments of other crates: what they state of themselves, so that they are judged and rendered
+//! like the ones that are here.
+//!
+//! A type of another crate has a difference equation ([`Discretize`](super::Discretize)), numbers that
+//! have names ([`NamedParameters`]), and a statement of what it is to the certificate
+//! ([`StatedEnvironment`]). The certificate rests on that statement as it rests on the declared
+//! passivity of the device: it lists it among its assumptions.
+//!
+//! A constant is certified with the statement as a value, since a trait's methods are not called at
+//! compile time ([`Scene::certified_as`](crate::scene::Scene::certified_as)); a board asks the trait
+//! again when it starts and for each change, and does not run a scene whose two statements differ in
+//! what passes.
+
+use super::any::Environment;
+use super::law::LawContext;
+use super::rational::Rational;
+use super::sealed;
+use crate::parameter::NamedParameters;
+
+/// What an environment of another crate is to the certificate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct StatedModel {
+    /// Whole samples from a position to the first torque that depends on it. A
+    /// [`transfer`](Self::transfer) says the same by itself.
+    pub delay: usize,
+    /// The transfer function from position to torque, where the law is linear. Its coefficients are
+    /// judged as a [`Rational`] has them in the number format of the servo.
+    // No board says so on its wire: what a board renders passes by its bound.
+    #[cfg_attr(feature = "wire", serde(skip))]
+    pub transfer: Option<Rational>,
+    /// What holds for the law with its torque limited at any level, which a board asks for: it limits
+    /// every torque. A law that is not linear has nothing else.
+    pub bound: Option<StatedBound>,
+}
+
+/// Bounds of a law that need not be linear. They hold for the coefficients of every number format
+/// that the law runs in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct StatedBound {
+    /// Upper bound on the passivity index `alpha` in N m s/rad: for the positions `x_k` and torques
+    /// `F_k` of every motion, `sum F_k (x_k - x_(k-1)) + alpha / T sum (x_k - x_(k-1))^2` is bounded
+    /// from below, with the torque limited to any level, which may change from tick to tick.
+    pub index: f64,
+    /// Upper bound in N m s/rad on the change of the torque over that of the position, in the l2 norm
+    /// and times the period (equation 37).
+    pub gain: f64,
+}
+
+impl StatedBound {
+    /// Of a law whose torque depends on one position, `delay` samples ago, and never falls as that
+    /// rises, by no more than `steepest` N m/rad: a spring of any shape.
+    ///
+    /// Its potential is convex and `steepest`-smooth, so that the torque of the present position is
+    /// passive by `(difference of torques)^2 / (2 steepest)` a tick; each sample of delay takes
+    /// `steepest T`, the first of them half of it (equation 31). A clipped law is one of the same kind.
+    pub const fn of_monotone_spring(steepest: f64, delay: usize, period: f64) -> Self {
+        let gain = steepest * period;
+        let samples = if delay == 0 { 0.0 } else { delay as f64 - 0.5 };
+        // Rounded up twice each: both products of the index.
+        Self { index: (gain * samples).next_up().next_up(), gain: gain.next_up() }
+    }
+}
+
+impl StatedModel {
+    /// A linear law. A board renders it only with a bound, too.
+    pub const fn linear(transfer: Rational, bound: Option<StatedBound>) -> Self {
+        Self { delay: transfer.delay, transfer: Some(transfer), bound }
+    }
+
+    /// A law that need not be linear, late by at least one sample.
+    pub const fn nonlinear(delay: usize, bound: StatedBound) -> Self {
+        Self { delay, transfer: None, bound: Some(bound) }
+    }
+}
+
+/// An environment of another crate.
+///
+/// To run on a board it is [`Delayed`](super::Delayed) as well.
+pub trait StatedEnvironment: NamedParameters + Copy + 'static {
+    /// What it is to the certificate, in a scene with this period, damping and coupling.
+    fn stated(&self, context: &LawContext) -> StatedModel;
+}
+
+/// An environment that the certificate knows: one of this crate's, or a [`StatedEnvironment`].
+pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
+    /// Whether it may cancel the device's damping. The program of an environment whose type says that
+    /// it does not has nothing of what it takes to judge that.
+    const CANCELS_DAMPING: bool;
+
+    /// As data, which is what is judged.
+    fn as_data(&self, context: &LawContext) -> Environment;
+}
+
+impl<E: StatedEnvironment> sealed::Sealed for E {}
+
+impl<E: StatedEnvironment> EnvironmentModel for E {
+    const CANCELS_DAMPING: bool = false;
+
+    fn as_data(&self, context: &LawContext) -> Environment {
+        Environment::Stated(self.stated(context))
+    }
+}
+
+macro_rules! known_models {
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
+        impl<$($generics)*> sealed::Sealed for $environment {}
+
+        impl<$($generics)*> EnvironmentModel for $environment {
+            const CANCELS_DAMPING: bool = $cancels;
+
+            fn as_data(&self, _: &LawContext) -> Environment {
+                // The constant function of the type, which has the same name.
+                <$environment>::as_data(self)
+            }
+        }
+    )*};
+}
+
+use super::*;
+for_every_environment!(known_models);

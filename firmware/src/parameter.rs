@@ -1,0 +1,140 @@
+//! The numbers of a scene by name: one table of their keys, names, units and ranges, and the traits by
+//! which a scene is asked for a number.
+//!
+//! A parameter is added here, in the environment that has it ([`NamedParameters`]), and, if a scene
+//! file shall have it, as a row of the reference of scene files.
+
+/// Largest degree of a rational environment's numerator or denominator.
+pub const MAX_DEGREE: usize = 8;
+
+/// Longest delay in samples.
+pub const MAX_DELAY: usize = 8;
+
+/// The values of a parameter that make sense at all, whatever the rest of the scene is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Any finite number.
+    Finite,
+    /// Finite and greater than zero.
+    Positive,
+    /// Finite and not below zero.
+    NotNegative,
+    /// At least zero and less than one.
+    Fraction,
+    /// A whole number from the first to the second, both included.
+    Whole(u32, u32),
+}
+
+impl Range {
+    /// Whether `value` is in the range. No range has a value that is not finite.
+    pub const fn admits(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::Positive => value > 0.0,
+                Self::NotNegative => value >= 0.0,
+                Self::Fraction => value >= 0.0 && value < 1.0,
+                Self::Whole(least, most) => {
+                    value as u32 as f64 == value && value >= least as f64 && value <= most as f64
+                }
+            }
+    }
+}
+
+macro_rules! parameters {
+    ($($parameter:ident: $key:literal, $name:literal, $unit:literal, $range:expr;)*) => {
+        /// A number of a scene. The order is that of the wire.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+        pub enum Parameter {
+            $(#[doc = concat!("`", $key, "`: the ", $name)] $parameter,)*
+        }
+
+        impl Parameter {
+            /// All of them, in the order in which a scene is checked.
+            pub const ALL: &[Self] = &[$(Self::$parameter),*];
+
+            /// Full name in a scene file, such as `device.inertia`.
+            pub const fn key(self) -> &'static str {
+                match self {
+                    $(Self::$parameter => $key,)*
+                }
+            }
+
+            /// Name and unit for sentences; the unit of a bare number is empty.
+            pub const fn name_and_unit(self) -> (&'static str, &'static str) {
+                match self {
+                    $(Self::$parameter => ($name, $unit),)*
+                }
+            }
+
+            /// The values that make sense; for polynomials those of each coefficient.
+            pub const fn range(self) -> Range {
+                match self {
+                    $(Self::$parameter => $range,)*
+                }
+            }
+        }
+    };
+}
+
+parameters! {
+    Inertia: "device.inertia", "device inertia", "kg m^2", Range::Positive;
+    DeviceDamping: "device.damping", "device damping", "N m s/rad", Range::NotNegative;
+    Passivity: "device.passivity", "device passivity", "N m s/rad", Range::Finite;
+    Period: "servo.period", "period", "s", Range::Positive;
+    WorstPeriod: "servo.worst_period", "worst period", "s", Range::Positive;
+    CouplingStiffness: "coupling.stiffness", "coupling stiffness", "N m/rad", Range::Positive;
+    Stiffness: "environment.stiffness", "stiffness", "N m/rad", Range::Finite;
+    Damping: "environment.damping", "damping", "N m s/rad", Range::Finite;
+    Filter: "environment.filter", "filter", "", Range::Fraction;
+    Delay: "environment.delay", "delay", "samples", Range::Whole(0, MAX_DELAY as u32);
+    Face: "environment.face", "face", "rad", Range::Finite;
+    Residual: "environment.residual", "residual", "N m s/rad", Range::Finite;
+    Numerator: "environment.numerator", "numerator coefficient", "", Range::Finite;
+    Denominator: "environment.denominator", "denominator coefficient", "", Range::Finite;
+    UnitZeros: "environment.unit_zeros", "number of zeros at 1", "", Range::Whole(0, MAX_DEGREE as u32);
+    TorqueLimit: "limits.torque", "torque limit", "N m", Range::Positive;
+    StatedIndex: "environment.index", "stated index", "N m s/rad", Range::NotNegative;
+    StatedGain: "environment.gain", "stated gain", "N m s/rad", Range::NotNegative;
+}
+
+/// The parameters that may be changed while the servo runs, with the names that people type.
+///
+/// The device is what it is and changes by no message; period and delay are those that the
+/// program was compiled and its board was set up for.
+pub const TUNABLE: [(&str, Parameter); 7] = [
+    ("stiffness", Parameter::Stiffness),
+    ("damping", Parameter::Damping),
+    ("filter", Parameter::Filter),
+    ("face", Parameter::Face),
+    ("residual", Parameter::Residual),
+    ("coupling.stiffness", Parameter::CouplingStiffness),
+    ("torque_limit", Parameter::TorqueLimit),
+];
+
+/// Something with numbers that have names.
+pub trait NamedParameters {
+    /// The number of this name; `None` where there is none.
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64>;
+}
+
+/// The named numbers of a type: its own fields, and those of the field that comes last.
+macro_rules! named_parameters {
+    ($([$($generics:tt)*] $type:ty: $($parameter:ident => $field:ident),* $(; $inner:ident)?;)*) => {$(
+        impl<$($generics)*> $crate::parameter::NamedParameters for $type {
+            fn value(
+                &mut self,
+                parameter: $crate::parameter::Parameter,
+            ) -> Option<&mut f64> {
+                match parameter {
+                    $($crate::parameter::Parameter::$parameter => Some(&mut self.$field),)*
+                    _ => named_parameters!(@ self parameter $($inner)?),
+                }
+            }
+        }
+    )*};
+    (@ $self:ident $parameter:ident) => { None };
+    (@ $self:ident $parameter:ident $inner:ident) => { $self.$inner.value($parameter) };
+}
+pub(crate) use named_parameters;
