@@ -75,14 +75,9 @@ impl<E> Scene<E> {
 }
 
 impl<E> Scene<E> {
-    /// The number of this name outside of the environment; `None` where the scene has none.
-    const fn own_value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+    /// What the coupling and the torque limit may be changed to while the servo runs.
+    const fn tunable(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (parameter, &mut self.coupling) {
-            (Parameter::Inertia, _) => Some(&mut self.device.inertia),
-            (Parameter::DeviceDamping, _) => Some(&mut self.device.damping),
-            (Parameter::Passivity, _) => self.device.passivity.as_mut(),
-            (Parameter::Period, _) => Some(&mut self.timing.period),
-            (Parameter::WorstPeriod, _) => self.timing.worst_period.as_mut(),
             (Parameter::CouplingStiffness, Coupling::Spring { stiffness }) => Some(stiffness),
             (Parameter::TorqueLimit, _) => self.torque_limit.as_mut(),
             _ => None,
@@ -90,17 +85,29 @@ impl<E> Scene<E> {
     }
 }
 
+/// What may be changed while the servo runs, and what the environment has besides.
 impl<E: NamedParameters> NamedParameters for Scene<E> {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match self.environment.value(parameter) {
-            // Asked twice, since a borrow that is returned in one branch lasts in all of them.
-            Some(_) => self.environment.value(parameter),
-            None => self.own_value(parameter),
+        match parameter {
+            Parameter::CouplingStiffness | Parameter::TorqueLimit => self.tunable(parameter),
+            _ => self.environment.value(parameter),
         }
     }
 }
 
 impl Scene {
+    /// The number of this name outside of the environment; `None` where the scene has none.
+    const fn own_value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match parameter {
+            Parameter::Inertia => Some(&mut self.device.inertia),
+            Parameter::DeviceDamping => Some(&mut self.device.damping),
+            Parameter::Passivity => self.device.passivity.as_mut(),
+            Parameter::Period => Some(&mut self.timing.period),
+            Parameter::WorstPeriod => self.timing.worst_period.as_mut(),
+            _ => self.tunable(parameter),
+        }
+    }
+
     /// The value of a parameter; `None` where the scene has none, and for polynomials.
     ///
     /// ```
@@ -120,10 +127,15 @@ impl Scene {
     /// assert_eq!(softer.coupling, Coupling::Spring { stiffness: 40.0 });
     /// ```
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
-        let mut scene = *self;
-        match scene.environment.get(parameter) {
+        let mut copy = *self;
+        copy.read(parameter)
+    }
+
+    /// The same without a copy of the scene.
+    pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
+        match self.environment.read(parameter) {
             Some(value) => Some(value),
-            None => match scene.own_value(parameter) {
+            None => match self.own_value(parameter) {
                 Some(value) => Some(*value),
                 None => None,
             },

@@ -44,6 +44,11 @@ pub enum Assumption {
         /// Whole samples.
         samples: usize,
     },
+    /// The environment is of another crate, and what is judged is what it states.
+    StatedModel {
+        /// The stated bound on its index in N m s/rad, if there is one.
+        index: Option<f64>,
+    },
     /// The wall is felt on one side only.
     OneSided {
         /// The bound that it was judged by, in N m s/rad.
@@ -103,6 +108,7 @@ impl Assumption {
             Self::DevicePassivity { .. }
             | Self::Hold { .. }
             | Self::Delay { .. }
+            | Self::StatedModel { .. }
             | Self::CancelledDamping { .. }
             | Self::StepsUnbounded
             | Self::WorstPeriod { passes: false, .. }
@@ -157,6 +163,14 @@ impl fmt::Display for Assumption {
             Self::Delay { samples } => {
                 write!(f, "the environment is late by exactly {samples} whole sample(s)")
             }
+            Self::StatedModel { index: Some(index) } => write!(
+                f,
+                "the environment is of another crate and what that states of it: a passivity index \
+                 of at most {index} N m s/rad"
+            ),
+            Self::StatedModel { index: None } => f.write_str(
+                "the environment is of another crate and what that states of it: a transfer function",
+            ),
             Self::OneSided { bound } => {
                 f.write_str("one-sided wall; judged by the nonlinear bound")?;
                 write_bound(f, *bound)
@@ -241,7 +255,7 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
     write!(f, ": {rest}")
 }
 
-const MOST: usize = 9;
+const MOST: usize = 10;
 
 /// The assumptions of a scene's verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -264,6 +278,7 @@ impl Assumptions {
             passes: assessment.outcome.is_ok(),
         }));
         list.push(delay(&scene.environment));
+        list.push(stated(&scene.environment));
         let one_sided = scene.environment.wall().is_some_and(|wall| wall.one_sided);
         let bound = assessment.bound.map(Interval::hi);
         list.push(one_sided.then_some(Assumption::OneSided { bound }));
@@ -294,6 +309,15 @@ impl Assumptions {
             Assumption::Quantisation(rest) => Some(rest),
             _ => None,
         })
+    }
+}
+
+fn stated(environment: &Environment) -> Option<Assumption> {
+    match environment {
+        Environment::Stated(stated) => {
+            Some(Assumption::StatedModel { index: stated.bound.map(|bound| bound.index) })
+        }
+        _ => None,
     }
 }
 

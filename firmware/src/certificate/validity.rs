@@ -56,10 +56,24 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    let mut i = 0;
+    match (first_invalid_number(scene), scene.environment.rational()) {
+        (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
+            Some(value) => Some(not_finite(Parameter::Numerator, value)),
+            None => match first_not_finite(rational.denominator.as_slice()) {
+                Some(value) => Some(not_finite(Parameter::Denominator, value)),
+                None => None,
+            },
+        },
+        (invalid, _) => invalid,
+    }
+}
+
+/// The same without polynomials, which no bound that a board asks for depends on.
+pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParameter> {
+    let (mut copy, mut i) = (*scene, 0);
     while i < Parameter::ALL.len() {
         let parameter = Parameter::ALL[i];
-        if let Some(value) = scene.get(parameter) {
+        if let Some(value) = copy.read(parameter) {
             let bound = requirement(parameter.range());
             if !parameter.range().admits(value) {
                 return Some(InvalidParameter { parameter, value, bound, limit: None });
@@ -70,16 +84,7 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
         }
         i += 1;
     }
-    match scene.environment.rational() {
-        Some(rational) => match first_not_finite(rational.numerator.as_slice()) {
-            Some(value) => Some(not_finite(Parameter::Numerator, value)),
-            None => match first_not_finite(rational.denominator.as_slice()) {
-                Some(value) => Some(not_finite(Parameter::Denominator, value)),
-                None => None,
-            },
-        },
-        None => None,
-    }
+    None
 }
 
 /// What is in its range, and does not fit another number of the scene.

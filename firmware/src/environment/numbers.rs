@@ -6,14 +6,16 @@ use crate::parameter::{NamedParameters, Parameter};
 impl Environment {
     /// The value of a parameter, whole numbers included; `None` where it has none.
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
-        let mut environment = *self;
-        match parameter {
-            Parameter::Delay => Some(*environment.delay_mut() as f64),
-            Parameter::UnitZeros => match environment {
-                Self::Rational(rational) => Some(rational.unit_zeros as f64),
-                _ => None,
-            },
-            _ => match environment.number(parameter) {
+        let mut copy = *self;
+        copy.read(parameter)
+    }
+
+    /// The same without a copy of the environment.
+    pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
+        match (parameter, &self) {
+            (Parameter::Delay, _) => Some(*self.delay_mut() as f64),
+            (Parameter::UnitZeros, Self::Rational(rational)) => Some(rational.unit_zeros as f64),
+            _ => match self.number(parameter) {
                 Some(value) => Some(*value),
                 None => None,
             },

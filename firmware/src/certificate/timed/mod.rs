@@ -10,7 +10,7 @@ use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{LoopIntervals, Missed, largest_solved, nonlinear_bound};
 use super::rules::{Rule, paper_limit};
-use super::validity::first_invalid;
+use super::validity::first_invalid_number;
 use crate::environment::{Environment, EnvironmentModel};
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
@@ -215,7 +215,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     is_late: bool,
     format: Format,
 ) -> Result<Limited, Step> {
-    if first_invalid(scene).is_some() {
+    if first_invalid_number(scene).is_some() {
         return Err(Step::Certificate);
     }
     let n = &LoopIntervals::of_late(scene, is_late, format);
