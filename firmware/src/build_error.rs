@@ -94,15 +94,18 @@ impl BuildError {
     }
 
     /// Rounds a coefficient, or says which one does not fit.
-    pub(crate) fn coefficient<N: Number>(
-        name: &'static str,
-        value: f64,
-    ) -> Result<N::Coefficient, Self> {
+    ///
+    /// # Errors
+    /// Where the number format does not hold it.
+    pub fn coefficient<N: Number>(name: &'static str, value: f64) -> Result<N::Coefficient, Self> {
         N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }
 
     /// Rounds an angle or a torque, or says which one does not fit.
-    pub(crate) fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
+    ///
+    /// # Errors
+    /// Where the number format does not hold it.
+    pub fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
         N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }
 }

@@ -87,5 +87,6 @@ fn unbuildable(why: Unbuildable) -> &'static str {
         Unbuildable::Improper => "it needs samples from the future",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",
         Unbuildable::OutOfRange => "a number of it is out of range",
+        Unbuildable::Unstated => "its environment is stated by a bound alone",
     }
 }

@@ -82,5 +82,6 @@ fn unbuildable(error: Unbuildable) -> &'static str {
         Unbuildable::Improper => "its environment needs samples from the future",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",
         Unbuildable::OutOfRange => "a number of it is out of range",
+        Unbuildable::Unstated => "its environment is stated by a bound alone",
     }
 }

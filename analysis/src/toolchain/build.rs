@@ -276,6 +276,17 @@ impl Toolchain {
         self.measuring("survey")
     }
 
+    /// Builds the program of an environment that is not in the firmware, for the emulated board with its
+    /// log.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_own_environment(&self, format: NumberFormat) -> Result<PathBuf, BuildError> {
+        let scene = Variant::scene("board-qemu,log", format, "");
+        let variant = Variant { package: "own-environment", ..scene };
+        Ok(self.build(&["pedal"], &variant)?.swap_remove(0))
+    }
+
     /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
     ///
     /// # Errors

@@ -500,6 +500,9 @@ const fn valid_environment(
     if first_invalid(scene).is_some() {
         return Err(Unbuildable::OutOfRange);
     }
+    if !scene.environment.has_transfer() {
+        return Err(Unbuildable::Unstated);
+    }
     let n = LoopIntervals::of(scene, format);
     match transfer(&scene.environment, &n) {
         Ok(environment) => Ok((n, environment)),

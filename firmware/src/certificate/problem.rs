@@ -368,7 +368,7 @@ const fn unbuildable(error: Unbuildable) -> Rejection {
     match error {
         Unbuildable::Improper => Rejection::Improper,
         Unbuildable::IllPosed => Rejection::IllPosed { loop_gain: Interval::ZERO },
-        Unbuildable::OutOfRange => Rejection::Undecided {
+        Unbuildable::OutOfRange | Unbuildable::Unstated => Rejection::Undecided {
             doubt: UndecidedReason::OutOfRange,
             index: None,
             limit: None,

@@ -23,7 +23,7 @@ pub struct FixedDelay<N, const DELAY: usize> {
 
 impl<N: Number, const DELAY: usize> FixedDelay<N, DELAY> {
     /// A line full of zeros.
-    pub(crate) const fn at_rest() -> Self {
+    pub const fn at_rest() -> Self {
         Self { oldest_first: [N::ZERO; DELAY] }
     }
 }

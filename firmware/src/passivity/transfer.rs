@@ -33,6 +33,8 @@ pub enum Unbuildable {
     IllPosed,
     /// A number overflowed, or a degree is beyond [`super::polynomial::MAX_DEGREE`].
     OutOfRange,
+    /// There is none: only a bound is stated.
+    Unstated,
 }
 
 impl Transfer {

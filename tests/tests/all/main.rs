@@ -17,6 +17,7 @@ mod interval;
 mod live;
 mod margin;
 mod misses;
+mod own_environment;
 mod random;
 mod reference;
 mod remedies;

@@ -1,0 +1,129 @@
+//! An environment that is not in the [`firmware`]: a spring that gets stiffer beyond a knee, as a pedal
+//! does. It shows what such a type consists of; to make one of your own, copy this package.
+//!
+//! 1. The type, with the numbers that a person gives.
+//! 2. Its law: what the servo computes each tick, [`Discretize`] and [`Law`].
+//! 3. Its statement to the certificate, [`StatedEnvironment`], with a proof in the comment. The test of
+//!    this package tries to disprove it.
+//! 4. The numbers that may be changed while it runs, [`NamedParameters`].
+//!
+//! A program of it is `src/bin/pedal.rs`.
+#![cfg_attr(not(test), no_std)]
+
+use firmware::coupling::{Response, Slopes};
+use firmware::environment::{
+    DelayLine, Delayed, Discretize, FixedDelay, Law, LawContext, StatedBound, StatedEnvironment,
+    StatedModel,
+};
+use firmware::number::Number;
+use firmware::parameter::{NamedParameters, Parameter};
+use firmware::servo::BuildError;
+
+/// A spring of stiffness `soft` up to `knee` on both sides of zero and of stiffness `stiff` beyond, late
+/// by `DELAY` samples: `F = soft x + (stiff - soft) (x - x clamped to the knee)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProgressiveSpring<const DELAY: usize> {
+    /// Stiffness around zero in N m/rad.
+    pub soft: f64,
+    /// Stiffness beyond the knee in N m/rad.
+    pub stiff: f64,
+    /// Angle in rad at which it becomes stiff.
+    pub knee: f64,
+}
+
+/// What a coefficient that is rounded is off by at most: half a unit of the last place of `I16F16`, the
+/// coarsest of the servo's formats, twice, since two coefficients add up to the steepest slope.
+const ROUNDING: f64 = 1.0 / 65536.0;
+
+impl<const DELAY: usize> ProgressiveSpring<DELAY> {
+    /// What it is to the certificate at this period in s, for constants.
+    ///
+    /// The torque depends on one position and never falls as that rises, as long as neither stiffness is
+    /// negative: it is a monotone spring, no steeper than the larger of the two. Of any other nothing is
+    /// claimed.
+    pub const fn stated_at(&self, period: f64) -> StatedModel {
+        let steepest = self.soft.max(self.stiff) + ROUNDING;
+        let is_monotone = self.soft >= 0.0 && self.stiff >= 0.0;
+        let steepest = if is_monotone { steepest } else { f64::INFINITY };
+        StatedModel::nonlinear(DELAY, StatedBound::of_monotone_spring(steepest, DELAY, period))
+    }
+}
+
+impl<const DELAY: usize> StatedEnvironment for ProgressiveSpring<DELAY> {
+    fn stated(&self, context: &LawContext) -> StatedModel {
+        self.stated_at(context.period)
+    }
+}
+
+// All of it is late by at least one sample.
+impl Delayed for ProgressiveSpring<1> {}
+impl Delayed for ProgressiveSpring<2> {}
+
+impl<const DELAY: usize> NamedParameters for ProgressiveSpring<DELAY> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match parameter {
+            Parameter::Stiffness => Some(&mut self.stiff),
+            Parameter::Face => Some(&mut self.knee),
+            _ => None,
+        }
+    }
+}
+
+/// The law of a [`ProgressiveSpring`].
+#[derive(Clone, Debug)]
+pub struct ProgressiveLaw<N: Number, const DELAY: usize> {
+    soft: N::Coefficient,
+    added: N::Coefficient,
+    knee: N,
+    delay: FixedDelay<N, DELAY>,
+}
+
+impl<N: Number, const DELAY: usize> ProgressiveLaw<N, DELAY> {
+    /// The torque in N m of the position `x` (rad).
+    #[inline(always)]
+    fn torque(&self, x: N) -> N {
+        let beyond = x.minus(x.smaller(self.knee).larger(self.knee.negated()));
+        x.times(self.soft).plus(beyond.times(self.added))
+    }
+}
+
+impl<N: Number, const DELAY: usize> Law<N> for ProgressiveLaw<N, DELAY> {
+    #[inline(always)]
+    fn evaluate(&self, _: N) -> Response<N> {
+        // There is a due torque whenever there is a delay.
+        Response::Held(self.delay.due().unwrap_or(N::ZERO))
+    }
+
+    #[inline(always)]
+    fn update(&mut self, x_e: N) {
+        let torque = self.torque(x_e);
+        self.delay.push(torque);
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        self.delay.fill(self.torque(x_e));
+    }
+
+    fn slopes(&self) -> Slopes {
+        Slopes::default()
+    }
+}
+
+impl<N: Number, const DELAY: usize> Discretize<N> for ProgressiveSpring<DELAY> {
+    type Law = ProgressiveLaw<N, DELAY>;
+
+    fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
+        Ok(ProgressiveLaw {
+            soft: BuildError::coefficient::<N>("soft stiffness", self.soft)?,
+            added: BuildError::coefficient::<N>(
+                "stiffness beyond the knee",
+                self.stiff - self.soft,
+            )?,
+            knee: BuildError::number("knee", self.knee)?,
+            delay: FixedDelay::at_rest(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
