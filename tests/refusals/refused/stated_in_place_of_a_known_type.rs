@@ -1,0 +1,14 @@
+//! A statement about a type that the certificate knows by itself.
+use firmware::certificate::Certified;
+use firmware::environment::{DelayedSpring, StatedBound, StatedModel};
+use firmware::scene::Scene;
+use refusals::scene;
+
+const NOTHING: StatedModel = StatedModel::nonlinear(1, StatedBound { index: 0.0, gain: 0.0 });
+
+const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
+    scene(DelayedSpring { stiffness: 1000.0 }).certified_as(NOTHING);
+
+fn main() {
+    let _ = CERTIFIED;
+}
