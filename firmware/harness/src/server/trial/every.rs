@@ -41,7 +41,7 @@ fn typed<const DELAY: usize, N: Number>(job: Job<'_>) -> Result<(), Gone> {
             None => as_data::<N>(job),
         },
         Environment::Rational(rational) => job.of::<_, N>(rational),
-        Environment::DelayedSpring(_) => as_data::<N>(job),
+        Environment::DelayedSpring(_) | Environment::Stated(_) => as_data::<N>(job),
     }
 }
 
