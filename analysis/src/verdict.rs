@@ -12,7 +12,7 @@ use firmware::scene::Scene;
 use firmware::servo::Latched;
 use serde::Serialize;
 
-use crate::minimum::least;
+use crate::line_search::minimizing_angle;
 use crate::quantity::significant;
 use crate::response::Response;
 
@@ -236,5 +236,5 @@ fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let velocity = Response::new(judged).from_velocity(scene.timing.period);
     let real = |theta: f64| velocity.at_angle(theta).re;
     let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-    least(real, angle(cosine.hi()), angle(cosine.lo()))
+    minimizing_angle(real, angle(cosine.hi()), angle(cosine.lo()))
 }

@@ -15,7 +15,7 @@ use firmware::wire::{encode, largest_frame};
 
 use crate::emulator::Stats;
 use crate::emulator::log::LogDecoder;
-use crate::rig::Twin;
+use crate::lockstep::RemoteServo;
 use crate::toolchain::Board;
 
 /// What a board says at the end of a sample, and when it is asked to end.
@@ -61,9 +61,9 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The code that the motor felt: without an amplifier, or a level at its input, that of no
-    /// torque.
-    pub fn felt(&self) -> u16 {
+    /// The code that acts on the motor: that of no torque while the amplifier is off or no code drives
+    /// its input.
+    pub fn applied_code(&self) -> u16 {
         self.code.filter(|_| self.amplifier).unwrap_or(DacCode::MID_SCALE.get())
     }
 }
@@ -246,11 +246,11 @@ impl Drop for VirtualBoard {
 
 /// The board waits for a count, holds what it had computed before, and that sample's code is the
 /// answer.
-impl Twin for VirtualBoard {
+impl RemoteServo for VirtualBoard {
     type Error = VirtualBoardError;
 
     fn exchange(&mut self, raw: i32) -> Result<u16, VirtualBoardError> {
         self.answer(raw, &[])?;
-        Ok(self.sample()?.felt())
+        Ok(self.sample()?.applied_code())
     }
 }

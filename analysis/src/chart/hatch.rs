@@ -6,7 +6,7 @@ use firmware::torque::LimitReason;
 use plotters::prelude::*;
 
 use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};
-use crate::simulation::served::Served;
+use crate::simulation::tick_status::TickStatus;
 
 /// Units between two lines of a hatching; all grounds of a kind share one grid of them, so that
 /// narrow ones beside each other show it too.
@@ -33,15 +33,15 @@ pub enum Ground {
 
 impl Ground {
     /// The ground of samples that were served so; `None` for those that were served in full.
-    pub fn of(served: Served) -> Option<Self> {
-        match served {
-            Served::Ran(LimitReason::None) => None,
-            Served::Ran(LimitReason::Torque) => Some(Self::Grey),
-            Served::Ran(LimitReason::Converter) => Some(Self::Rising),
-            Served::Ran(LimitReason::Angle) => Some(Self::Falling),
-            Served::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
-            Served::Ran(LimitReason::Ramp) => Some(Self::Upright),
-            Served::Missed => Some(Self::Level),
+    pub fn of(status: TickStatus) -> Option<Self> {
+        match status {
+            TickStatus::Ran(LimitReason::None) => None,
+            TickStatus::Ran(LimitReason::Torque) => Some(Self::Grey),
+            TickStatus::Ran(LimitReason::Converter) => Some(Self::Rising),
+            TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
+            TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
+            TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),
+            TickStatus::Missed => Some(Self::Level),
         }
     }
 
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn every_reason_has_a_ground_of_its_own() {
-        let grounds: Vec<_> = Served::all().filter_map(Ground::of).collect();
-        assert_eq!(grounds.len(), Served::all().count() - 1);
+        let grounds: Vec<_> = TickStatus::all().filter_map(Ground::of).collect();
+        assert_eq!(grounds.len(), TickStatus::all().count() - 1);
         for (index, ground) in grounds.iter().enumerate() {
             assert!(!grounds[..index].contains(ground));
         }

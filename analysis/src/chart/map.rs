@@ -7,8 +7,8 @@ use super::axes::Axes;
 use super::hatch::Ground;
 use super::strips::polygons;
 use super::*;
-use crate::map::border::Border;
-use crate::map::{Map, Region};
+use crate::stability_map::border::Border;
+use crate::stability_map::{Map, Region};
 
 /// Height of a line of the key in pixels.
 const ROW: i32 = 22;

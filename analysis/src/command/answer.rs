@@ -7,21 +7,21 @@ use firmware::certificate::Rejection;
 use thiserror::Error;
 
 use crate::batch::BatchError;
+use crate::board_sim::SimulatedBoardError;
 use crate::chart::ChartError;
+use crate::compare_run::RunError;
 use crate::emulator::EmulatorError;
 use crate::file::FileError;
 use crate::identify::IdentifyError;
 use crate::identify::port::PortError;
 use crate::link::{Address, LinkError};
 use crate::quantity::significant;
-use crate::recorded::RecordedError;
-use crate::scenario::ScenarioError;
+use crate::run_csv::RunCsvError;
 use crate::simulation::SimulationError;
 use crate::studies::arithmetic::ArithmeticError;
 use crate::studies::tradeoff::TradeoffError;
 use crate::table::TableError;
 use crate::toolchain::{BuildError, SetupError, SourcesError};
-use crate::twin::TwinError;
 use crate::virtual_board::VirtualBoardError;
 
 /// The answer of a command that could be asked.
@@ -66,7 +66,7 @@ pub enum CommandError {
         "{file} is a file, and a simulated board runs a scene's program by its name: the programs are {programs}; \
          `cargo haptic new NAME` begins one"
     )]
-    FileOnTwin {
+    FileOnSimulatedBoard {
         /// The file.
         file: String,
         /// The programs that there are.
@@ -105,10 +105,10 @@ pub enum CommandError {
     Number(#[from] crate::number::DoesNotFit),
     /// A bad recording.
     #[error(transparent)]
-    Replay(#[from] TableError),
+    CountsCsv(#[from] TableError),
     /// A bad record of a run.
     #[error(transparent)]
-    Recorded(#[from] RecordedError),
+    RunCsv(#[from] RunCsvError),
     /// The machine cannot build or run programs for the board.
     #[error(transparent)]
     Setup(#[from] SetupError),
@@ -126,7 +126,7 @@ pub enum CommandError {
     Probe(#[from] crate::toolchain::probe::ProbeError),
     /// A run failed.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Run(#[from] RunError),
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
@@ -141,7 +141,7 @@ pub enum CommandError {
     Chart(#[from] ChartError),
     /// No map can be drawn.
     #[error(transparent)]
-    Map(#[from] crate::map::MapError),
+    Map(#[from] crate::stability_map::MapError),
     /// The scene is certified at no sample rate, however soft its wall.
     #[error(
         "{scene}: no stiffness is certified at any of these sample rates; its damping alone, or \
@@ -251,7 +251,7 @@ pub enum CommandError {
     },
     /// A board without hardware has ended by itself.
     #[error(transparent)]
-    Twin(#[from] TwinError),
+    SimulatedBoard(#[from] SimulatedBoardError),
     /// A virtual board that did not start.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),

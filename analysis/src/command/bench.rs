@@ -12,15 +12,15 @@ use firmware::scene::{Coupling, Scene};
 
 use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
+use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::emulator::Report;
-use crate::listing::listing;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Beside, Input, play};
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
+use crate::text_table::markdown_table;
 use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.
@@ -195,10 +195,10 @@ fn on_target(
     for (format, elf) in builds {
         let spinner = progress::spinner(&format!("{name} in {format}"));
         let mut controller = program.controller(format, &program.transducers)?;
-        let outcome = play(
+        let outcome = run_with_backend(
             Input::Hand(Box::new(program.device())),
             controller.as_mut(),
-            Some(Beside::Emulator(elf)),
+            Some(Backend::Emulator(elf)),
             TICKS,
             || {},
         )?;
@@ -292,7 +292,8 @@ fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), Co
 const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
-    let mut table = listing(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
+    let mut table =
+        markdown_table(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
     for figure in figures {
         let number =
             |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));

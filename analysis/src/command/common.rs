@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::answer::CommandError;
 use crate::file::{self, Purpose, SceneFile};
 use crate::number;
-use crate::simulation::Stride;
+use crate::simulation::Integration;
 use crate::simulation::method::Method;
 use crate::toolchain::NumberFormat;
 use crate::verdict::{Report, judge_in};
@@ -60,8 +60,8 @@ pub struct Steps {
 
 impl Steps {
     /// Method and steps.
-    pub fn stride(&self) -> Stride {
-        Stride { method: self.method, substeps: self.substeps }
+    pub fn integration(&self) -> Integration {
+        Integration { method: self.method, substeps: self.substeps }
     }
 }
 

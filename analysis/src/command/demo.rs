@@ -17,15 +17,15 @@ use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
 use crate::chart::{ChartError, Output, Picture, Window};
+use crate::compare_run::{self, Backend, Input, RunOutcome, run_with_backend};
 use crate::device::Motion;
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{self, Beside, Input, Outcome, play};
-use crate::simulation::{Experiment, Stride, simulate};
+use crate::simulation::{Experiment, Integration, simulate};
 use crate::toolchain::{self, Tools};
 use crate::verdict::{self, Verdict};
-use crate::worst_hand::{self, Held};
+use crate::worst_hand::{self, HandCase};
 
 /// Arguments of `haptic demo`.
 #[derive(Debug, Args)]
@@ -121,15 +121,19 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     Ok(if all_well { Answer::Yes } else { Answer::No })
 }
 
-fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outcome, CommandError> {
+fn emulate(
+    program: &Program,
+    elf: &Path,
+    arguments: &Arguments,
+) -> Result<RunOutcome, CommandError> {
     let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
     let ticks = arguments.ticks;
     let bar = progress::bar(ticks as u64, program.name);
     let stepper = progress::stepper(&bar);
-    let outcome = play(
+    let outcome = run_with_backend(
         Input::Hand(Box::new(program.device())),
         controller.as_mut(),
-        Some(Beside::Emulator(elf)),
+        Some(Backend::Emulator(elf)),
         ticks,
         stepper,
     )?;
@@ -137,10 +141,11 @@ fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outco
     Ok(outcome)
 }
 
-fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), CommandError> {
-    let script = (program.script)();
-    let title = format!("{}: {}", program.name, script.story);
-    let mut picture = scenario::trace(title, program.scene.timing.period, &outcome.run, &script);
+fn draw_run(folder: &Path, program: &Program, outcome: &RunOutcome) -> Result<(), CommandError> {
+    let trajectory = (program.trajectory)();
+    let title = format!("{}: {}", program.name, trajectory.description);
+    let mut picture =
+        compare_run::trace(title, program.scene.timing.period, &outcome.run, &trajectory);
     picture.face = face(&program.scene.environment);
     picture.torque_limit = program.scene.torque_limit;
     Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture, &Window::default())?)?)
@@ -162,12 +167,12 @@ fn face(environment: &Environment) -> Option<f64> {
 }
 
 /// Ticks in which the motion grows by a factor.
-fn ticks_to(factor: f64, held: &Held) -> f64 {
+fn ticks_to(factor: f64, held: &HandCase) -> f64 {
     factor.ln() / held.spectral_radius.ln()
 }
 
 /// Angle in rad from a touch until the oscillation has grown a thousandfold.
-fn touched(device: &Chain, held: &Held) -> Result<Vec<f64>, CommandError> {
+fn touched(device: &Chain, held: &HandCase) -> Result<Vec<f64>, CommandError> {
     const TOUCH: f64 = 0.01;
     let experiment = Experiment {
         plant: worst_hand::plant(device, 1.0, &held.hand),
@@ -175,7 +180,7 @@ fn touched(device: &Chain, held: &Held) -> Result<Vec<f64>, CommandError> {
         samples: ticks_to(1e3, held) as usize,
         ..Experiment::still(&PAST_THE_LINE)
     };
-    Ok(simulate(&experiment, Stride::default())?.position)
+    Ok(simulate(&experiment, Integration::default())?.position)
 }
 
 fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError> {

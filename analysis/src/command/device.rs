@@ -7,7 +7,7 @@ use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
 use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
 use crate::file::{self, DeviceFile};
-use crate::mu::Check;
+use crate::mu_analysis::Check;
 use crate::quantity::significant;
 
 /// Arguments of `haptic device`.

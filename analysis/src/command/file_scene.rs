@@ -6,7 +6,7 @@ use firmware::servo::Transducers;
 use super::answer::CommandError;
 use super::own;
 use crate::file::{self, SceneFile};
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
 
 /// Torque in N m at full scale for a scene file that has no limit of its own.
 const FULL_SCALE: f64 = 5.0;
@@ -41,8 +41,8 @@ pub fn transducers_of(
 }
 
 /// What a hand does to show a scene file: the file's own hand, if it has one.
-pub fn script_of(file: &SceneFile) -> Script {
-    let mut script = Script::push_and_let_go();
-    script.hand = file.hand.unwrap_or(script.hand);
-    script
+pub fn hand_trajectory(file: &SceneFile) -> HandTrajectory {
+    let mut trajectory = HandTrajectory::push_and_let_go();
+    trajectory.hand = file.hand.unwrap_or(trajectory.hand);
+    trajectory
 }

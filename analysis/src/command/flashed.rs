@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::answer::CommandError;
+use crate::compare_run::Backend;
 use crate::progress;
-use crate::scenario::Beside;
 use crate::toolchain::{self, Board, NumberFormat, Tools};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
@@ -33,7 +33,7 @@ impl Flashed {
     }
 
     /// It as what runs beside the host; `period` is that of its servo in s.
-    pub fn beside(&self, period: f64) -> Beside<'_> {
-        Beside::VirtualBoard { program: &self.program, board: self.board, elf: &self.elf, period }
+    pub fn backend(&self, period: f64) -> Backend<'_> {
+        Backend::VirtualBoard { program: &self.program, board: self.board, elf: &self.elf, period }
     }
 }

@@ -3,6 +3,7 @@
 pub mod advise;
 pub mod answer;
 pub mod bench;
+pub mod board_sim;
 pub mod certify;
 pub mod chart;
 pub mod common;
@@ -24,7 +25,6 @@ pub mod scope;
 pub mod simulate;
 pub mod stability;
 pub mod tune;
-pub mod twin;
 mod values;
 pub mod worst_hand;
 
@@ -123,7 +123,7 @@ pub enum Command {
     Scope(scope::Arguments),
     /// Simulate a board in a simulated hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
-    Twin(twin::Arguments),
+    BoardSim(board_sim::Arguments),
     /// Simulate a scene sample by sample, certified or not.
     Simulate(simulate::Arguments),
     /// Compute the spectral radius of the loop, and up to which stiffness it is stable.
@@ -145,7 +145,7 @@ impl Command {
     fn program(&self) -> Option<&str> {
         match self {
             Self::Run(arguments) => Some(&arguments.scene),
-            Self::Twin(arguments) => Some(&arguments.scene),
+            Self::BoardSim(arguments) => Some(&arguments.scene),
             Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
             _ => None,
         }
@@ -170,7 +170,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::Scope(arguments) => scope::run(&arguments),
-        Command::Twin(arguments) => twin::run(&arguments),
+        Command::BoardSim(arguments) => board_sim::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),

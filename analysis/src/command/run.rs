@@ -13,20 +13,20 @@ use serde::Serialize;
 
 use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, FormatArgument, MOST_TICKS, TICKS, json};
-use super::file_scene::{scene_file, script_of, transducers_of};
+use super::file_scene::{hand_trajectory, scene_file, transducers_of};
 use super::flashed::Flashed;
 use super::outcome::{section, text};
 use super::values::positive;
+use crate::compare_run::{Backend, Input, RunOutcome, run_with_backend};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::SceneFile;
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
+use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
-use crate::rig::{Difference, SimulatedDevice};
-use crate::scenario::{Beside, Input, Outcome, play};
 use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
-use crate::{replay, rig, verdict};
+use crate::{counts_csv, lockstep, verdict};
 
 /// Where a scene runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,7 +121,7 @@ struct Question {
     name: String,
     scene: Scene,
     transducers: Transducers,
-    script: Script,
+    trajectory: HandTrajectory,
     controller: Box<dyn Controller>,
     /// The program for the board, where there is one.
     program: Option<&'static Program>,
@@ -153,7 +153,7 @@ struct Instructions {
 /// Runs a scene and prints what came of it. The answer is no where a code of the board differs from
 /// the host's.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let counts = arguments.replay.as_deref().map(replay::load).transpose()?;
+    let counts = arguments.replay.as_deref().map(counts_csv::load).transpose()?;
     let mut question = question(arguments)?;
     let built = build(&question, arguments)?;
     let ticks = match &counts {
@@ -164,17 +164,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Some(counts) => Input::Recording(counts),
         None => Input::Hand(Box::new(SimulatedDevice::new(
             question.scene.device,
-            question.script.clone(),
+            question.trajectory.clone(),
             question.scene.timing.period,
             &question.transducers,
         )?)),
     };
     let bar = progress::bar(ticks as u64, &question.name);
     let stepper = progress::stepper(&bar);
-    let outcome = play(
+    let outcome = run_with_backend(
         input,
         question.controller.as_mut(),
-        built.beside(question.scene.timing.period),
+        built.backend(question.scene.timing.period),
         ticks,
         stepper,
     )?;
@@ -209,7 +209,7 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
         name: program.name.to_owned(),
         scene: program.scene,
         transducers,
-        script: (program.script)(),
+        trajectory: (program.trajectory)(),
         controller: program.controller(format, &transducers)?,
         program: Some(program),
     })
@@ -227,9 +227,9 @@ fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
     for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
-    let script = script_of(&file);
+    let trajectory = hand_trajectory(&file);
     let (name, scene) = (file.name, file.scene);
-    Ok(Question { name, scene, transducers, script, controller, program: None })
+    Ok(Question { name, scene, transducers, trajectory, controller, program: None })
 }
 
 /// What a run does not use of a scene file, as sentences: the servo runs on a rigid device that a
@@ -248,7 +248,7 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
         let instead = if is_replay {
             "the counts are those of the recording".to_owned()
         } else {
-            format!("here {}", script_of(file).story)
+            format!("here {}", hand_trajectory(file).description)
         };
         notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
     }
@@ -263,11 +263,11 @@ enum Built {
 }
 
 impl Built {
-    fn beside(&self, period: f64) -> Option<Beside<'_>> {
+    fn backend(&self, period: f64) -> Option<Backend<'_>> {
         match self {
             Self::Nothing => None,
-            Self::Emulated(elf) => Some(Beside::Emulator(elf)),
-            Self::Virtual(flashed) => Some(flashed.beside(period)),
+            Self::Emulated(elf) => Some(Backend::Emulator(elf)),
+            Self::Virtual(flashed) => Some(flashed.backend(period)),
         }
     }
 }
@@ -294,7 +294,7 @@ fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandErr
 fn print(
     arguments: &Arguments,
     question: &Question,
-    outcome: &Outcome,
+    outcome: &RunOutcome,
 ) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
@@ -314,7 +314,7 @@ fn print(
     Ok(())
 }
 
-fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summary<'a> {
+fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &RunOutcome) -> Summary<'a> {
     let on_board = outcome.board.is_some();
     Summary {
         scene: name,
@@ -335,14 +335,14 @@ fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summa
 }
 
 /// The rows of a run as CSV.
-pub fn csv(out: &mut impl Write, run: &rig::Run) -> Result<(), io::Error> {
+pub fn csv(out: &mut impl Write, run: &lockstep::Run) -> Result<(), io::Error> {
     rows(out, run).map_err(|error| match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     })
 }
 
-fn rows(out: &mut impl Write, run: &rig::Run) -> csv::Result<()> {
+fn rows(out: &mut impl Write, run: &lockstep::Run) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(["tick", "count", "angle", "torque", "code", "limit"])?;
     for (number, tick) in run.ticks.iter().enumerate() {

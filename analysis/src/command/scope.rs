@@ -109,8 +109,8 @@ impl Session {
     /// Takes what the board says until then.
     fn listen(&mut self, until: Instant, mut recorder: Option<&mut Recorder>) -> io::Result<()> {
         loop {
-            let patience = until.saturating_duration_since(Instant::now());
-            let Some(event) = self.feed.next(patience) else { break };
+            let timeout = until.saturating_duration_since(Instant::now());
+            let Some(event) = self.feed.next(timeout) else { break };
             self.scope.take(event, |sample| match &mut recorder {
                 Some(recorder) => recorder.add(sample),
                 None => Ok(()),

@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument, Steps, json};
 use crate::quantity::{rounded, significant};
-use crate::simulation::served::Served;
-use crate::simulation::{Experiment, Simulator, Stride, Trajectory, simulate};
+use crate::simulation::tick_status::TickStatus;
+use crate::simulation::{Experiment, Integration, Simulator, Trajectory, simulate};
 
 /// Samples that are computed before they are written, where they are written one by one.
 const CHUNK: usize = 4096;
@@ -39,7 +39,7 @@ struct Row {
     position: f64,
     velocity: f64,
     torque: f64,
-    limit: Served,
+    limit: TickStatus,
 }
 
 /// Angle in rad from zero beyond which no device goes: 160 000 turns. What is there has run away.
@@ -50,12 +50,12 @@ const FARTHEST: f64 = 1e6;
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let experiment = Experiment::of(&file, arguments.scene.folder())?;
-    let stride = arguments.steps.stride();
+    let integration = arguments.steps.integration();
     let mut out = io::BufWriter::new(io::stdout().lock());
     let (computed, far) = if arguments.csv {
-        rows(&experiment, stride, &mut out)?
+        rows(&experiment, integration, &mut out)?
     } else {
-        let trajectory = simulate(&experiment, stride)?;
+        let trajectory = simulate(&experiment, integration)?;
         if arguments.answer.json {
             json(&mut out, &trajectory)?;
         } else {
@@ -83,11 +83,11 @@ fn far(trajectory: &Trajectory) -> Option<usize> {
 /// has run away.
 fn rows(
     experiment: &Experiment,
-    stride: Stride,
+    integration: Integration,
     out: impl Write,
 ) -> Result<(usize, Option<usize>), CommandError> {
     let mut writer = csv::Writer::from_writer(out);
-    let mut simulator = Simulator::new(experiment, stride)?;
+    let mut simulator = Simulator::new(experiment, integration)?;
     let (mut done, mut ran_away) = (0, None);
     while done < experiment.samples {
         let wanted = CHUNK.min(experiment.samples - done);

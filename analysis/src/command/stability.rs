@@ -26,7 +26,7 @@ pub struct Arguments {
 /// Judges the linear loop: the answer is no where it is unstable.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
-    let stability = judge(&Experiment::at_rest(&file), arguments.steps.stride())?;
+    let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
     arguments.answer.print(&stability, |stability| text(&file.name, stability))?;
     Ok(if stability.verdict == Verdict::Unstable { Answer::No } else { Answer::Yes })
 }

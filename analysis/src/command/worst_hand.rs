@@ -5,7 +5,7 @@ use clap::Args;
 use super::answer::{Answer, CommandError};
 use super::common::{ForWhom, SceneArgument};
 use crate::quantity::significant;
-use crate::worst_hand::{Search, search};
+use crate::worst_hand::{SearchResult, search};
 
 /// Arguments of `haptic worst-hand`.
 #[derive(Debug, Args)]
@@ -36,8 +36,8 @@ fn growth(spectral_radius: f64, period: f64) -> String {
     }
 }
 
-fn text(name: &str, period: f64, search: &Search) -> String {
-    let Search { worst, oscillates, lighter, tried } = search;
+fn text(name: &str, period: f64, search: &SearchResult) -> String {
+    let SearchResult { worst, oscillates, lighter, tried } = search;
     let number = |value: f64| significant(value, 6);
     let mut text = format!("scene    {name}\nsearched {tried} passive hands\n");
     if !oscillates {

@@ -2,7 +2,7 @@
 //!
 //! For each tick the board takes one count and gives one DAC code, through two pipes in a folder of
 //! the emulator's own; the board's log comes by the emulator's standard output. A guest that does
-//! not answer within [`PATIENCE`] is an error, and an emulator is never left behind.
+//! not answer within [`TIMEOUT`] is an error, and an emulator is never left behind.
 
 mod judge;
 pub mod log;
@@ -57,7 +57,7 @@ const BOARD: [&str; 12] = [
 
 /// How long the board may take for one answer, unless it is told otherwise. Its start takes a second
 /// at most; the rest is for a host that is busy with other things.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Ticks within which a servo must have opened its clamp: more than any scene's fading takes.
 const LONGEST_FADING: usize = 100_000;
@@ -151,10 +151,10 @@ impl Emulator {
         Ok(Self { guest: Guest::boot(elf, &socket)?, number: 0 })
     }
 
-    /// The same with another patience.
+    /// The same with another timeout.
     #[must_use]
-    pub fn with_patience(mut self, patience: Duration) -> Self {
-        self.guest.patience = patience;
+    pub fn with_timeout(mut self, timeout: Duration) -> Self {
+        self.guest.timeout = timeout;
         self
     }
 
@@ -250,7 +250,7 @@ struct Guest {
     pipes: Option<Pipes>,
     log: Option<LogReader>,
     folder: TempDir,
-    patience: Duration,
+    timeout: Duration,
 }
 
 impl Guest {
@@ -273,7 +273,7 @@ impl Guest {
             .spawn()
             .map_err(EmulatorError::Start)?;
         let log = process.stdout.take().map(|output| decoder.follow(output));
-        Ok(Self { process, pipes: Some(pipes), log, folder, patience: PATIENCE })
+        Ok(Self { process, pipes: Some(pipes), log, folder, timeout: TIMEOUT })
     }
 
     /// Gives bytes to the board and waits until it has filled `answer`.
@@ -282,7 +282,7 @@ impl Guest {
         let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
         let process = &mut self.process;
         let mut ended = || process.try_wait().map(|status| status.is_some());
-        match pipes.exchange(question, answer, self.patience, &mut ended) {
+        match pipes.exchange(question, answer, self.timeout, &mut ended) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => Err(self.silent(WHAT)),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Err(self.ended(WHAT)),
@@ -303,7 +303,7 @@ impl Guest {
 
     /// Waits for the process, but not for ever.
     fn wait(&mut self) -> io::Result<Option<ExitStatus>> {
-        let deadline = Instant::now() + self.patience;
+        let deadline = Instant::now() + self.timeout;
         loop {
             match self.process.try_wait()? {
                 None if Instant::now() < deadline => std::thread::sleep(Duration::from_millis(1)),
@@ -317,7 +317,7 @@ impl Guest {
         // Its log is complete only once it has ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
-        EmulatorError::Silent { what, after: self.patience, log: self.last_words() }
+        EmulatorError::Silent { what, after: self.timeout, log: self.last_words() }
     }
 
     /// The error of an emulator that has closed its end of a pipe.

@@ -46,11 +46,11 @@ impl Pipes {
         &mut self,
         question: &[u8],
         mut answer: &mut [u8],
-        patience: Duration,
+        timeout: Duration,
         ended: &mut dyn FnMut() -> io::Result<bool>,
     ) -> io::Result<()> {
         self.counts.write_all(question)?;
-        let deadline = Instant::now() + patience;
+        let deadline = Instant::now() + timeout;
         while !answer.is_empty() {
             while !self.has_something()? {
                 if ended()? {

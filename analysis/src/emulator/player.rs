@@ -5,7 +5,7 @@ use std::path::Path;
 use firmware_harness::play::{Curtain, Play};
 
 use super::{EmulatorError, Guest, Transport};
-use crate::rig::Twin;
+use crate::lockstep::RemoteServo;
 
 /// An emulated board that plays one scene after the other.
 pub struct Player {
@@ -59,7 +59,7 @@ impl Player {
     }
 }
 
-impl Twin for Player {
+impl RemoteServo for Player {
     type Error = EmulatorError;
 
     /// One tick of the play that is open.

@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// How long a board has to say what it is, and how long no row may come.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 /// Time between two bytes that say that somebody listens; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board that was still at it falls silent.
@@ -55,7 +55,7 @@ pub enum PortError {
     #[error(
         "no board that plays a sweep answers on {address} within {} s: flash `identify` \
          (cargo haptic flash --board BOARD identify), and check the port and its speed",
-        PATIENCE.as_secs()
+        TIMEOUT.as_secs()
     )]
     Silent {
         /// The address.
@@ -76,7 +76,7 @@ pub enum PortError {
     #[error(
         "the board on {address} has sent nothing for {} s after {rows} of {ticks} rows: check its \
          cable and its power; its watchdog or its own limit of {SILENCE} s has stopped the motor",
-        PATIENCE.as_secs()
+        TIMEOUT.as_secs()
     )]
     Lost {
         /// The address.
@@ -199,10 +199,10 @@ impl Player {
     }
 
     fn ask(&mut self) -> Result<(), PortError> {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIMEOUT;
         while Instant::now() < end {
             self.say(byte::DESCRIBE)?;
-            let again = Instant::now() + PATIENCE / 8;
+            let again = Instant::now() + TIMEOUT / 8;
             while let Some(line) = self.line(again)? {
                 if let Some(fields) = line.strip_prefix("identify,") {
                     self.description = describe(fields).ok_or_else(|| PortError::Protocol {
@@ -227,7 +227,7 @@ impl Player {
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
         loop {
-            let Some(line) = self.line(Instant::now() + PATIENCE)? else {
+            let Some(line) = self.line(Instant::now() + TIMEOUT)? else {
                 return Err(PortError::Lost { address: self.address, rows, ticks });
             };
             if let Some(fields) = line.strip_prefix("end,") {

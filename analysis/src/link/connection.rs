@@ -28,7 +28,7 @@ pub enum Answer {
 
 /// How long an answer is waited for.
 #[derive(Clone, Copy)]
-pub(crate) struct Patience {
+pub(crate) struct RetryTiming {
     /// Until it is asked again: bytes get lost.
     pub(crate) again: Duration,
     /// In all.
@@ -36,11 +36,11 @@ pub(crate) struct Patience {
 }
 
 /// With what a board knows.
-const QUESTION: Patience =
-    Patience { again: Duration::from_millis(250), end: Duration::from_secs(3) };
+const QUESTION: RetryTiming =
+    RetryTiming { again: Duration::from_millis(250), end: Duration::from_secs(3) };
 /// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
-pub(crate) const REQUEST: Patience =
-    Patience { again: Duration::from_secs(2), end: Duration::from_secs(10) };
+pub(crate) const REQUEST: RetryTiming =
+    RetryTiming { again: Duration::from_secs(2), end: Duration::from_secs(10) };
 
 /// A connection to a board that has said who it is.
 pub struct Link {
@@ -100,13 +100,13 @@ impl Wire {
     fn ask<T>(
         &mut self,
         question: &ToBoard,
-        patience: Patience,
+        timing: RetryTiming,
         mut wanted: impl FnMut(Message) -> Option<T>,
     ) -> io::Result<Option<T>> {
-        let end = Instant::now() + patience.end;
+        let end = Instant::now() + timing.end;
         while Instant::now() < end {
             self.send(question)?;
-            let again = (Instant::now() + patience.again).min(end);
+            let again = (Instant::now() + timing.again).min(end);
             while let Some(message) = self.receive(again)? {
                 if let Some(answer) = wanted(message) {
                     return Ok(Some(answer));
@@ -314,12 +314,12 @@ impl Link {
         &mut self,
         what: &'static str,
         question: &ToBoard,
-        patience: Patience,
+        timing: RetryTiming,
         wanted: impl FnMut(Message) -> Option<T>,
     ) -> Result<T, LinkError> {
-        match self.wire.ask(question, patience, wanted) {
+        match self.wire.ask(question, timing, wanted) {
             Ok(Some(answer)) => Ok(answer),
-            Ok(None) => Err(self.silent(what, patience.end)),
+            Ok(None) => Err(self.silent(what, timing.end)),
             Err(source) => Err(self.lost(source)),
         }
     }

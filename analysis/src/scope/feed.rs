@@ -19,7 +19,7 @@ use crate::link::{Link, LinkError, REQUEST};
 /// without a host.
 const BEAT: Duration = Duration::from_millis(100);
 /// Longest time until a request is passed on.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// Time between two tries to connect again.
 const RETRY: Duration = Duration::from_millis(500);
 /// Silence after which a link that gives no error counts as lost all the same.
@@ -76,8 +76,8 @@ impl Feed {
     }
 
     /// The next event, if there is one within that time.
-    pub fn next(&self, patience: Duration) -> Option<Event> {
-        self.events.recv_timeout(patience).ok()
+    pub fn next(&self, timeout: Duration) -> Option<Event> {
+        self.events.recv_timeout(timeout).ok()
     }
 }
 
@@ -197,7 +197,7 @@ impl Feeder {
                 link.send(&ToBoard::Status)?;
                 beat = Instant::now() + BEAT;
             }
-            let Some(message) = link.receive(beat.min(Instant::now() + LOOK))? else {
+            let Some(message) = link.receive(beat.min(Instant::now() + POLL_INTERVAL))? else {
                 if heard.elapsed() > SILENCE {
                     return Err(End::Lost(link.silent("for its status", SILENCE)));
                 }

@@ -243,11 +243,11 @@ fn says_how_it_is_used() {
 fn talks_to_a_board() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
-    let mut twin = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
+    let mut board = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
     assert_eq!(said.next().unwrap().unwrap(), format!("damper_wall listens on {port}"));
     let ask = |arguments: &[&str]| python(&[&["client.py", &port], arguments].concat());
     let running = answer(&ask(&["set", "stiffness=12.5", "damping=0.002"]));
@@ -283,6 +283,6 @@ fn talks_to_a_board() {
         assert_eq!(said.status.code(), Some(2), "{wrong:?}");
         assert!(String::from_utf8_lossy(&said.stderr).starts_with(words), "{said:?}");
     }
-    twin.kill().unwrap();
-    twin.wait().unwrap();
+    board.kill().unwrap();
+    board.wait().unwrap();
 }

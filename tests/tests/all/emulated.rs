@@ -214,7 +214,7 @@ fn a_board_that_does_nothing_is_an_error() {
     // Stack pointer, reset vector, and a branch to itself.
     let image = [0, 0x10, 0, 0x20, 9, 0, 0, 0, 0xfe, 0xe7];
     std::fs::write(file.path(), image).unwrap();
-    let mut board = Emulator::boot(file.path()).unwrap().with_patience(Duration::from_millis(500));
+    let mut board = Emulator::boot(file.path()).unwrap().with_timeout(Duration::from_millis(500));
     let error = board.exchange(0).unwrap_err();
     assert!(matches!(error, EmulatorError::Silent { .. }), "{error}");
 }

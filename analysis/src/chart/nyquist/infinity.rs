@@ -13,7 +13,7 @@ use super::judged::Branch;
 use crate::chart::dash::Dash;
 use crate::chart::sheet::{Frame, Place, Sheet};
 use crate::chart::{Drawn, anchored, units};
-use crate::circle::{CirclePole, Kind};
+use crate::unit_circle_poles::{Kind, UnitCirclePole};
 
 /// What stands for infinity.
 const FAR: Dash = Dash::new(&[4, 4]);
@@ -29,7 +29,7 @@ const CORNER: f64 = units(14) as f64;
 
 /// Whether the way through infinity is drawn: around several poles at one place it is longer than
 /// a picture's frame.
-pub(super) fn is_drawn(pole: &CirclePole) -> bool {
+pub(super) fn is_drawn(pole: &UnitCirclePole) -> bool {
     matches!(pole.kind, Kind::Simple(_))
 }
 
@@ -37,7 +37,7 @@ pub(super) fn is_drawn(pole: &CirclePole) -> bool {
 pub(super) fn frames(sheet: &Sheet<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
     let all = sheet.all();
     let mut level = 0;
-    let mut frame = |_: &CirclePole| {
+    let mut frame = |_: &UnitCirclePole| {
         let [side, above] = [WORDS, ROOM].map(|room| f64::from(room + STEP * level));
         level += 1;
         Frame {

@@ -16,9 +16,9 @@ use firmware::passivity::transfer::Transfer;
 use firmware::scene::{Coupling, Scene};
 
 use crate::chart::ChartError;
-use crate::circle::{CirclePole, outside, poles};
-use crate::minimum::least;
+use crate::line_search::minimizing_angle;
 use crate::response::Response;
+use crate::unit_circle_poles::{UnitCirclePole, outside, poles};
 
 /// Points between two poles on half the unit circle. They are denser towards the poles, where the
 /// curve is longest.
@@ -69,7 +69,7 @@ pub struct Curve {
     /// For angles from nearly 0 to pi, cut where there are poles.
     pub branches: Vec<Branch>,
     /// Poles on the upper half of the unit circle.
-    pub poles: Vec<CirclePole>,
+    pub poles: Vec<UnitCirclePole>,
     /// Number of poles outside of it.
     pub outside: usize,
     /// Real part that the curve has near its pole at rest.
@@ -105,8 +105,9 @@ impl Curve {
         let real = |theta: f64| velocity.at_angle(theta).re;
         let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
         // Where the certificate has found it, and where it is found here.
-        let known = deciding.and_then(|cos| least(real, angle(cos.hi()), angle(cos.lo())));
-        let found = least(real, 0.0, PI);
+        let known =
+            deciding.and_then(|cos| minimizing_angle(real, angle(cos.hi()), angle(cos.lo())));
+        let found = minimizing_angle(real, 0.0, PI);
         let lowest = [known, found].into_iter().flatten().map(|theta| theta.max(NEAREST));
         let lowest =
             lowest.min_by(|a, b| real(*a).total_cmp(&real(*b))).filter(|_| found.is_some());
@@ -114,7 +115,7 @@ impl Curve {
             let value = velocity.at_angle(theta);
             (value.re, value.im)
         };
-        let has_index = outside == 0 && poles.iter().all(CirclePole::is_passive);
+        let has_index = outside == 0 && poles.iter().all(UnitCirclePole::is_passive);
         let least_real = || lowest.map_or_else(|| real(1.0), real);
         Self {
             role,
@@ -275,7 +276,7 @@ fn limit_name(scene: &Scene, assessment: &Assessment, limit: Option<f64>) -> &'s
 
 /// The curve between the poles, with more points around its least real part.
 fn branches(
-    poles: &[CirclePole],
+    poles: &[UnitCirclePole],
     lowest: Option<f64>,
     point: impl Fn(f64) -> (f64, f64),
 ) -> Vec<Branch> {

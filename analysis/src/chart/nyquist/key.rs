@@ -8,8 +8,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::{Curve, Judged, Role, lines};
 use crate::chart::dash::Dash;
 use crate::chart::{Area, Drawn, FAINT, UNITS, anchored, units};
-use crate::circle::{CirclePole, Kind};
 use crate::quantity::{shortened, significant};
+use crate::unit_circle_poles::{Kind, UnitCirclePole};
 
 /// Height of a line of the key in pixels.
 const ROW: i32 = 19;
@@ -137,7 +137,7 @@ fn margins(scene: &Judged) -> Vec<String> {
 }
 
 /// What a pole does to the curve.
-fn sentence(pole: &CirclePole) -> String {
+fn sentence(pole: &UnitCirclePole) -> String {
     let place = match pole.theta {
         0.0 => "pole at rest, z = 1".to_owned(),
         PI => "pole at z = -1".to_owned(),

@@ -12,9 +12,9 @@ use firmware::servo::Transducers;
 use super::words::{Answered, Simulated, message, text};
 use crate::command::answer::{Answer, CommandError};
 use crate::command::common::ForWhom;
-use crate::command::file_scene::{scene_file, script_of, transducers_of};
+use crate::command::file_scene::{hand_trajectory, scene_file, transducers_of};
 use crate::command::values::positive;
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
 use crate::limits::at_period;
 use crate::program::Program;
 use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
@@ -69,7 +69,7 @@ const SECONDS: f64 = 5.0;
 struct Question {
     name: String,
     subject: Subject,
-    script: Script,
+    trajectory: HandTrajectory,
 }
 
 /// Looks for the cheapest format. The answer is no where none keeps to the figures, or the encoder
@@ -79,7 +79,7 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
     let scene = &question.subject.scene;
     // A scene that is refused at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let motion = Motion::new(&question.subject, question.script.clone(), SECONDS)?;
+    let motion = Motion::new(&question.subject, question.trajectory.clone(), SECONDS)?;
     let figures = Figures {
         hum: arguments.hum,
         error: arguments.error,
@@ -120,7 +120,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             Question {
                 name: program.name.to_owned(),
                 subject: Subject { scene, transducers, steps, range },
-                script: (program.script)(),
+                trajectory: (program.trajectory)(),
             }
         }
         None => {
@@ -135,7 +135,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             let scene = at_rate(&file.scene);
             Question {
                 subject: Subject { scene, transducers, steps, range },
-                script: script_of(&file),
+                trajectory: hand_trajectory(&file),
                 name: file.name,
             }
         }

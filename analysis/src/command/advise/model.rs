@@ -5,9 +5,9 @@ use clap::Args;
 use crate::command::answer::{Answer, CommandError};
 use crate::command::common::{ForWhom, folder};
 use crate::file::{Purpose, load_for};
-use crate::listing::listing;
 use crate::quantity::significant;
 use crate::studies::model::{Advice, Deviation, Judged, advise, percent};
+use crate::text_table::markdown_table;
 
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
 #[derive(Debug, Args)]
@@ -39,7 +39,7 @@ pub fn run(scene: &str, question: &Question, answer: &ForWhom) -> Result<Answer,
 }
 
 fn text(advice: &Advice) -> String {
-    let mut table = listing(
+    let mut table = markdown_table(
         [
             "model",
             "states",

@@ -7,10 +7,10 @@ use firmware::number::Arithmetic;
 use firmware::text::RoundUp3;
 use serde::Serialize;
 
-use crate::listing::listing;
 use crate::quantity::significant;
 use crate::studies::arithmetic::{Advice, Candidate, Subject};
 use crate::studies::bench::CORE_CLOCK;
+use crate::text_table::markdown_table;
 
 /// The answer as JSON.
 #[derive(Serialize)]
@@ -129,7 +129,7 @@ fn number(value: f64) -> String {
 
 /// The answer for a person.
 pub fn text(answered: &Answered) -> String {
-    let mut table = listing(
+    let mut table = markdown_table(
         [
             "format",
             "instructions",

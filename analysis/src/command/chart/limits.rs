@@ -13,10 +13,10 @@ use crate::command::common::SceneArgument;
 use crate::command::file_scene::transducers_of;
 use crate::command::values::{number, positive_range};
 use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
-use crate::map::MapError;
 use crate::progress;
 use crate::quantity::{shortened, significant};
 use crate::simulation::wall;
+use crate::stability_map::MapError;
 
 /// Arguments of `haptic chart limits`.
 #[derive(Debug, Args)]

@@ -11,11 +11,11 @@ use crate::command::answer::CommandError;
 use crate::command::common::SceneArgument;
 use crate::command::values::range;
 use crate::file::SceneFile;
-use crate::map::border::closed_form_border;
-use crate::map::{Family, Map, MapError, Region};
 use crate::progress;
 use crate::quantity::{shortened, significant};
 use crate::simulation::wall;
+use crate::stability_map::border::closed_form_border;
+use crate::stability_map::{Family, Map, MapError, Region};
 
 /// Arguments of `haptic chart map`.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use crate::chart::{Chart, ChartError};
 use crate::command::answer::{Answer, CommandError};
 use crate::command::common::folder;
 use crate::file::{self, Purpose};
-use crate::recorded::{self, RecordedError};
+use crate::run_csv::{self, RunCsvError};
 use crate::trace::Trace;
 
 /// Arguments of `haptic chart trace`.
@@ -52,10 +52,10 @@ pub fn run(arguments: &Arguments, files: &Files) -> Result<Answer, CommandError>
 
 fn load(arguments: &Arguments) -> Result<Trace, CommandError> {
     let path = Path::new(&arguments.file);
-    let mut drawn = if recorded::is_recorded(path) {
-        recorded::load(path, arguments.period)?
+    let mut drawn = if run_csv::is_run_csv(path) {
+        run_csv::load(path, arguments.period)?
     } else if arguments.period.is_some() {
-        return Err(RecordedError::PeriodKnown { file: arguments.file.clone() }.into());
+        return Err(RunCsvError::PeriodKnown { file: arguments.file.clone() }.into());
     } else {
         let file = file::load_for(Purpose::Simulate, &arguments.file)?;
         Trace::simulated(&file, folder(&arguments.file))?

@@ -9,10 +9,10 @@ use clap::{Args, ValueEnum};
 use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Output};
 use crate::command::answer::{Answer, CommandError};
+use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Beside, Input, play};
 use crate::simulation::wall;
 use crate::studies::tradeoff::ticks::{self, Ticks};
 use crate::studies::tradeoff::{
@@ -211,8 +211,8 @@ fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
     let mean = |(program, file): (&'static Program, PathBuf)| {
         let mut controller = program.controller(NumberFormat::F32, &program.transducers)?;
         let hand = Input::Hand(Box::new(program.device()));
-        let beside = Some(Beside::Emulator(&file));
-        let board = play(hand, controller.as_mut(), beside, TICKS, || {})?.emulated();
+        let backend = Some(Backend::Emulator(&file));
+        let board = run_with_backend(hand, controller.as_mut(), backend, TICKS, || {})?.emulated();
         Ok((program, board.map_or(f64::NAN, |board| board.interrupt_instructions.mean)))
     };
     let means = walls.into_iter().zip(files).map(mean).collect();

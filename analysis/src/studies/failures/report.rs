@@ -8,7 +8,7 @@ use super::fate::{End, Fate};
 use super::trial::{Played, Trial};
 use super::walls::{DELAYS, wall};
 use crate::emulator::Player;
-use crate::worst_hand::Held;
+use crate::worst_hand::HandCase;
 
 /// A case with everything about it.
 #[derive(Clone, Debug, Serialize)]
@@ -58,7 +58,7 @@ pub struct WallReport {
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
     /// The hand in which it oscillates at 1.01 of that.
-    pub hand: Held,
+    pub hand: HandCase,
     /// What was seen.
     pub trials: Vec<Seen>,
 }

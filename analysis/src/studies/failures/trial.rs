@@ -14,8 +14,8 @@ use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
 use crate::controller::{Controller, controller};
 use crate::emulator::{EmulatorError, Player};
-use crate::rig::run;
-use crate::simulation::{Experiment, SimulationError, Stride, simulate};
+use crate::lockstep::run;
+use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
 /// Why there is no proof.
 #[derive(Debug, Error)]
@@ -82,7 +82,7 @@ impl Trial {
     /// Where it cannot be simulated.
     pub fn simulated(&self) -> Result<Fate, TrialError> {
         let positions = match self.arithmetic {
-            Arithmetic::F32 => simulate(&self.experiment, Stride::default())?.position,
+            Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
             _ => self.without_converters()?,
         };
         Ok(Fate::of(&positions, self.experiment.samples))

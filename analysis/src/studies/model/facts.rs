@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::Model;
 use crate::file::SceneFile;
-use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
+use crate::simulation::{Experiment, Integration, SimulationError, Trajectory, simulate};
 use crate::stability;
 use crate::studies::bench::median;
 use crate::verdict::{self, Report};
@@ -41,18 +41,18 @@ impl Facts {
         file: &SceneFile,
         run: &Experiment,
     ) -> Result<Self, SimulationError> {
-        let (experiment, stride) =
-            (Experiment { plant: model.plant(file), ..run.clone() }, Stride::default());
+        let (experiment, integration) =
+            (Experiment { plant: model.plant(file), ..run.clone() }, Integration::default());
         let certificate = certificate(model, file);
-        let stability = stability::judge(&experiment, stride)?;
+        let stability = stability::judge(&experiment, integration)?;
         Ok(Self {
-            states: stability::closed_loop(&experiment, stride)?.matrix.nrows(),
+            states: stability::closed_loop(&experiment, integration)?.matrix.nrows(),
             steps_per_second: speed(&experiment)?,
             delta: certificate.as_ref().map(|report| report.delta),
             certificate: certificate.map(|report| report.verdict),
             stability: stability.verdict,
             critical_stiffness: stability.critical_stiffness,
-            motion: simulate(&experiment, stride)?,
+            motion: simulate(&experiment, integration)?,
         })
     }
 }
@@ -81,7 +81,7 @@ fn speed(experiment: &Experiment) -> Result<f64, SimulationError> {
     let mut times = Vec::new();
     for _ in 0..ROUNDS {
         let start = Instant::now();
-        black_box(simulate(black_box(&experiment), Stride::default())?);
+        black_box(simulate(black_box(&experiment), Integration::default())?);
         times.push(start.elapsed().as_secs_f64());
     }
     Ok(STEPS as f64 / median(times))

@@ -184,10 +184,10 @@ impl Bench {
     /// Asks, and runs until the board gives an answer that is wanted.
     pub fn ask<T>(&mut self, question: &ToBoard, wanted: impl Fn(Message) -> Option<T>) -> T {
         /// Samples: a second.
-        const PATIENCE: u32 = 1000;
+        const TIMEOUT: u32 = 1000;
         self.hear();
         self.say(question);
-        for _ in 0..PATIENCE {
+        for _ in 0..TIMEOUT {
             self.run(1);
             if let Some(answer) = self.hear().into_iter().find_map(&wanted) {
                 return answer;

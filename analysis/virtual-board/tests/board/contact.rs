@@ -3,10 +3,10 @@
 
 use std::num::NonZeroU32;
 
-use analysis::hand::Script;
+use analysis::hand::HandTrajectory;
 use analysis::link::Message;
+use analysis::lockstep::SimulatedDevice;
 use analysis::program::Program;
-use analysis::rig::SimulatedDevice;
 use firmware::certificate::Parameter;
 use firmware::servo_loop::State;
 use firmware::wire::message::{Outcome, Status, ToBoard};
@@ -35,10 +35,11 @@ const WAY: u64 = 200;
 
 impl Spun {
     fn of(program: &Program, minutes: u64) -> Self {
-        let script = Script::push_and_let_go().over_and_over(60.0 * (minutes + 1) as f64);
+        let trajectory =
+            HandTrajectory::push_and_let_go().repeated_until(60.0 * (minutes + 1) as f64);
         let (scene, transducers) = (&program.scene, &program.transducers);
         let period = scene.timing.period;
-        let device = SimulatedDevice::new(scene.device, script, period, transducers).unwrap();
+        let device = SimulatedDevice::new(scene.device, trajectory, period, transducers).unwrap();
         Self { hand: InHand::with(device), sample: 0 }
     }
 }

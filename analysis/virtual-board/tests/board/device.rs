@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
+use analysis::lockstep::{PlantIo, SimulatedDevice};
 use analysis::program::Program;
-use analysis::rig::{Plant, SimulatedDevice};
 use virtual_board::device::Device;
 
 use crate::bench::MID_SCALE;

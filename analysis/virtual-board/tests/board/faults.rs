@@ -19,7 +19,7 @@ const INTO: i32 = 300;
 /// counts a turn, and an edge.
 const LARGEST_STEP: u32 = 978;
 /// Periods after which the watchdog resets the board: eight, and two counts of its clock of 8 kHz.
-const PATIENCE: f64 = 8.25;
+const TIMEOUT: f64 = 8.25;
 /// Periods for which interrupts are masked.
 const MASKED: u64 = 3;
 
@@ -95,7 +95,7 @@ const CASES: &[Case] = &[
         fault: "watchdog",
         cause: "the servo's interrupt is disabled",
         program: "damper_wall",
-        bound: PATIENCE,
+        bound: TIMEOUT,
         provoke: |bench| {
             let board = bench.machine.board_mut();
             board.system.exceptions.enable(FIRST_INTERRUPT + PACER_INTERRUPT, false);
@@ -108,7 +108,7 @@ const CASES: &[Case] = &[
         fault: "watchdog",
         cause: "all interrupts are masked for ever",
         program: "damper_wall",
-        bound: PATIENCE,
+        bound: TIMEOUT,
         provoke: |bench| {
             let instructions = 100 * bench.period();
             hold_up(bench, instructions, Masks::All)
@@ -251,7 +251,7 @@ impl Case {
         assert_ne!(bench.pins().samples.last().unwrap().code, Some(MID_SCALE), "{what}");
         let period = bench.period();
         let began = (self.provoke)(&mut bench);
-        while bench.machine.board().now < began + (PATIENCE.ceil() as u64 + 2) * period {
+        while bench.machine.board().now < began + (TIMEOUT.ceil() as u64 + 2) * period {
             bench.run_for(1000);
             if !bench.machine.resets().is_empty() {
                 // What was broken is repaired before it is used again.

@@ -2,7 +2,7 @@
 
 use analysis::controller::{Controller, controller};
 use analysis::emulator::Player;
-use analysis::rig::Twin;
+use analysis::lockstep::RemoteServo;
 use firmware::encoder::CounterWidth;
 use firmware::number::{Arithmetic, InEach, Number};
 use firmware::servo::Transducers;

@@ -1,4 +1,4 @@
-//! The plant over one tick: what the servo's period and its latency make of a [`Plant`].
+//! The discrete-time plant: a [`Plant`] over one tick, with the servo's period and latency.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,9 +6,9 @@ use super::error::SimulationError;
 use super::method::{Method, repeated, rotation, step};
 use super::plant::{Input, Plant};
 
-/// How a plant is taken through a tick.
+/// How a plant is discretised over a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stepping {
+pub struct Discretization {
     /// The method.
     pub method: Method,
     /// Steps a tick, at least one.
@@ -19,7 +19,7 @@ pub struct Stepping {
     pub latency: f64,
 }
 
-impl Stepping {
+impl Discretization {
     /// The exact method without latency, over a period in s.
     pub fn exact(period: f64) -> Self {
         Self { method: Method::Exact, substeps: 1, period, latency: 0.0 }
@@ -35,7 +35,7 @@ impl Stepping {
 
 /// `x(k+1) = transition x(k) + previous u(k-1) + motor u(k) + hand w(k) + sine (s, c)(k)`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tick {
+pub struct DiscretePlant {
     /// From the state at the tick's start.
     pub transition: DMatrix<f64>,
     /// From the motor torque of the tick before, which lasts for the latency; zero without one.
@@ -48,13 +48,13 @@ pub struct Tick {
     pub sine: [DVector<f64>; 2],
 }
 
-impl Tick {
+impl DiscretePlant {
     /// Takes the plant through a tick; `omega` in rad/s is that of the hand's sine torque.
-    pub fn new(plant: &Plant, stepping: &Stepping, omega: f64) -> Self {
+    pub fn new(plant: &Plant, discretization: &Discretization, omega: f64) -> Self {
         let n = plant.order();
-        let [before, after] = stepping.parts().map(|(length, count)| {
+        let [before, after] = discretization.parts().map(|(length, count)| {
             let h = length / f64::from(count);
-            repeated(&step(plant, stepping.method, omega, h), count)
+            repeated(&step(plant, discretization.method, omega, h), count)
         });
         let part = |whole: &DMatrix<f64>| whole.view((0, 0), (n, n)).into_owned();
         let column = |whole: &DMatrix<f64>, index: usize| {
@@ -63,7 +63,7 @@ impl Tick {
         let (motor, hand, sine) =
             (Input::Motor as usize, Input::Hand as usize, super::plant::INPUTS);
         let late = part(&after);
-        let turned = rotation(omega * stepping.latency);
+        let turned = rotation(omega * discretization.latency);
         let oscillator = |i: usize| {
             let later =
                 column(&after, sine) * turned[(0, i)] + column(&after, sine + 1) * turned[(1, i)];
@@ -84,17 +84,17 @@ impl Tick {
     /// Where the machine is too fast for its motion over a period to be computed.
     pub fn checked(
         plant: &Plant,
-        stepping: &Stepping,
+        discretization: &Discretization,
         omega: f64,
     ) -> Result<Self, SimulationError> {
-        let tick = Self::new(plant, stepping, omega);
+        let tick = Self::new(plant, discretization, omega);
         let inputs = [&tick.previous, &tick.motor, &tick.hand, &tick.sine[0], &tick.sine[1]];
         let mut entries = inputs.iter().flat_map(|input| input.iter()).chain(&tick.transition);
         if entries.all(|entry| entry.is_finite()) {
             Ok(tick)
         } else {
             let rate = plant.rates().amax();
-            Err(SimulationError::TooFast { rate, period: stepping.period })
+            Err(SimulationError::TooFast { rate, period: discretization.period })
         }
     }
 
@@ -118,10 +118,10 @@ mod tests {
     #[test]
     fn latency_splits_the_tick_and_nothing_else() {
         let plant = Plant::rigid(Device { inertia: 2e-4, damping: 0.02, passivity: None });
-        let stepping =
-            |latency| Stepping { method: Method::Exact, substeps: 1, period: 1e-3, latency };
+        let discretization =
+            |latency| Discretization { method: Method::Exact, substeps: 1, period: 1e-3, latency };
         let [prompt, late] =
-            [0.0, 4e-4].map(|latency| Tick::new(&plant, &stepping(latency), 900.0));
+            [0.0, 4e-4].map(|latency| DiscretePlant::new(&plant, &discretization(latency), 900.0));
         assert!(!prompt.is_late() && late.is_late());
         let near = |a: &DVector<f64>, b: &DVector<f64>| assert!((a - b).amax() < 1e-12 * b.amax());
         assert!((&prompt.transition - &late.transition).amax() < 1e-15);

@@ -1,27 +1,27 @@
-//! A rigid device in a hand whose grip moves, and the energy that passes between them.
+//! A rigid device in a hand whose set-point moves, and the energy that passes between them.
 //!
 //! ```text
 //! (m + m_h) x'' = u - b x' + k_h (p - x) + b_h (p' - x')
 //! ```
 //!
-//! `x` angle of the device, `u` motor torque, `p` the point that the hand wants to be at; `m`, `b`
+//! `x` angle of the device, `u` motor torque, `p` the hand's set-point; `m`, `b`
 //! of the device, `m_h`, `b_h`, `k_h` of the hand. Over a tick `u` is held and `p` moves steadily.
 
 use firmware::scene::Device;
 use nalgebra::{DMatrix, DVector};
 
+use super::discrete_plant::{DiscretePlant, Discretization};
 use super::error::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
-use super::tick::{Stepping, Tick};
-use crate::device::{Grip, Hand, Motion};
+use crate::device::{Hand, HandSetpoint, Motion};
 
 /// A device in a hand, ready to be stepped by whole ticks.
 #[derive(Clone, Debug)]
 pub struct HeldDevice {
     device: Device,
     period: f64,
-    tick: Tick,
+    tick: DiscretePlant,
     /// `int x'^2 dt` over a tick as a quadratic form of [`at`] its start.
     velocity_energy: DMatrix<f64>,
 }
@@ -33,15 +33,15 @@ impl HeldDevice {
     /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(device: Device, hand: Hand, period: f64) -> Result<Self, SimulationError> {
         let plant = Plant::rigid(device).led(hand);
-        let tick = Tick::checked(&plant, &Stepping::exact(period), 0.0)?;
+        let tick = DiscretePlant::checked(&plant, &Discretization::exact(period), 0.0)?;
         Ok(Self { device, period, tick, velocity_energy: velocity_energy(&plant, period) })
     }
 
     /// One tick with the motor torque `motor` in N m held over it: the motion at its end, and the
     /// work in J that the hand did on the device.
-    pub fn step(&self, motion: Motion, motor: f64, grip: Grip) -> (Motion, f64) {
-        let speed = (grip.to - grip.from) / self.period;
-        let state = DVector::from_vec(vec![motion.position, motion.velocity, grip.from]);
+    pub fn step(&self, motion: Motion, motor: f64, setpoint: HandSetpoint) -> (Motion, f64) {
+        let speed = (setpoint.to - setpoint.from) / self.period;
+        let state = DVector::from_vec(vec![motion.position, motion.velocity, setpoint.from]);
         let end = self.tick.end(&state, motor, speed);
         let next = Motion { position: end[POSITION], velocity: end[VELOCITY] };
         let start = at(state, self.velocity_energy.nrows(), motor, speed);
@@ -105,7 +105,7 @@ mod tests {
         let held = HeldDevice::new(DEVICE, Hand::default(), 1e-3).unwrap();
         let start = Motion { position: 0.1, velocity: 2.0 };
         let torque = 0.05;
-        let (end, work) = held.step(start, torque, Grip::default());
+        let (end, work) = held.step(start, torque, HandSetpoint::default());
         // x'' = (u - b x') / m
         let (rate, last) = (DEVICE.damping / DEVICE.inertia, torque / DEVICE.damping);
         let decay = (-rate * 1e-3_f64).exp();
@@ -129,7 +129,7 @@ mod tests {
         };
         let before = energy(motion);
         for _ in 0..10_000 {
-            motion = held.step(motion, 0.0, Grip::default()).0;
+            motion = held.step(motion, 0.0, HandSetpoint::default()).0;
         }
         assert!((energy(motion) / before - 1.0).abs() < 1e-10);
     }
@@ -144,9 +144,9 @@ mod tests {
                 HeldDevice::new(device, hand, 5e-4).unwrap(),
             );
             let start = Motion { position: 0.02, velocity: -1.0 };
-            let (end, work) = whole.step(start, 0.3, Grip { from: 0.1, to: 0.2 });
-            let (middle, first) = half.step(start, 0.3, Grip { from: 0.1, to: 0.15 });
-            let (same, second) = half.step(middle, 0.3, Grip { from: 0.15, to: 0.2 });
+            let (end, work) = whole.step(start, 0.3, HandSetpoint { from: 0.1, to: 0.2 });
+            let (middle, first) = half.step(start, 0.3, HandSetpoint { from: 0.1, to: 0.15 });
+            let (same, second) = half.step(middle, 0.3, HandSetpoint { from: 0.15, to: 0.2 });
             assert!((end.position - same.position).abs() < 1e-13);
             assert!((end.velocity - same.velocity).abs() < 1e-10);
             assert!((work - first - second).abs() < 1e-12, "{work} {}", first + second);
@@ -157,7 +157,7 @@ mod tests {
     fn a_light_device_over_a_long_period_stays_finite() {
         let device = Device { inertia: 1e-12, ..DEVICE };
         let held = HeldDevice::new(device, Hand::default(), 0.1).unwrap();
-        let (end, work) = held.step(Motion::default(), 0.022, Grip::default());
+        let (end, work) = held.step(Motion::default(), 0.022, HandSetpoint::default());
         assert!((end.velocity - 1.0).abs() < 1e-9 && (end.position - 0.1).abs() < 1e-9);
         assert!(work.abs() < 1e-9);
     }

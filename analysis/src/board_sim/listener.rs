@@ -1,4 +1,4 @@
-//! The socket of a board without hardware.
+//! The socket of a simulated board.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -38,9 +38,8 @@ pub(super) struct Listener {
     next: Option<(Instant, Box<dyn Stream>)>,
 }
 
-/// Time after which somebody who has connected beside somebody else is sent away. Until then the
-/// other may turn out to have left.
-const TURN: Duration = Duration::from_millis(100);
+/// Time after which a second client is rejected. Until then the first may turn out to have left.
+const QUEUE_TIMEOUT: Duration = Duration::from_millis(100);
 
 enum Socket {
     Tcp(TcpListener),
@@ -79,7 +78,7 @@ impl Listener {
         N: Number,
         M: OutputMode,
     {
-        self.send_others_away();
+        self.reject_other_clients();
         let Some(client) = &mut self.client else {
             session.poll();
             // Nobody listens: as on a serial line, what is sent is gone.
@@ -98,7 +97,7 @@ impl Listener {
 
     /// Sends what the stream takes of these bytes, and gives what has come in.
     pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
-        self.send_others_away();
+        self.reject_other_clients();
         let Some(client) = &mut self.client else {
             // Nobody listens: as on a serial line, what is sent is gone.
             outgoing.clear();
@@ -143,13 +142,13 @@ impl Listener {
         self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
     }
 
-    /// Closes the connection of somebody who has connected while somebody else is: on a serial line
-    /// the port cannot be opened then, and here, too, somebody should hear of it.
-    fn send_others_away(&mut self) {
+    /// Closes the connection of a second client: a serial port cannot be opened twice either, and the
+    /// client should see that.
+    fn reject_other_clients(&mut self) {
         if self.client.is_none() {
             return;
         }
-        self.next.take_if(|(since, _)| since.elapsed() > TURN);
+        self.next.take_if(|(since, _)| since.elapsed() > QUEUE_TIMEOUT);
         if self.next.is_none() {
             self.next = self.socket.accept().map(|next| (Instant::now(), next));
         }

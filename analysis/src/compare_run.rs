@@ -7,11 +7,11 @@ use thiserror::Error;
 use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, Report, Stats};
-use crate::hand::Script;
-use crate::rig::{Alone, Plant, Recording, Run, SimulatedDevice, Twin, run};
-use crate::simulation::served::Served;
+use crate::hand::HandTrajectory;
+use crate::lockstep::{NoRemote, PlantIo, Recording, RemoteServo, Run, SimulatedDevice, run};
+use crate::simulation::tick_status::TickStatus;
 use crate::toolchain;
-use crate::trace::{Clock, Trace};
+use crate::trace::{TimeUnit, Trace};
 use crate::virtual_board::{self, VirtualBoard, VirtualBoardError};
 
 /// What comes into a servo.
@@ -22,9 +22,9 @@ pub enum Input<'a> {
     Recording(&'a [i32]),
 }
 
-/// Where a scene's program runs beside the host.
+/// The board on which a scene's program runs in lockstep with the host.
 #[derive(Clone, Copy, Debug)]
-pub enum Beside<'a> {
+pub enum Backend<'a> {
     /// On the emulated board, which has a program of its own.
     Emulator(&'a Path),
     /// On a virtual board, which has what is flashed.
@@ -40,16 +40,16 @@ pub enum Beside<'a> {
     },
 }
 
-/// What a board measured.
+/// Instructions that a board measured.
 #[derive(Clone, Debug)]
-pub enum Measured {
+pub enum BoardMeasurement {
     /// The emulated one.
     Emulated(Box<Report>),
     /// A virtual one.
     Virtual(virtual_board::Report),
 }
 
-impl Measured {
+impl BoardMeasurement {
     /// Instructions from count to code.
     pub fn compute(&self) -> &Stats {
         match self {
@@ -69,7 +69,7 @@ impl Measured {
 
 /// What a run gave, with what the board measured if one took part.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The ticks.
     pub run: Run,
     /// Energy that passed between hand and device; none where the counts were recorded.
@@ -77,25 +77,25 @@ pub struct Outcome {
     /// Speed of the device at the end, in rad/s; none where the counts were recorded.
     pub final_speed: Option<f64>,
     /// What the board measured.
-    pub board: Option<Measured>,
+    pub board: Option<BoardMeasurement>,
 }
 
-impl Outcome {
+impl RunOutcome {
     /// What the emulated board measured, if that took part.
     pub fn emulated(self) -> Option<Report> {
         match self.board {
-            Some(Measured::Emulated(report)) => Some(*report),
-            Some(Measured::Virtual(_)) | None => None,
+            Some(BoardMeasurement::Emulated(report)) => Some(*report),
+            Some(BoardMeasurement::Virtual(_)) | None => None,
         }
     }
 }
 
 /// Why a run ended before its time.
 #[derive(Debug, Error)]
-pub enum ScenarioError {
+pub enum RunError {
     /// The emulated board failed.
     #[error("at tick {tick}: {source}")]
-    Board {
+    EmulatedBoard {
         /// The tick, counted from 0.
         tick: usize,
         /// How.
@@ -109,67 +109,67 @@ pub enum ScenarioError {
     VirtualBoard(#[from] VirtualBoardError),
 }
 
-/// Runs a servo, for so many ticks at most, and its program on a board beside it, if there is one.
-/// `progress` is told of each tick.
+/// Runs a servo for at most `ticks` ticks and, with a backend, its program on that board as well.
+/// `progress` is called after each tick.
 ///
 /// # Errors
 /// Where the board cannot be started, fails, or does not end.
-pub fn play(
+pub fn run_with_backend(
     input: Input<'_>,
     controller: &mut dyn Controller,
-    board: Option<Beside<'_>>,
+    board: Option<Backend<'_>>,
     ticks: usize,
     progress: impl FnMut(),
-) -> Result<Outcome, ScenarioError> {
+) -> Result<RunOutcome, RunError> {
     match input {
         Input::Hand(mut device) => {
-            let mut outcome = beside(device.as_mut(), controller, board, ticks, progress)?;
+            let mut outcome = run_lockstep(device.as_mut(), controller, board, ticks, progress)?;
             outcome.energy = Some(device.energy());
             outcome.final_speed = Some(device.motion().velocity.abs());
             Ok(outcome)
         }
         Input::Recording(counts) => {
-            beside(&mut Recording::new(counts), controller, board, ticks, progress)
+            run_lockstep(&mut Recording::new(counts), controller, board, ticks, progress)
         }
     }
 }
 
-fn beside(
-    plant: &mut dyn Plant,
+fn run_lockstep(
+    plant: &mut dyn PlantIo,
     controller: &mut dyn Controller,
-    board: Option<Beside<'_>>,
+    board: Option<Backend<'_>>,
     ticks: usize,
     progress: impl FnMut(),
-) -> Result<Outcome, ScenarioError> {
+) -> Result<RunOutcome, RunError> {
     let (run, board) = match board {
         None => {
-            let Ok(run) = run::<Alone>(plant, controller, None, ticks, progress);
+            let Ok(run) = run::<NoRemote>(plant, controller, None, ticks, progress);
             (run, None)
         }
         // On either board the hand waits until the servo runs.
-        Some(Beside::Emulator(elf)) => {
-            let mut board = Board::boot(elf)?;
+        Some(Backend::Emulator(elf)) => {
+            let mut board = EmulatedBoard::boot(elf)?;
             board.emulator.engage()?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
-            (run, Some(Measured::Emulated(Box::new(board.emulator.finish()?))))
+            (run, Some(BoardMeasurement::Emulated(Box::new(board.emulator.finish()?))))
         }
-        Some(Beside::VirtualBoard { program, board, elf, period }) => {
+        Some(Backend::VirtualBoard { program, board, elf, period }) => {
             let mut board = VirtualBoard::boot(program, board, elf)?;
             board.engage(period)?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
-            (run, Some(Measured::Virtual(board.finish()?)))
+            (run, Some(BoardMeasurement::Virtual(board.finish()?)))
         }
     };
-    Ok(Outcome { run, energy: None, final_speed: None, board })
+    Ok(RunOutcome { run, energy: None, final_speed: None, board })
 }
 
 /// The emulated board, which knows the tick that it is in.
-pub struct Board {
+pub struct EmulatedBoard {
     emulator: Emulator,
     tick: usize,
 }
 
-impl Board {
+impl EmulatedBoard {
     /// Starts a program.
     ///
     /// # Errors
@@ -187,29 +187,29 @@ impl Board {
     }
 }
 
-impl Twin for Board {
-    type Error = ScenarioError;
+impl RemoteServo for EmulatedBoard {
+    type Error = RunError;
 
-    fn exchange(&mut self, raw: i32) -> Result<u16, ScenarioError> {
+    fn exchange(&mut self, raw: i32) -> Result<u16, RunError> {
         let tick = self.tick;
         self.tick += 1;
-        self.emulator.exchange(raw).map_err(|source| ScenarioError::Board { tick, source })
+        self.emulator.exchange(raw).map_err(|source| RunError::EmulatedBoard { tick, source })
     }
 }
 
 /// What a picture shows of a run: its position, its torque, and where the hand wanted to be.
-pub fn trace(title: String, period: f64, run: &Run, script: &Script) -> Trace {
+pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory) -> Trace {
     let time = |tick: usize| tick as f64 * period;
-    let held = (0..run.ticks.len()).map(time).take_while(|&time| time < script.release);
+    let held = (0..run.ticks.len()).map(time).take_while(|&time| time < trajectory.release);
     Trace {
         title,
-        clock: Clock::Seconds,
+        time_unit: TimeUnit::Seconds,
         time: (0..run.ticks.len()).map(time).collect(),
         position: run.ticks.iter().map(|tick| tick.angle).collect(),
-        hand: held.map(|time| script.position(time)).collect(),
+        hand: held.map(|time| trajectory.position(time)).collect(),
         torque: run.ticks.iter().map(|tick| tick.torque).collect(),
-        limit: run.ticks.iter().map(|tick| Served::Ran(tick.limit)).collect(),
-        release: Some(script.release).filter(|&release| release < time(run.ticks.len())),
+        limit: run.ticks.iter().map(|tick| TickStatus::Ran(tick.limit)).collect(),
+        release: Some(trajectory.release).filter(|&release| release < time(run.ticks.len())),
         ..Trace::default()
     }
 }

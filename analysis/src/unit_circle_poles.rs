@@ -17,10 +17,10 @@ const ROUNDING: f64 = 1e-6;
 
 /// A pole on the upper half of the unit circle; each has its mirror image on the lower half.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CirclePole {
+pub struct UnitCirclePole {
     /// Its angle in rad, from 0 to pi.
     pub theta: f64,
-    /// What kind it is.
+    /// Its multiplicity and residue.
     pub kind: Kind,
 }
 
@@ -34,7 +34,7 @@ pub enum Kind {
     Repeated,
 }
 
-impl CirclePole {
+impl UnitCirclePole {
     /// Whether the pole meets the condition of equation 4.
     pub fn is_passive(&self) -> bool {
         matches!(self.kind, Kind::Simple(k) if k.re > 0.0 && k.im.abs() <= ROUNDING * k.norm())
@@ -51,7 +51,7 @@ impl CirclePole {
 }
 
 /// The poles of a transfer function on the upper half of the unit circle, by their angles.
-pub fn poles(g: &Transfer) -> Vec<CirclePole> {
+pub fn poles(g: &Transfer) -> Vec<UnitCirclePole> {
     let mut found = Vec::new();
     let response = Response::new(*g);
     if g.ones < 0 {
@@ -66,7 +66,10 @@ pub fn poles(g: &Transfer) -> Vec<CirclePole> {
     }
     for z in roots(g).into_iter().filter(|z| (z.norm() - 1.0).abs() < ON_CIRCLE && z.im >= 0.0) {
         let theta = z.arg();
-        match found.iter_mut().find(|found: &&mut CirclePole| (found.theta - theta).abs() < 1e-5) {
+        match found
+            .iter_mut()
+            .find(|found: &&mut UnitCirclePole| (found.theta - theta).abs() < 1e-5)
+        {
             Some(known) => known.kind = Kind::Repeated,
             None => {
                 // Outwards, where no other pole is near: (z / z0 - 1) G(z).
@@ -87,8 +90,8 @@ pub fn outside(g: &Transfer) -> usize {
     roots(g).into_iter().filter(|z| z.norm() >= 1.0 + ON_CIRCLE).count()
 }
 
-fn pole(theta: f64, is_simple: bool, k: Complex<f64>) -> CirclePole {
-    CirclePole { theta, kind: if is_simple { Kind::Simple(k) } else { Kind::Repeated } }
+fn pole(theta: f64, is_simple: bool, k: Complex<f64>) -> UnitCirclePole {
+    UnitCirclePole { theta, kind: if is_simple { Kind::Simple(k) } else { Kind::Repeated } }
 }
 
 /// Roots of the denominator that is not factored: eigenvalues of its companion matrix.

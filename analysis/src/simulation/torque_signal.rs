@@ -1,4 +1,4 @@
-//! What the hand does to the device besides being there: torques over time.
+//! The torque that the hand applies over time, besides its impedance.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::file::simulation::HandTorque;
 
 /// Torque of the hand in N m, positive in the direction of the angle.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Drive {
+pub enum TorqueSignal {
     /// None.
     #[default]
     Free,
@@ -25,7 +25,7 @@ pub enum Drive {
     },
 }
 
-impl Drive {
+impl TorqueSignal {
     /// What a scene file asks for over so many samples of `period` (s); a torque file is looked
     /// for beside the scene file.
     ///
@@ -125,10 +125,10 @@ mod tests {
 
     #[test]
     fn sine_keeps_its_phase() {
-        let drive = Drive::Sine { amplitude: 2.0, omega: 1024.0, phase: 0.25 };
+        let hand_torque = TorqueSignal::Sine { amplitude: 2.0, omega: 1024.0, phase: 0.25 };
         // 1024 / 1024 rad a sample: sample k is at the angle k + 1/4 exactly.
         for k in [0, 1, 7, 1000, 123_456] {
-            let [s, c] = drive.sine(k, 1.0 / 1024.0);
+            let [s, c] = hand_torque.sine(k, 1.0 / 1024.0);
             let (es, ec) = (k as f64 + 0.25).sin_cos();
             assert!((s - 2.0 * es).abs() < 1e-15 && (c - 2.0 * ec).abs() < 1e-15, "{k}");
         }
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn held_sines_and_pulses_are_values_a_sample() {
-        let load = |torque| Drive::load(&torque, Path::new(""), 6, 0.001).unwrap();
+        let load = |torque| TorqueSignal::load(&torque, Path::new(""), 6, 0.001).unwrap();
         let pulses = load(HandTorque::Pulses { amplitude: 0.5, every: 3, length: 2 });
-        assert_eq!(pulses, Drive::Held(vec![0.5, 0.5, 0.0, 0.5, 0.5, 0.0]));
+        assert_eq!(pulses, TorqueSignal::Held(vec![0.5, 0.5, 0.0, 0.5, 0.5, 0.0]));
         let sine = |held| HandTorque::Sine { amplitude: 2.0, omega: 100.0, phase: 0.25, held };
         for k in 0..6 {
             let wanted = 2.0 * (0.1 * k as f64 + 0.25).sin();

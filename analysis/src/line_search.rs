@@ -1,4 +1,4 @@
-//! Where a function of an angle is least.
+//! Line search for the angle that minimises a function: a grid, then golden sections.
 
 /// Points at which the function is looked at before the search closes in.
 const GRID: usize = 32;
@@ -21,7 +21,7 @@ const NEAR_ZERO: f64 = 1e-3;
 
 /// The angle between `from` and `to` (rad, from 0 to pi) at which `function` is least; `None`
 /// where the function is the same on the whole circle.
-pub fn least(function: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
+pub fn minimizing_angle(function: impl Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
     if to - from < NARROW {
         return Some(0.5 * (from + to));
     }
@@ -63,15 +63,15 @@ fn golden_section(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) ->
 
 #[cfg(test)]
 mod tests {
-    use super::least;
+    use super::minimizing_angle;
     use std::f64::consts::PI;
 
     #[test]
     fn inside_at_the_ends_and_nowhere() {
-        let inside = least(|theta| (theta - 1.0).powi(2), 0.0, PI).unwrap();
+        let inside = minimizing_angle(|theta| (theta - 1.0).powi(2), 0.0, PI).unwrap();
         assert!((inside - 1.0).abs() < 1e-7);
-        assert_eq!(least(f64::cos, 0.0, PI), Some(PI));
-        assert_eq!(least(|theta| -theta.cos(), 0.0, PI), Some(0.0));
-        assert_eq!(least(|_| 3.0, 0.0, PI), None);
+        assert_eq!(minimizing_angle(f64::cos, 0.0, PI), Some(PI));
+        assert_eq!(minimizing_angle(|theta| -theta.cos(), 0.0, PI), Some(0.0));
+        assert_eq!(minimizing_angle(|_| 3.0, 0.0, PI), None);
     }
 }

@@ -1,4 +1,4 @@
-//! The servo in `f64` and radians: the firmware's law and coupling without its converters.
+//! The servo in `f64` and radians: the firmware's law and coupling without quantisation by encoder and DAC.
 //!
 //! Nothing here is certified: what a scene would do is asked before it is safe.
 
@@ -8,15 +8,15 @@ use firmware::scene::Scene;
 use firmware::servo::BuildError;
 use firmware::torque::{LimitReason, Limiter};
 
-/// Environment and coupling of a scene, at rest at zero to begin with.
+/// Environment and coupling of a scene, initially at rest at zero.
 #[derive(Clone, Debug)]
-pub struct PreparedServo {
+pub struct UnquantizedServo {
     law: EnvironmentLaw<f64>,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
 }
 
-impl PreparedServo {
+impl UnquantizedServo {
     /// The servo of a scene.
     ///
     /// # Errors

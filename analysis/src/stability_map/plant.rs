@@ -7,9 +7,9 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schur_cohn::all_inside;
 use crate::response::Response;
-use crate::simulation::closed::transfers;
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::discrete_plant::DiscretePlant;
 use crate::simulation::plant::POSITION;
-use crate::simulation::tick::Tick;
 
 /// Sampled position over motor torque, highest power first.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub struct SampledPlant {
 impl SampledPlant {
     /// Of a plant that is taken through a tick (Faddeev and Le Verrier's recursion). Where the
     /// torque is late, the torque of the tick before is one more state.
-    pub fn new(tick: &Tick) -> Self {
+    pub fn new(tick: &DiscretePlant) -> Self {
         let n = tick.transition.nrows() + usize::from(tick.is_late());
         let mut transition = tick.transition.clone().resize(n, n, 0.0);
         let mut motor = tick.motor.clone().resize_vertically(n, 0.0);

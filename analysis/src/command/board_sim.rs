@@ -14,11 +14,11 @@ use super::answer::{Answer, CommandError};
 use super::flashed::Flashed;
 use super::own;
 use super::values::seconds;
+use crate::board_sim::{Pacing, SimulatedBoard};
 use crate::link::Address;
+use crate::lockstep::SimulatedDevice;
 use crate::program::Program;
-use crate::rig::SimulatedDevice;
 use crate::toolchain::{Board, NumberFormat};
-use crate::twin::{Clock, Twin};
 
 /// Arguments of `haptic board-sim`.
 #[derive(Debug, Args)]
@@ -39,11 +39,11 @@ pub struct Arguments {
     pub duration: Option<Duration>,
 }
 
-/// What a hand does goes on for so many seconds: an hour.
-const SCRIPT: f64 = 3600.0;
+/// The hand's trajectory is repeated for so many seconds: an hour.
+const HAND_DURATION: f64 = 3600.0;
 
-/// Longest time between two looks at what has ended.
-const LOOK: Duration = Duration::from_millis(50);
+/// Longest time between two polls for the end.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Runs a program in a simulated hand until the time is up, Ctrl-C, or it is told to end.
 pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
@@ -53,33 +53,40 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     for signal in [SIGINT, SIGTERM] {
         signal_hook::flag::register(signal, enough.clone())?;
     }
-    let script = (program.script)().over_and_over(SCRIPT);
+    let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
     let (device, period) = (program.scene.device, program.scene.timing.period);
-    let device = SimulatedDevice::new(device, script, period, &program.transducers)?;
+    let device = SimulatedDevice::new(device, trajectory, period, &program.transducers)?;
     let (device, address) = (Box::new(device), &arguments.port);
-    let twin = match arguments.board {
-        None => program.listen(device, address, Clock::Real),
+    let board = match arguments.board {
+        None => program.listen(device, address, Pacing::RealTime),
         Some(board) => {
             let built = Flashed::build(board, program.name, NumberFormat::F32)?;
-            Twin::of_board(built.boot()?, device, address, Clock::Real, period)
+            SimulatedBoard::from_virtual_board(
+                built.boot()?,
+                device,
+                address,
+                Pacing::RealTime,
+                period,
+            )
         }
     };
-    let twin = twin.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
-    writeln!(io::stdout(), "{name} listens on {}", twin.address())?;
+    let board =
+        board.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
+    writeln!(io::stdout(), "{name} listens on {}", board.address())?;
     let end = arguments.duration.map(|duration| Instant::now() + duration);
     let is_over = || enough.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() >= end);
-    while !twin.has_ended() && !is_over() {
-        thread::sleep(LOOK);
+    while !board.has_ended() && !is_over() {
+        thread::sleep(POLL_INTERVAL);
     }
-    twin.end()?;
+    board.end()?;
     Ok(Answer::Yes)
 }
 
-/// Why there is no twin of that name: a scene file may have been meant.
+/// Why there is no simulated board of that name: a scene file may have been meant.
 fn no_program(name: &str) -> CommandError {
     let (name, programs) = (name.to_owned(), own::scenes());
     match Path::new(&name).is_file() {
-        true => CommandError::FileOnTwin { file: name, programs },
+        true => CommandError::FileOnSimulatedBoard { file: name, programs },
         false => CommandError::NoProgram { name, programs },
     }
 }

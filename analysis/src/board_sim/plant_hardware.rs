@@ -1,32 +1,32 @@
-//! The simulated hardware of a board.
+//! The simulated hardware of a board: encoder, DAC and timer around a plant.
 
 use firmware::board::sim_hardware::SimIo;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::servo::OutputTiming;
 
-use crate::rig::Plant;
+use crate::lockstep::PlantIo;
 
-/// The device with its encoder, its converter and its timer.
-pub(super) struct Board {
-    plant: Box<dyn Plant + Send>,
+/// The device with its encoder, its DAC and its timer.
+pub(super) struct PlantHardware {
+    plant: Box<dyn PlantIo + Send>,
     count: i32,
     is_on: bool,
-    /// What the converter holds, once a period has begun.
+    /// The code that the DAC holds, once a period has begun.
     held: Option<DacCode>,
-    /// What it holds from the next period on, where that is what a code waits for.
+    /// The code that it holds from the next period on, if the output is latched.
     next: DacCode,
     timing: OutputTiming,
 }
 
-impl Board {
+impl PlantHardware {
     /// At rest, switched off.
-    pub(super) fn new(plant: Box<dyn Plant + Send>, timing: OutputTiming) -> Self {
+    pub(super) fn new(plant: Box<dyn PlantIo + Send>, timing: OutputTiming) -> Self {
         Self { plant, count: 0, is_on: false, held: None, next: DacCode::MID_SCALE, timing }
     }
 }
 
-impl SimIo for Board {
+impl SimIo for PlantHardware {
     fn count(&mut self) -> RawCount {
         if let Some(held) = self.held.replace(self.next) {
             self.plant.hold(if self.is_on { held } else { DacCode::MID_SCALE }.get());

@@ -32,7 +32,7 @@ fn stability_is_that_of_the_eigenvalues() {
                 let (k, b) = (7.3 * f64::from(k), 0.0047 * f64::from(b));
                 let scene = family.member(k, b);
                 let still = Experiment::still(&scene);
-                let closed = stability::closed_loop(&still, Stride::default()).unwrap();
+                let closed = stability::closed_loop(&still, Integration::default()).unwrap();
                 let radius = stability::radius(&stability::eigenvalues(&closed.matrix).unwrap());
                 if (radius - 1.0).abs() > 1e-6 {
                     compared += 1;

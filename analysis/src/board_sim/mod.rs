@@ -1,12 +1,12 @@
-//! A board without hardware, around a simulated device and behind a socket: a thread with the same
+//! A simulated board with a simulated device, behind a socket: a thread with the same
 //! cycle and the same wire as a real one, or a virtual board with what is flashed.
 //!
 //! Its time is that of its ticks, of which it does as many as a real board would, or all that it
 //! can. A tick is never late here; what may make a real one late is another matter.
 
-mod board;
-mod flashed;
 mod listener;
+mod plant_hardware;
+mod virtual_board_server;
 
 use std::io;
 use std::sync::Arc;
@@ -22,39 +22,39 @@ use firmware::servo_loop::{FrameQueue, Mailbox};
 use firmware::tuning::{self, RenderError, Tunable};
 use firmware::wire::{BoardInfo, Session};
 
-use self::board::Board;
 use self::listener::Listener;
+use self::plant_hardware::PlantHardware;
 use crate::link::Address;
-use crate::rig::Plant;
+use crate::lockstep::PlantIo;
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// Timer counts in a period: a 170 MHz timer at 1 kHz.
 const TIMER_COUNTS: u32 = 170_000;
 /// Frames that wait for the wire.
 const FRAMES: usize = 64;
-/// Longest time between two looks at the wire.
-const LOOK: Duration = Duration::from_millis(1);
+/// Longest time between two polls of the socket.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// How fast a twin's time passes.
+/// How fast a simulated board's time passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clock {
+pub enum Pacing {
     /// As a real board's.
-    Real,
+    RealTime,
     /// As fast as it can.
-    Free,
+    Unthrottled,
 }
 
 /// A board that is a thread; ends when dropped.
 #[derive(Debug)]
-pub struct Twin {
+pub struct SimulatedBoard {
     address: Address,
     ended: Arc<AtomicBool>,
-    thread: Option<JoinHandle<Result<(), TwinError>>>,
+    thread: Option<JoinHandle<Result<(), SimulatedBoardError>>>,
 }
 
-/// Why a twin has ended before it was asked to.
+/// Why a simulated board has ended before it was asked to.
 #[derive(Debug, thiserror::Error)]
-pub enum TwinError {
+pub enum SimulatedBoardError {
     /// Its program could not start, and why.
     #[error("refused by its {}: {reason}", .step.as_str())]
     Render {
@@ -71,7 +71,7 @@ pub enum TwinError {
     VirtualBoard(#[from] VirtualBoardError),
 }
 
-impl Twin {
+impl SimulatedBoard {
     /// Boots a program and listens there.
     ///
     /// # Errors
@@ -79,9 +79,9 @@ impl Twin {
     pub fn start<E, N, M>(
         name: &'static str,
         program: Program<E>,
-        plant: Box<dyn Plant + Send>,
+        plant: Box<dyn PlantIo + Send>,
         address: &Address,
-        clock: Clock,
+        pacing: Pacing,
     ) -> io::Result<Self>
     where
         E: Tunable<N> + SupportsTiming<M> + Send + 'static,
@@ -92,8 +92,8 @@ impl Twin {
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
         let thread = thread::spawn(move || {
-            let board = SimHardware::new(Board::new(plant, M::TIMING), TIMER_COUNTS);
-            serve::<E, N, M>(name, program, board, listener, clock, &over)
+            let board = SimHardware::new(PlantHardware::new(plant, M::TIMING), TIMER_COUNTS);
+            serve::<E, N, M>(name, program, board, listener, pacing, &over)
         });
         Ok(Self { address, ended, thread: Some(thread) })
     }
@@ -102,19 +102,20 @@ impl Twin {
     ///
     /// # Errors
     /// Where the address cannot be listened at.
-    pub fn of_board(
+    pub fn from_virtual_board(
         board: VirtualBoard,
-        plant: Box<dyn Plant + Send>,
+        plant: Box<dyn PlantIo + Send>,
         address: &Address,
-        clock: Clock,
+        pacing: Pacing,
         period: f64,
     ) -> io::Result<Self> {
         let (listener, address) = Listener::bind(address)?;
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
-        let period = (clock == Clock::Real).then(|| Duration::from_secs_f64(period));
-        let thread =
-            thread::spawn(move || Ok(flashed::serve(board, plant, listener, period, &over)?));
+        let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
+        let thread = thread::spawn(move || {
+            Ok(virtual_board_server::serve(board, plant, listener, period, &over)?)
+        });
         Ok(Self { address, ended, thread: Some(thread) })
     }
 
@@ -135,13 +136,13 @@ impl Twin {
     ///
     /// # Panics
     /// If its thread has.
-    pub fn end(mut self) -> Result<(), TwinError> {
+    pub fn end(mut self) -> Result<(), SimulatedBoardError> {
         self.ended.store(true, Ordering::Relaxed);
         self.thread.take().map_or(Ok(()), |thread| thread.join().expect("the board panicked"))
     }
 }
 
-impl Drop for Twin {
+impl Drop for SimulatedBoard {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
@@ -152,7 +153,7 @@ impl Drop for Twin {
 }
 
 /// Why a program did not start.
-fn not_started<E, N, M>(program: &Program<E>, step: Step) -> TwinError
+fn not_started<E, N, M>(program: &Program<E>, step: Step) -> SimulatedBoardError
 where
     E: Tunable<N> + SupportsTiming<M>,
     N: Number,
@@ -160,8 +161,8 @@ where
 {
     let Program { scene, transducers, rendering, .. } = program;
     match tuning::explain::<E, N, M>(scene, &[], transducers, rendering) {
-        Err(reason) => TwinError::Render { step, reason: Box::new(reason) },
-        Ok(()) => TwinError::Start(step),
+        Err(reason) => SimulatedBoardError::Render { step, reason: Box::new(reason) },
+        Ok(()) => SimulatedBoardError::Start(step),
     }
 }
 
@@ -169,11 +170,11 @@ where
 fn serve<E, N, M>(
     name: &'static str,
     program: Program<E>,
-    mut board: SimHardware<Board>,
+    mut board: SimHardware<PlantHardware>,
     mut listener: Listener,
-    clock: Clock,
+    pacing: Pacing,
     over: &AtomicBool,
-) -> Result<(), TwinError>
+) -> Result<(), SimulatedBoardError>
 where
     E: Tunable<N> + SupportsTiming<M>,
     N: Number,
@@ -193,15 +194,15 @@ where
     while !over.load(Ordering::Relaxed) {
         // No more at a time than wait for the wire.
         for _ in 0..FRAMES / 2 {
-            if clock == Clock::Real && Instant::now() < next {
+            if pacing == Pacing::RealTime && Instant::now() < next {
                 break;
             }
             next += period;
             servo_loop.run(&mut board, &mut inbox, &mut frames);
         }
         let was_busy = listener.exchange(&mut session);
-        if clock == Clock::Real && !was_busy {
-            thread::sleep(next.saturating_duration_since(Instant::now()).min(LOOK));
+        if pacing == Pacing::RealTime && !was_busy {
+            thread::sleep(next.saturating_duration_since(Instant::now()).min(POLL_INTERVAL));
         }
     }
     Ok(())

@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, Table, presets};
 
 /// An empty table with this header; the columns of numbers are set to the right.
-pub fn listing<const N: usize>(
+pub fn markdown_table<const N: usize>(
     header: [&str; N],
     numbers: impl IntoIterator<Item = usize>,
 ) -> Table {

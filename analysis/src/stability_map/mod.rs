@@ -16,7 +16,7 @@ use thiserror::Error;
 use crate::file::SceneFile;
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::plant::Plant;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Integration, SimulationError};
 use plant::SampledPlant;
 
 /// What is known of a scene, from the worst to the best.
@@ -115,7 +115,7 @@ impl Family {
         if crate::simulation::wall(&alone.scene).is_none() {
             return Err(MapError::NoWall { scene: name.to_owned() });
         }
-        let tick = alone.tick(Stride::default())?;
+        let tick = alone.tick(Integration::default())?;
         let may_be_wrong = alone.latency > 0.0;
         Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
     }

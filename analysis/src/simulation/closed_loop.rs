@@ -6,8 +6,8 @@ use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::Scene;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
+use super::discrete_plant::DiscretePlant;
 use super::plant::POSITION;
-use super::tick::Tick;
 use crate::response::Response;
 
 /// The transfer functions of environment and controller. The passivity that the scene declares has
@@ -46,7 +46,7 @@ impl ClosedLoop {
     /// # Errors
     /// Where the environment is not causal, the loop of coupling and environment has no solution,
     /// or a number is out of range.
-    pub fn new(tick: &Tick, scene: &Scene) -> Result<Self, Unbuildable> {
+    pub fn new(tick: &DiscretePlant, scene: &Scene) -> Result<Self, Unbuildable> {
         let controller = Response::new(transfers(scene)?.controller);
         let filter = controller.filter().ok_or(Unbuildable::OutOfRange)?;
         let (numerator, denominator) = (filter.numerator(), filter.denominator());

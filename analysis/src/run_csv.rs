@@ -5,13 +5,13 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::simulation::served::Served;
+use crate::simulation::tick_status::TickStatus;
 use crate::table::{Column, Place, Row, Table, TableError};
-use crate::trace::{Clock, Trace};
+use crate::trace::{TimeUnit, Trace};
 
 /// Why a recorded run cannot be read.
 #[derive(Debug, Error)]
-pub enum RecordedError {
+pub enum RunCsvError {
     /// It is not the table that it has to be.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -34,7 +34,7 @@ const TORQUE: Column = Column { names: &["torque"], bound: FINITE };
 const LIMIT: Column = Column { names: &["limit"], bound: "a reason" };
 
 /// Whether a file is a recorded run by its name.
-pub fn is_recorded(path: &Path) -> bool {
+pub fn is_run_csv(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
 }
 
@@ -44,23 +44,23 @@ pub fn is_recorded(path: &Path) -> bool {
 ///
 /// # Errors
 /// Where the file cannot be read, lacks a column, has a bad row, or has times beside a `period`.
-pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RecordedError> {
+pub fn load(path: &Path, period: Option<f64>) -> Result<Trace, RunCsvError> {
     let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Trace { title, ..read(Table::open(path)?, period)? })
 }
 
-fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RecordedError> {
+fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RunCsvError> {
     let time = table.column(TIME)?;
     let (angle, torque) = (table.column(ANGLE)?, table.column(TORQUE)?);
     let (limit, hand) = (table.find(LIMIT), table.find(HAND));
-    let own = if time.name == SECONDS { Clock::Seconds } else { Clock::Ticks };
-    if own == Clock::Seconds && period.is_some() {
-        return Err(RecordedError::PeriodKnown { file: table.file().to_owned() });
+    let own = if time.name == SECONDS { TimeUnit::Seconds } else { TimeUnit::Ticks };
+    if own == TimeUnit::Seconds && period.is_some() {
+        return Err(RunCsvError::PeriodKnown { file: table.file().to_owned() });
     }
-    let clock = if period.is_some() { Clock::Seconds } else { own };
+    let time_unit = if period.is_some() { TimeUnit::Seconds } else { own };
     // One in rad/s belongs to times in s.
-    let velocity = table.find(VELOCITY).filter(|_| clock == Clock::Seconds);
-    let mut trace = Trace { clock, ..Trace::default() };
+    let velocity = table.find(VELOCITY).filter(|_| time_unit == TimeUnit::Seconds);
+    let mut trace = Trace { time_unit, ..Trace::default() };
     let finite = |value: &f64| value.is_finite();
     while let Some(row) = table.row()? {
         let at = period.unwrap_or(1.0) * row.number(time, finite)?;
@@ -77,7 +77,7 @@ fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, Reco
             trace.hand_torque.push(if is_known { row.number(hand, finite)? } else { f64::NAN });
         }
         trace.torque.push(row.number(torque, finite)?);
-        trace.limit.push(limit.map_or(Ok(Served::IN_FULL), |limit| served(&row, limit))?);
+        trace.limit.push(limit.map_or(Ok(TickStatus::UNLIMITED), |limit| status(&row, limit))?);
     }
     if trace.hand_torque.iter().all(|torque| torque.is_nan()) {
         trace.hand_torque.clear();
@@ -85,9 +85,9 @@ fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, Reco
     Ok(trace)
 }
 
-fn served(row: &Row<'_>, limit: Place) -> Result<Served, TableError> {
-    Served::parse(row.text(limit)).ok_or_else(|| {
-        let words: Vec<_> = Served::all().map(Served::as_str).collect();
+fn status(row: &Row<'_>, limit: Place) -> Result<TickStatus, TableError> {
+    TickStatus::parse(row.text(limit)).ok_or_else(|| {
+        let words: Vec<_> = TickStatus::all().map(TickStatus::as_str).collect();
         row.bad(limit, &format!("one of {}", words.join(", ")))
     })
 }
@@ -107,15 +107,15 @@ mod tests {
     fn runs_and_simulations_are_read() {
         let run = "tick,count,angle,torque,code,limit\n0,1,0.5,-1,7,none\n1,2,0.6,2,8,converter\n";
         let found = trace(run, None).unwrap();
-        assert_eq!((found.clock, &found.time[..]), (Clock::Ticks, &[0.0, 1.0][..]));
+        assert_eq!((found.time_unit, &found.time[..]), (TimeUnit::Ticks, &[0.0, 1.0][..]));
         assert_eq!((&found.position[..], &found.torque[..]), (&[0.5, 0.6][..], &[-1.0, 2.0][..]));
-        assert_eq!(found.limit, [Served::IN_FULL, Served::Ran(LimitReason::Converter)]);
+        assert_eq!(found.limit, [TickStatus::UNLIMITED, TickStatus::Ran(LimitReason::Converter)]);
         let found = trace(run, Some(0.25)).unwrap();
-        assert_eq!((found.clock, &found.time[..]), (Clock::Seconds, &[0.0, 0.25][..]));
+        assert_eq!((found.time_unit, &found.time[..]), (TimeUnit::Seconds, &[0.0, 0.25][..]));
 
         let simulated = "time,position,velocity,torque,limit\n0,1,2,3,missed\n0.5,1,2,3,none\n";
         let found = trace(simulated, None).unwrap();
-        assert_eq!((found.clock, found.limit[0]), (Clock::Seconds, Served::Missed));
+        assert_eq!((found.time_unit, found.limit[0]), (TimeUnit::Seconds, TickStatus::Missed));
         assert!(trace(simulated, Some(0.25)).unwrap_err().contains("times are in seconds"));
     }
 

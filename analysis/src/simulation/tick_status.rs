@@ -1,26 +1,27 @@
-//! What the servo did at a sample, so that a record says why a torque is not the one asked for.
+//! Status of the servo at a sample: why its torque is less than the scene asks for, or that the tick
+//! was missed.
 
 use firmware::torque::LimitReason;
 use serde::{Serialize, Serializer};
 
-/// What the servo did at a sample.
+/// Status of the servo at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Served {
+pub enum TickStatus {
     /// It ran, and its torque was limited or not.
     Ran(LimitReason),
     /// It did not run: the torque of the tick before stayed.
     Missed,
 }
 
-impl Default for Served {
+impl Default for TickStatus {
     fn default() -> Self {
-        Self::IN_FULL
+        Self::UNLIMITED
     }
 }
 
-impl Served {
+impl TickStatus {
     /// It ran and nothing was limited.
-    pub const IN_FULL: Self = Self::Ran(LimitReason::None);
+    pub const UNLIMITED: Self = Self::Ran(LimitReason::None);
 
     /// In one word, for tables: the servo's own for what it limited.
     pub const fn as_str(self) -> &'static str {
@@ -35,13 +36,13 @@ impl Served {
         LimitReason::ALL.into_iter().map(Self::Ran).chain([Self::Missed])
     }
 
-    /// What a word of [`Served::as_str`] says; `None` for any other.
+    /// What a word of [`TickStatus::as_str`] says; `None` for any other.
     pub fn parse(word: &str) -> Option<Self> {
-        Self::all().find(|served| served.as_str() == word)
+        Self::all().find(|status| status.as_str() == word)
     }
 }
 
-impl Serialize for Served {
+impl Serialize for TickStatus {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.as_str())
     }
@@ -53,10 +54,10 @@ mod tests {
 
     #[test]
     fn words_are_told_apart() {
-        assert_eq!(Served::parse("none"), Some(Served::default()));
-        assert_eq!(Served::parse("missed"), Some(Served::Missed));
-        assert_eq!(Served::parse("torque"), Some(Served::Ran(LimitReason::Torque)));
-        assert_eq!(Served::parse("Torque"), None);
-        assert!(Served::all().all(|served| Served::parse(served.as_str()) == Some(served)));
+        assert_eq!(TickStatus::parse("none"), Some(TickStatus::default()));
+        assert_eq!(TickStatus::parse("missed"), Some(TickStatus::Missed));
+        assert_eq!(TickStatus::parse("torque"), Some(TickStatus::Ran(LimitReason::Torque)));
+        assert_eq!(TickStatus::parse("Torque"), None);
+        assert!(TickStatus::all().all(|status| TickStatus::parse(status.as_str()) == Some(status)));
     }
 }

@@ -1,4 +1,5 @@
-//! Passive hands: what they are made of, those that are looked at first, and the device in one.
+//! Impedances of passive hands: their parameters, the grid that the search starts from, and the
+//! device in a hand.
 
 use std::f64::consts::PI;
 
@@ -11,7 +12,7 @@ use crate::simulation::plant::Plant;
 /// A passive hand: on the device, or behind a spring and damper of its own. No number is negative,
 /// so it is passive whatever they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Grip {
+pub struct HandImpedance {
     /// Inertia in kg m^2 of the hand.
     pub inertia: f64,
     /// Damping in N m s/rad of the hand, to the ground.
@@ -33,7 +34,7 @@ pub struct Compliance {
 
 /// Hands that resonate around an angle in rad a tick on a device of this inertia in kg m^2, and some
 /// that do not.
-pub(super) fn family(inertia: f64, period: f64, angle: f64) -> Vec<Grip> {
+pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandImpedance> {
     let angles: Vec<f64> = [0.25, 0.5, 0.8, 1.0, 1.25, 2.0]
         .iter()
         .map(|ratio| (angle * ratio).clamp(1e-3, PI))
@@ -43,38 +44,46 @@ pub(super) fn family(inertia: f64, period: f64, angle: f64) -> Vec<Grip> {
     // controller at one angle alone, a light one moves with the device between the samples.
     let masses: Vec<f64> =
         (-4..=6).map(|step| inertia * 10_f64.powf(f64::from(step) / 2.0)).collect();
-    let mut hands = vec![Grip::default()];
+    let mut hands = vec![HandImpedance::default()];
     for &mass in &masses {
-        hands.push(Grip { inertia: mass, ..Grip::default() });
+        hands.push(HandImpedance { inertia: mass, ..HandImpedance::default() });
         for &theta in &angles {
             let rate = (theta / period).powi(2);
-            hands.push(Grip {
+            hands.push(HandImpedance {
                 inertia: mass,
                 stiffness: (inertia + mass) * rate,
-                ..Grip::default()
+                ..HandImpedance::default()
             });
             let link = Compliance { stiffness: mass * rate, damping: 0.0 };
-            hands.push(Grip { inertia: mass, link: Some(link), ..Grip::default() });
+            hands.push(HandImpedance {
+                inertia: mass,
+                link: Some(link),
+                ..HandImpedance::default()
+            });
         }
     }
     for &theta in &angles {
         let rate = (theta / period).powi(2);
-        hands.push(Grip { stiffness: inertia * rate, ..Grip::default() });
+        hands.push(HandImpedance { stiffness: inertia * rate, ..HandImpedance::default() });
     }
     hands
 }
 
 /// A device with so many times its inertia in a hand.
-pub fn plant(device: &Chain, lighter: f64, grip: &Grip) -> Plant {
+pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
     let light = |mass: &Mass| Mass { inertia: lighter * mass.inertia, ..*mass };
     let mut masses: Vec<Mass> = device.masses().iter().map(light).collect();
     let mut links = device.links().to_vec();
-    let hand = match grip.link {
-        None => Hand { inertia: grip.inertia, damping: grip.damping, stiffness: grip.stiffness },
+    let hand = match impedance.link {
+        None => Hand {
+            inertia: impedance.inertia,
+            damping: impedance.damping,
+            stiffness: impedance.stiffness,
+        },
         Some(link) => {
-            masses.push(Mass { inertia: grip.inertia, damping: grip.damping });
+            masses.push(Mass { inertia: impedance.inertia, damping: impedance.damping });
             links.push(Link { stiffness: link.stiffness, damping: link.damping });
-            Hand { inertia: 0.0, damping: 0.0, stiffness: grip.stiffness }
+            Hand { inertia: 0.0, damping: 0.0, stiffness: impedance.stiffness }
         }
     };
     let encoder = match device.encoder() {

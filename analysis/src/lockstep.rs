@@ -1,4 +1,5 @@
-//! A device with encoder, motor and hand around a servo: one tick after the other.
+//! The tick-by-tick loop of a servo and what surrounds it: a recording, or a simulated device with
+//! encoder, motor and hand. A remote servo may run in lockstep, and its codes are compared.
 
 use std::fmt;
 
@@ -8,19 +9,19 @@ use firmware::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
 use crate::simulation::SimulationError;
-use crate::simulation::held::HeldDevice;
+use crate::simulation::held_device::HeldDevice;
 
-/// Where counts come from, and where the converter's codes go to.
-pub trait Plant {
+/// Source of the encoder's counts and sink of the DAC codes.
+pub trait PlantIo {
     /// The counter's content now; `None` at the end of a recording.
     fn count(&mut self) -> Option<i32>;
     /// Holds the code until the next tick.
     fn hold(&mut self, code: u16);
 }
 
-/// A recording: what the converter does changes nothing.
+/// A recording: the DAC code changes nothing.
 pub struct Recording<'a> {
     counts: std::slice::Iter<'a, i32>,
 }
@@ -32,7 +33,7 @@ impl<'a> Recording<'a> {
     }
 }
 
-impl Plant for Recording<'_> {
+impl PlantIo for Recording<'_> {
     fn count(&mut self) -> Option<i32> {
         self.counts.next().copied()
     }
@@ -40,11 +41,11 @@ impl Plant for Recording<'_> {
     fn hold(&mut self, _: u16) {}
 }
 
-/// A simulated device in a hand that follows a script.
+/// A simulated device in a hand that follows a trajectory.
 pub struct SimulatedDevice {
     held: HeldDevice,
     free: HeldDevice,
-    script: Script,
+    trajectory: HandTrajectory,
     encoder: SimulatedEncoder,
     period: f64,
     torque_per_code: f64,
@@ -61,15 +62,15 @@ impl SimulatedDevice {
     /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(
         device: Device,
-        script: Script,
+        trajectory: HandTrajectory,
         period: f64,
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
         let full_scale = transducers.full_scale_torque;
         Ok(Self {
-            held: HeldDevice::new(device, script.hand, period)?,
+            held: HeldDevice::new(device, trajectory.hand, period)?,
             free: HeldDevice::new(device, Hand::default(), period)?,
-            script,
+            trajectory,
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             period,
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
@@ -90,7 +91,7 @@ impl SimulatedDevice {
     }
 }
 
-impl Plant for SimulatedDevice {
+impl PlantIo for SimulatedDevice {
     fn count(&mut self) -> Option<i32> {
         Some(self.encoder.read(self.motion.position))
     }
@@ -100,10 +101,10 @@ impl Plant for SimulatedDevice {
         let torque = codes * self.torque_per_code;
         let start = self.ticks as f64 * self.period;
         self.ticks += 1;
-        let grip = self.script.grip(start, self.ticks as f64 * self.period);
-        let is_held = start < self.script.release;
+        let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
+        let is_held = start < self.trajectory.release;
         let device = if is_held { &self.held } else { &self.free };
-        let (motion, work) = device.step(self.motion, torque, grip);
+        let (motion, work) = device.step(self.motion, torque, setpoint);
         self.motion = motion;
         if is_held {
             self.energy.add(work);
@@ -111,11 +112,11 @@ impl Plant for SimulatedDevice {
     }
 }
 
-/// Somebody else who runs the same servo on the same counts.
-pub trait Twin {
+/// The same servo on a board: it gets the same counts.
+pub trait RemoteServo {
     /// Why it could not answer.
     type Error;
-    /// Its code for a count.
+    /// The board's code for a count.
     fn exchange(&mut self, raw: i32) -> Result<u16, Self::Error>;
 }
 
@@ -128,7 +129,7 @@ pub struct Difference {
     pub count: i32,
     /// The host's code.
     pub host: u16,
-    /// The other's code.
+    /// The board's code.
     pub target: u16,
 }
 
@@ -148,7 +149,7 @@ impl fmt::Display for Difference {
 pub struct Run {
     /// The ticks in order; the codes are the host's.
     pub ticks: Vec<Tick>,
-    /// Ticks whose codes were equal to the twin's.
+    /// Ticks whose codes were equal to the remote servo's.
     pub equal: usize,
     /// The first that was not.
     pub difference: Option<Difference>,
@@ -161,12 +162,12 @@ impl Run {
     }
 }
 
-/// Runs so many ticks at most. With a twin it is the twin's codes that move the device, and the
-/// servo here is compared with it. `progress` is told of each tick.
-pub fn run<T: Twin>(
-    plant: &mut dyn Plant,
+/// Runs at most `ticks` ticks. With a remote servo, its codes move the device, and the servo here is
+/// compared with it. `progress` is called after each tick.
+pub fn run<T: RemoteServo>(
+    plant: &mut dyn PlantIo,
     controller: &mut dyn Controller,
-    mut twin: Option<&mut T>,
+    mut remote: Option<&mut T>,
     ticks: usize,
     mut progress: impl FnMut(),
 ) -> Result<Run, T::Error> {
@@ -175,8 +176,8 @@ pub fn run<T: Twin>(
         && let Some(count) = plant.count()
     {
         let tick = controller.tick(count);
-        let code = match twin.as_mut() {
-            Some(twin) => twin.exchange(count)?,
+        let code = match remote.as_mut() {
+            Some(remote) => remote.exchange(count)?,
             None => tick.code,
         };
         if code == tick.code {
@@ -192,10 +193,10 @@ pub fn run<T: Twin>(
     Ok(run)
 }
 
-/// No twin: for runs on the host alone.
-pub enum Alone {}
+/// No remote servo: for runs on the host alone.
+pub enum NoRemote {}
 
-impl Twin for Alone {
+impl RemoteServo for NoRemote {
     type Error = std::convert::Infallible;
 
     fn exchange(&mut self, _: i32) -> Result<u16, Self::Error> {
