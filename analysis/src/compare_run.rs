@@ -149,13 +149,13 @@ fn run_lockstep(
         // On either board the hand waits until the servo runs.
         Some(Backend::Emulator(elf)) => {
             let mut board = EmulatedBoard::boot(elf)?;
-            board.emulator.engage()?;
+            board.emulator.arm_and_wait()?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
             (run, Some(BoardMeasurement::Emulated(Box::new(board.emulator.finish()?))))
         }
         Some(Backend::VirtualBoard { program, board, elf, period }) => {
             let mut board = VirtualBoard::boot(program, board, elf)?;
-            board.engage(period)?;
+            board.arm_and_wait(period)?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
             (run, Some(BoardMeasurement::Virtual(board.finish()?)))
         }

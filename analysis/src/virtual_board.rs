@@ -139,7 +139,7 @@ impl VirtualBoard {
     ///
     /// # Errors
     /// Where the board stops, or its servo is not armed.
-    pub fn engage(&mut self, period: f64) -> Result<(), VirtualBoardError> {
+    pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
         let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
         // A request is a few bytes; the buffer has room for the longest.
         let arm = encode(&ToBoard::Arm { id: 0 }, &mut buffer).unwrap_or_default();
@@ -149,7 +149,7 @@ impl VirtualBoard {
             if on {
                 // Rounded up, and two for the ticks in which it begins and ends.
                 let fading = (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2;
-                return self.stand(fading);
+                return self.hold_still(fading);
             }
         }
         let log = self.end().map_err(|error| self.stopped(&error))?.log.join("; ");
@@ -157,7 +157,7 @@ impl VirtualBoard {
     }
 
     /// So many samples in which the device stands still; then the board waits for the first count.
-    fn stand(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
+    fn hold_still(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
         for _ in 1..samples {
             self.sample()?;
             self.answer(self.count, &[])?;

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::answer::{Answer, CommandError};
 use super::common::ForWhom;
-use crate::emulator::Player;
+use crate::emulator::ServoClient;
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::failures::claim::{Claim, Failure};
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let mut player = match arguments.emulate {
         true => {
             let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))?;
-            Some(Player::boot(&toolchain.build_player()?)?)
+            Some(ServoClient::boot(&toolchain.build_servo_server()?)?)
         }
         false => None,
     };

@@ -4,14 +4,14 @@
 //! the emulator's own; the board's log comes by the emulator's standard output. A guest that does
 //! not answer within [`TIMEOUT`] is an error, and an emulator is never left behind.
 
-mod judge;
+mod bench_client;
+mod certify_client;
 pub mod log;
 mod pipes;
-mod player;
+pub mod plant_thread;
 mod report;
+mod servo_client;
 mod transport;
-mod trials;
-pub mod world;
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -20,17 +20,17 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use firmware::board::shown::{Moved, Shown};
+use firmware::board::lockstep_protocol::{TickInput, TickOutput};
 use firmware::servo_loop::State;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{encode, largest_frame};
 use tempfile::TempDir;
 
-pub use judge::Judge;
-pub use player::Player;
+pub use bench_client::BenchClient;
+pub use certify_client::CertifyClient;
 pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+pub use servo_client::ServoClient;
 pub use transport::Transport;
-pub use trials::Trials;
 
 use log::{LogDecoder, LogReader};
 use pipes::Pipes;
@@ -126,7 +126,7 @@ pub enum EmulatorError {
          damper wall at zero and a one-sided damper wall anywhere, each one sample late, and for \
          free mode one sample late"
     )]
-    NoTrial,
+    NoBenchProgram,
     /// The log does not say what a report needs.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -163,22 +163,22 @@ impl Emulator {
     /// # Errors
     /// Where the board has ended or does not answer.
     pub fn exchange(&mut self, raw_count: i32) -> Result<u16, EmulatorError> {
-        Ok(self.tick(Moved { count: raw_count.cast_unsigned(), missed: 0 })?.code)
+        Ok(self.tick(TickInput { count: raw_count.cast_unsigned(), missed: 0 })?.code)
     }
 
-    /// One tick: what the board does about what has become of its world.
+    /// One tick: the board gets its input and gives its output.
     ///
     /// # Errors
     /// Where the board has ended or does not answer.
-    pub fn tick(&mut self, moved: Moved) -> Result<Shown, EmulatorError> {
-        // Never 0, which is what a board has heard before the first.
+    pub fn tick(&mut self, input: TickInput) -> Result<TickOutput, EmulatorError> {
+        // Never 0, which a board has before the first input.
         self.number = self.number.checked_add(1).unwrap_or(1);
-        let mut question = &moved.to_bytes(self.number)[..];
+        let mut question = &input.to_bytes(self.number)[..];
         loop {
-            let mut answer = [0; Shown::BYTES];
+            let mut answer = [0; TickOutput::BYTES];
             self.guest.exchange(question, &mut answer)?;
-            match Shown::from_bytes(answer) {
-                Some((shown, number)) if number == self.number => return Ok(shown),
+            match TickOutput::from_bytes(answer) {
+                Some((output, number)) if number == self.number => return Ok(output),
                 // A board that faulted shows it again.
                 Some(_) => question = &[],
                 None => return Err(EmulatorError::NoReply),
@@ -195,24 +195,27 @@ impl Emulator {
     ///
     /// # Errors
     /// Where the board has ended or does not answer, or is not armed.
-    pub fn engage(&mut self) -> Result<(), EmulatorError> {
-        self.engage_seen(|_| ())
+    pub fn arm_and_wait(&mut self) -> Result<(), EmulatorError> {
+        self.arm_and_observe(|_| ())
     }
 
-    /// The same; `see` is told what the board shows in each tick.
+    /// The same; `see` is called with the output of each tick.
     ///
     /// # Errors
-    /// As of [`engage`](Self::engage).
-    pub fn engage_seen(&mut self, mut see: impl FnMut(Shown)) -> Result<(), EmulatorError> {
-        const AT_REST: Moved = Moved { count: 0, missed: 0 };
+    /// As of [`arm_and_wait`](Self::arm_and_wait).
+    pub fn arm_and_observe(
+        &mut self,
+        mut see: impl FnMut(TickOutput),
+    ) -> Result<(), EmulatorError> {
+        const AT_REST: TickInput = TickInput { count: 0, missed: 0 };
         // With the first tick the port is open.
         see(self.tick(AT_REST)?);
         // Kept until the board has answered, so that nothing of the answer waits for the next client.
         let _port = self.arm().map_err(EmulatorError::Serial)?;
         for _ in 0..LONGEST_FADING {
-            let shown = self.tick(AT_REST)?;
-            see(shown);
-            if shown.state == State::Running {
+            let output = self.tick(AT_REST)?;
+            see(output);
+            if output.state == State::Running {
                 return Ok(());
             }
         }

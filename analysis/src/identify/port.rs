@@ -163,7 +163,7 @@ impl Recording {
 }
 
 /// A board whose sweep has not begun.
-pub struct Player {
+pub struct SweepPort {
     address: Address,
     transport: Box<dyn Transport>,
     /// Bytes that are no whole line yet.
@@ -173,7 +173,7 @@ pub struct Player {
     description: Description,
 }
 
-impl Player {
+impl SweepPort {
     /// Connects, ends what the board may still be playing, and asks what it would play.
     ///
     /// # Errors

@@ -244,36 +244,36 @@ impl Toolchain {
         }
     }
 
-    /// Builds the program that judges scenes for [`Judge`](crate::emulator::Judge).
+    /// Builds the server that certifies scenes for [`CertifyClient`](crate::emulator::CertifyClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("judge")
+    pub fn build_certify_server(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("certify_server")
     }
 
-    /// Builds the program that plays scenes for [`Player`](crate::emulator::Player).
+    /// Builds the server that runs scenes for [`ServoClient`](crate::emulator::ServoClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_player(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("player")
+    pub fn build_servo_server(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("servo_server")
     }
 
-    /// Builds the program that computes for [`Trials`](crate::emulator::Trials).
+    /// Builds the benchmark server for [`BenchClient`](crate::emulator::BenchClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_trial(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("trial")
+    pub fn build_bench_programs(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("bench_programs")
     }
 
-    /// Builds the program that does the same for any scene.
+    /// Builds the benchmark server that has every type of scene.
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_survey(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("survey")
+    pub fn build_bench_all(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("bench_all")
     }
 
     /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
@@ -293,7 +293,7 @@ impl Toolchain {
     }
 
     /// Builds a program without a scene for the emulated board.
-    fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
+    fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
         let (package, features) = ("firmware-harness", "emulated".into());
         let variant = Variant { package, features, suffix: String::new() };
         Ok(self.build(&[name], &variant)?.swap_remove(0))

@@ -7,8 +7,8 @@
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
 pub mod input_filter;
+pub mod lockstep_protocol;
 pub mod report;
-pub mod shown;
 pub mod sim_hardware;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]

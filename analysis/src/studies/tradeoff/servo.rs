@@ -8,7 +8,7 @@ use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
-use crate::emulator::Trials;
+use crate::emulator::BenchClient;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
 use crate::studies::arithmetic::{self, ArithmeticError, HALF_A_TURN, Losses, Motion, cost};
@@ -118,7 +118,7 @@ pub fn kept() -> Result<Tradeoff, TableError> {
 fn row(
     case: &Case,
     motion: &Motion,
-    board: &mut Trials,
+    board: &mut BenchClient,
     arithmetic: Arithmetic,
 ) -> Result<Method, ArithmeticError> {
     let cost = cost(board, motion, arithmetic)?;

@@ -1,12 +1,12 @@
 //! Random scenes as data, each certified by the board before it is that scene's servo.
 
 use analysis::controller::{Controller, controller};
-use analysis::emulator::Player;
+use analysis::emulator::ServoClient;
 use analysis::lockstep::RemoteServo;
 use firmware::encoder::CounterWidth;
 use firmware::number::{Arithmetic, InEach, Number};
 use firmware::servo::Transducers;
-use firmware_harness::play::{Curtain, Play};
+use firmware_harness::loop_request::{LoopRequest, StartReply};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes;
@@ -17,20 +17,20 @@ const SCENES: u64 = 8;
 const TICKS: usize = 400;
 
 /// What the host does with a play: the same as the board.
-struct Here<'a>(&'a Play);
+struct Here<'a>(&'a LoopRequest);
 
 impl InEach for Here<'_> {
-    type Output = Result<Box<dyn Controller>, Curtain>;
+    type Output = Result<Box<dyn Controller>, StartReply>;
 
     fn with<N: Number>(self) -> Self::Output {
-        let Self(Play { scene, transducers, .. }) = self;
-        let certified = scene.certify_in(N::FORMAT).map_err(|_| Curtain::Refused)?;
-        controller::<_, N>(&certified, transducers).map_err(|_| Curtain::Unbuildable)
+        let Self(LoopRequest { scene, transducers, .. }) = self;
+        let certified = scene.certify_in(N::FORMAT).map_err(|_| StartReply::Rejected)?;
+        controller::<_, N>(&certified, transducers).map_err(|_| StartReply::BuildFailed)
     }
 }
 
 /// A scene for an encoder and a motor that suit it.
-fn draw(rng: &mut ChaCha8Rng) -> Play {
+fn draw(rng: &mut ChaCha8Rng) -> LoopRequest {
     let scene = match rng.random() {
         true => scenes::wall(rng).scene,
         false => scenes::free(rng).scene,
@@ -43,30 +43,31 @@ fn draw(rng: &mut ChaCha8Rng) -> Play {
         largest_speed: 100.0,
     };
     let arithmetic = if rng.random() { Arithmetic::F32 } else { Arithmetic::I16F16 };
-    Play { scene, transducers, arithmetic, ticks: TICKS as u32 }
+    LoopRequest { scene, transducers, arithmetic, ticks: TICKS as u32 }
 }
 
 #[test]
 fn plays_are_equal() {
-    let elf = TOOLCHAIN.build_player().unwrap_or_else(|error| panic!("{error}"));
-    let mut boards = [Player::over(Virtual::boot(&elf)), Player::boot(&elf).unwrap()];
-    let mut curtains = [0; 3];
+    let elf = TOOLCHAIN.build_servo_server().unwrap_or_else(|error| panic!("{error}"));
+    let mut boards =
+        [ServoClient::with_transport(Virtual::boot(&elf)), ServoClient::boot(&elf).unwrap()];
+    let mut replies = [0; 3];
     for mut rng in (0..SCENES).map(ChaCha8Rng::seed_from_u64) {
-        let play = draw(&mut rng);
-        let here = play.arithmetic.choose(Here(&play));
-        let curtain = here.as_ref().err().copied().unwrap_or(Curtain::Open);
-        curtains[curtain as usize] += 1;
+        let request = draw(&mut rng);
+        let here = request.arithmetic.choose(Here(&request));
+        let reply = here.as_ref().err().copied().unwrap_or(StartReply::Ready);
+        replies[reply as usize] += 1;
         for board in &mut boards {
-            assert_eq!(board.open(&play).unwrap(), curtain, "{play:?}");
+            assert_eq!(board.start(&request).unwrap(), reply, "{request:?}");
         }
         let Ok(mut here) = here else { continue };
         for (tick, count) in counts(&mut rng, TICKS).into_iter().enumerate() {
             let code = here.tick(count).code;
             for board in &mut boards {
-                assert_eq!(board.exchange(count).unwrap(), code, "tick {tick} of {play:?}");
+                assert_eq!(board.exchange(count).unwrap(), code, "tick {tick} of {request:?}");
             }
         }
     }
     boards.into_iter().for_each(|board| board.finish().unwrap());
-    assert!(curtains[0] > 3 && curtains[1] > 1, "open, refused, not to be had: {curtains:?}");
+    assert!(replies[0] > 3 && replies[1] > 1, "open, refused, not to be had: {replies:?}");
 }

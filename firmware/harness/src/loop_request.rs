@@ -1,19 +1,19 @@
-//! A scene with what it runs on, put to a board by the bits of its numbers: the board certifies it
-//! and then is its servo for so many ticks.
+//! A scene with its transducers, sent to a board by the bits of its numbers: the board certifies it
+//! and then runs its servo for a number of ticks.
 //!
-//! The programs for the board have one scene each, with a delay that is a type; this is how a test
-//! has a board play many scenes in one run, whatever their delays.
+//! The programs for the board have one scene each, with a delay that is a type; with these requests a test
+//! has a board run many scenes, whatever their delays.
 
 use firmware::number::Arithmetic;
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
-use crate::question::{Question, ask, read};
-use crate::words::{self, MachineWords};
+use crate::scene_codec::{SceneWords, decode, encode};
+use crate::transducer_codec::{self, TransducerWords};
 
-/// What a board is to play.
+/// A request to run a closed loop on the board.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
+pub struct LoopRequest {
     /// The scene, which is certified before anything of it runs.
     pub scene: Scene,
     /// The encoder and the motor.
@@ -24,51 +24,52 @@ pub struct Play {
     pub ticks: u32,
 }
 
-/// What a board says to that before the first tick; only [`Curtain::Open`] is followed by any.
+/// The board's reply before the first tick; only [`StartReply::Ready`] is followed by any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
-pub enum Curtain {
+pub enum StartReply {
     /// The scene is certified and its servo at rest.
-    Open = 0,
+    Ready = 0,
     /// The scene is not certified.
-    Refused = 1,
-    /// It is, but cannot be had with these transducers in this arithmetic.
-    Unbuildable = 2,
+    Rejected = 1,
+    /// It is certified, but its servo cannot be built with these transducers in this arithmetic.
+    BuildFailed = 2,
 }
 
-/// Words in front of a play's scene: the ticks and the machine.
-const HEAD: usize = 1 + size_of::<MachineWords>() / 8;
-/// A [`Play`] as words.
-pub type PlayWords = [u64; HEAD + size_of::<Question>() / 8];
+/// Words in front of the scene: the ticks and the transducers.
+const HEAD: usize = 1 + size_of::<TransducerWords>() / 8;
+/// A [`LoopRequest`] as words.
+pub type LoopRequestWords = [u64; HEAD + size_of::<SceneWords>() / 8];
 
-impl Curtain {
+impl StartReply {
     /// As bytes.
     pub const fn to_bytes(self) -> [u8; 8] {
         (self as u64).to_le_bytes()
     }
 
-    /// From bytes; `None` for what [`Curtain::to_bytes`] did not write.
+    /// From bytes; `None` for what [`StartReply::to_bytes`] did not write.
     pub fn from_bytes(bytes: [u8; 8]) -> Option<Self> {
-        let all = [Self::Open, Self::Refused, Self::Unbuildable];
-        all.into_iter().find(|curtain| curtain.to_bytes() == bytes)
+        let all = [Self::Ready, Self::Rejected, Self::BuildFailed];
+        all.into_iter().find(|reply| reply.to_bytes() == bytes)
     }
 }
 
-impl Play {
+impl LoopRequest {
     /// Its words.
-    pub fn words(&self) -> PlayWords {
+    pub fn encode(&self) -> LoopRequestWords {
         let mut words = [0; _];
         words[0] = self.ticks.into();
-        words[1..HEAD].copy_from_slice(&words::ask(&self.transducers, self.arithmetic));
-        words[HEAD..].copy_from_slice(&ask(&self.scene));
+        words[1..HEAD]
+            .copy_from_slice(&transducer_codec::encode(&self.transducers, self.arithmetic));
+        words[HEAD..].copy_from_slice(&encode(&self.scene));
         words
     }
 
-    /// The play of the words; `None` if they are none.
-    pub fn read(words: &PlayWords) -> Option<Self> {
+    /// The request of the words; `None` if they are malformed.
+    pub fn decode(words: &LoopRequestWords) -> Option<Self> {
         let (&[ticks, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
-        let (transducers, arithmetic) = words::read(*machine)?;
-        let scene = read(scene.try_into().ok()?)?;
+        let (transducers, arithmetic) = transducer_codec::decode(*machine)?;
+        let scene = decode(scene.try_into().ok()?)?;
         Some(Self { scene, transducers, arithmetic, ticks: ticks.try_into().ok()? })
     }
 }
@@ -81,7 +82,7 @@ mod tests {
     use firmware::scene::{Coupling, Device, Timing};
 
     #[test]
-    fn plays_survive_their_words() {
+    fn requests_survive_their_words() {
         let wall = Wall {
             stiffness: 1.0,
             damping: 0.5,
@@ -90,7 +91,7 @@ mod tests {
             face: 0.0,
             one_sided: false,
         };
-        let play = Play {
+        let request = LoopRequest {
             scene: Scene {
                 device: Device { inertia: 0.1, damping: 0.2, passivity: None },
                 timing: Timing { period: 0.4, worst_period: Some(0.8) },
@@ -107,13 +108,13 @@ mod tests {
             arithmetic: Arithmetic::I16F16,
             ticks: 5000,
         };
-        let mut words = play.words();
-        assert_eq!(Play::read(&words), Some(play));
+        let mut words = request.encode();
+        assert_eq!(LoopRequest::decode(&words), Some(request));
         words[HEAD - 1] = Arithmetic::ALL.len() as u64;
-        assert_eq!(Play::read(&words), None);
-        for curtain in [Curtain::Open, Curtain::Refused, Curtain::Unbuildable] {
-            assert_eq!(Curtain::from_bytes(curtain.to_bytes()), Some(curtain));
+        assert_eq!(LoopRequest::decode(&words), None);
+        for reply in [StartReply::Ready, StartReply::Rejected, StartReply::BuildFailed] {
+            assert_eq!(StartReply::from_bytes(reply.to_bytes()), Some(reply));
         }
-        assert_eq!(Curtain::from_bytes([9; 8]), None);
+        assert_eq!(StartReply::from_bytes([9; 8]), None);
     }
 }

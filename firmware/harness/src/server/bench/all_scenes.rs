@@ -6,49 +6,49 @@ use firmware::environment::{
 };
 use firmware::number::Number;
 
-use super::{Gone, Job, Kinds};
+use super::{BenchJob, HostClosed, SceneSet};
 
 /// All scenes: those without a delay, with one sample of it and with the most in types of their own,
 /// others as data.
 #[derive(Debug)]
-pub struct Every;
+pub struct AllScenes;
 
-impl Kinds for Every {
-    fn ticks<N: Number>(job: Job<'_>) -> Result<(), Gone> {
+impl SceneSet for AllScenes {
+    fn ticks<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
         match job.scene.environment.delay() {
-            0 => typed::<0, N>(job),
-            1 => typed::<1, N>(job),
-            MAX_DELAY => typed::<MAX_DELAY, N>(job),
+            0 => with_delay_type::<0, N>(job),
+            1 => with_delay_type::<1, N>(job),
+            MAX_DELAY => with_delay_type::<MAX_DELAY, N>(job),
             _ => as_data::<N>(job),
         }
     }
 }
 
-fn typed<const DELAY: usize, N: Number>(job: Job<'_>) -> Result<(), Gone> {
+fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
     match job.scene.environment {
         Environment::DelayedSpring(Wall { stiffness, face: 0.0, one_sided: false, .. }) => {
-            job.of::<_, N>(DelayedSpring::<DELAY> { stiffness })
+            job.run::<_, N>(DelayedSpring::<DELAY> { stiffness })
         }
         Environment::DamperWall(wall) => match Damped::<DELAY>::of(&wall) {
-            Some(Damped::Plain(spring)) => sided::<_, N>(job, &wall, spring),
-            Some(Damped::Filtered(spring)) => sided::<_, N>(job, &wall, spring),
+            Some(Damped::Plain(spring)) => with_face::<_, N>(job, &wall, spring),
+            Some(Damped::Filtered(spring)) => with_face::<_, N>(job, &wall, spring),
             None => as_data::<N>(job),
         },
-        Environment::FreeMode { residual, .. } => job.of::<_, N>(FreeMode::<DELAY> { residual }),
+        Environment::FreeMode { residual, .. } => job.run::<_, N>(FreeMode::<DELAY> { residual }),
         Environment::FreeModeWall { residual, wall } => match Damped::<DELAY>::of(&wall) {
-            Some(Damped::Plain(spring)) => ended::<_, N>(job, residual, &wall, spring),
-            Some(Damped::Filtered(spring)) => ended::<_, N>(job, residual, &wall, spring),
+            Some(Damped::Plain(spring)) => with_free_mode::<_, N>(job, residual, &wall, spring),
+            Some(Damped::Filtered(spring)) => with_free_mode::<_, N>(job, residual, &wall, spring),
             None => as_data::<N>(job),
         },
-        Environment::Rational(rational) => job.of::<_, N>(rational),
+        Environment::Rational(rational) => job.run::<_, N>(rational),
         Environment::DelayedSpring(_) => as_data::<N>(job),
     }
 }
 
 /// As a servo of any environment.
-fn as_data<N: Number>(job: Job<'_>) -> Result<(), Gone> {
+fn as_data<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
     let environment = job.scene.environment;
-    job.of::<_, N>(environment)
+    job.run::<_, N>(environment)
 }
 
 /// A wall at zero.
@@ -70,30 +70,30 @@ impl<const DELAY: usize> Damped<DELAY> {
 }
 
 /// A wall where it is.
-fn sided<W: Spring<N> + Discretize<N>, N: Number>(
-    job: Job<'_>,
+fn with_face<W: Spring<N> + Discretize<N>, N: Number>(
+    job: BenchJob<'_>,
     place: &Wall,
     wall: W,
-) -> Result<(), Gone> {
+) -> Result<(), HostClosed> {
     match *place {
-        Wall { face, one_sided: true, .. } => job.of::<_, N>(OneSided { face, wall }),
-        Wall { face: 0.0, .. } => job.of::<_, N>(wall),
-        Wall { face, .. } => job.of::<_, N>(Placed { face, wall }),
+        Wall { face, one_sided: true, .. } => job.run::<_, N>(OneSided { face, wall }),
+        Wall { face: 0.0, .. } => job.run::<_, N>(wall),
+        Wall { face, .. } => job.run::<_, N>(Placed { face, wall }),
     }
 }
 
 /// A wall that ends free motion. There is no type of one that has its rest elsewhere than at zero.
-fn ended<W: Spring<N> + Discretize<N>, N: Number>(
-    job: Job<'_>,
+fn with_free_mode<W: Spring<N> + Discretize<N>, N: Number>(
+    job: BenchJob<'_>,
     residual: f64,
     place: &Wall,
     wall: W,
-) -> Result<(), Gone> {
+) -> Result<(), HostClosed> {
     match *place {
         Wall { face, one_sided: true, .. } => {
-            job.of::<_, N>(FreeModeWall { residual, wall: OneSided { face, wall } })
+            job.run::<_, N>(FreeModeWall { residual, wall: OneSided { face, wall } })
         }
-        Wall { face: 0.0, .. } => job.of::<_, N>(FreeModeWall { residual, wall }),
+        Wall { face: 0.0, .. } => job.run::<_, N>(FreeModeWall { residual, wall }),
         _ => as_data::<N>(job),
     }
 }

@@ -1,11 +1,11 @@
-//! Does [trials](crate::trial) on the emulated board: inputs come by the pipe `counts`,
+//! Runs [benchmarks](crate::bench_request) on the emulated board: inputs come by the pipe `counts`,
 //! outputs go by `codes`.
 
-mod every;
-mod programs;
+mod all_scenes;
+mod program_scenes;
 
-pub use every::Every;
-pub use programs::OfPrograms;
+pub use all_scenes::AllScenes;
+pub use program_scenes::ProgramScenes;
 
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -19,21 +19,21 @@ use firmware::servo::Transducers;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
+use crate::bench_request::{BLOCK, BenchRequest, Inputs, Output, Outputs, READY, REFUSED};
 use crate::sines::Sine;
-use crate::trial::{BLOCK, Inputs, Output, Outputs, READY, REFUSED, Trial};
 
 /// The types of environments of which a program has servos. A servo of data would have instructions
 /// of its own to find out what it is.
-pub trait Kinds {
+pub trait SceneSet {
     /// Has a servo of the scene's own type do its ticks, if the program has that.
     ///
     /// # Errors
     /// Where the host is gone.
-    fn ticks<N: Number>(job: Job<'_>) -> Result<(), Gone>;
+    fn ticks<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed>;
 }
 
-/// Does trials of these types until the host closes its end.
-pub fn run<K: Kinds>() -> ! {
+/// Runs benchmarks of these types until the host closes its end.
+pub fn run<K: SceneSet>() -> ! {
     tick_timer::start_clock();
     let scale = meter::Scale::calibrate();
     let Ok((counts, codes)) = lockstep::pipes() else {
@@ -42,13 +42,13 @@ pub fn run<K: Kinds>() -> ! {
     let mut host = Host { counts, codes, scale };
     semihosting::process::exit(match host.serve::<K>() {
         Ok(()) => EXIT_DONE,
-        Err(Gone) => EXIT_REFUSED,
+        Err(HostClosed) => EXIT_REFUSED,
     })
 }
 
-/// The host does not take an answer, or asks what is no question.
+/// The host does not take a reply, or its request is malformed.
 #[derive(Debug)]
-pub struct Gone;
+pub struct HostClosed;
 
 /// The pipes to the host, and what the meter's numbers mean.
 struct Host {
@@ -58,46 +58,46 @@ struct Host {
 }
 
 impl Host {
-    fn serve<K: Kinds>(&mut self) -> Result<(), Gone> {
-        while let Some(trial) = self.question()? {
-            match trial {
-                Trial::Servo { scene, transducers, arithmetic } => {
-                    let job = Job { host: self, scene: &scene, transducers: &transducers };
-                    arithmetic.choose(OfServo::<K> { job, kinds: PhantomData })?;
+    fn serve<K: SceneSet>(&mut self) -> Result<(), HostClosed> {
+        while let Some(request) = self.next_request()? {
+            match request {
+                BenchRequest::Servo { scene, transducers, arithmetic } => {
+                    let job = BenchJob { host: self, scene: &scene, transducers: &transducers };
+                    arithmetic.choose(ServoBench::<K> { job, scenes: PhantomData })?;
                 }
-                Trial::Sine(sine) => self.sine(sine)?,
+                BenchRequest::Sine(sine) => self.sine(sine)?,
             }
         }
         Ok(())
     }
 
-    /// The next trial, if there is another one.
-    fn question(&mut self) -> Result<Option<Trial>, Gone> {
+    /// The next request, if there is one.
+    fn next_request(&mut self) -> Result<Option<BenchRequest>, HostClosed> {
         match lockstep::words(&mut self.counts) {
-            Ok(words) => Trial::read(&words).map(Some).ok_or(Gone),
+            Ok(words) => BenchRequest::decode(&words).map(Some).ok_or(HostClosed),
             Err(_) => Ok(None),
         }
     }
 
-    fn answer(&mut self, bytes: &[u8]) -> Result<(), Gone> {
-        self.codes.write_all(bytes).map_err(|_| Gone)
+    fn answer(&mut self, bytes: &[u8]) -> Result<(), HostClosed> {
+        self.codes.write_all(bytes).map_err(|_| HostClosed)
     }
 
-    /// The inputs that come next; `None` where the trial is over.
+    /// The inputs that come next; `None` at the end of the benchmark.
     #[inline(never)]
-    fn inputs(&mut self) -> Result<Option<Inputs>, Gone> {
+    fn inputs(&mut self) -> Result<Option<Inputs>, HostClosed> {
         let mut more = [0];
-        self.counts.read_exact(&mut more).map_err(|_| Gone)?;
+        self.counts.read_exact(&mut more).map_err(|_| HostClosed)?;
         if more == [0] {
             return Ok(None);
         }
         let mut inputs = [[0; 4]; BLOCK];
-        self.counts.read_exact(inputs.as_flattened_mut()).map_err(|_| Gone)?;
+        self.counts.read_exact(inputs.as_flattened_mut()).map_err(|_| HostClosed)?;
         Ok(Some(inputs.map(u32::from_le_bytes)))
     }
 
     #[inline(never)]
-    fn outputs(&mut self, outputs: &Outputs) -> Result<(), Gone> {
+    fn outputs(&mut self, outputs: &Outputs) -> Result<(), HostClosed> {
         outputs.iter().try_for_each(|output| self.answer(&output.to_bytes()))
     }
 
@@ -109,7 +109,7 @@ impl Host {
         &mut self,
         scene: Scene<E>,
         transducers: &Transducers,
-    ) -> Result<(), Gone> {
+    ) -> Result<(), HostClosed> {
         let Ok(mut servo) = meter::judged_elsewhere::<E, N>(&scene, transducers) else {
             return self.answer(&[REFUSED]);
         };
@@ -132,7 +132,7 @@ impl Host {
     }
 
     /// Sines, as long as there are parts of a turn.
-    fn sine(&mut self, sine: Sine) -> Result<(), Gone> {
+    fn sine(&mut self, sine: Sine) -> Result<(), HostClosed> {
         self.answer(&[READY])?;
         while let Some(turns) = self.inputs()? {
             let mut outputs = [Output::default(); BLOCK];
@@ -167,36 +167,36 @@ fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic)
 }
 
-/// A servo's trial, whose types are still to be chosen.
-pub struct Job<'a> {
+/// Benchmark of a servo whose types are still to be chosen.
+pub struct BenchJob<'a> {
     host: &'a mut Host,
     scene: &'a Scene,
     transducers: &'a Transducers,
 }
 
-impl Job<'_> {
+impl BenchJob<'_> {
     /// Its ticks, as a servo of this environment.
-    fn of<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), Gone> {
+    fn run<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), HostClosed> {
         let Scene { device, timing, coupling, torque_limit, .. } = *self.scene;
         let scene = Scene { device, timing, coupling, environment, torque_limit };
         self.host.ticks::<E, N>(scene, self.transducers)
     }
 
-    fn refuse(self) -> Result<(), Gone> {
+    fn refuse(self) -> Result<(), HostClosed> {
         self.host.answer(&[REFUSED])
     }
 }
 
-/// A job whose format is still to be chosen.
-struct OfServo<'a, K> {
-    job: Job<'a>,
-    kinds: PhantomData<K>,
+/// A benchmark whose number format is still to be chosen.
+struct ServoBench<'a, K> {
+    job: BenchJob<'a>,
+    scenes: PhantomData<K>,
 }
 
-impl<K: Kinds> InEach for OfServo<'_, K> {
-    type Output = Result<(), Gone>;
+impl<K: SceneSet> InEach for ServoBench<'_, K> {
+    type Output = Result<(), HostClosed>;
 
-    fn with<N: Number>(self) -> Result<(), Gone> {
+    fn with<N: Number>(self) -> Result<(), HostClosed> {
         K::ticks::<N>(self.job)
     }
 }

@@ -1,11 +1,11 @@
-//! Computes torques and sines in ways that the host chooses, on the emulated board, and says what
-//! each takes: the table of formats is measured with it. It drives nothing.
+//! Measures torques and sines on the emulated board, with the instructions of each: the table of
+//! number formats comes from it. It drives no motor.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware_harness::server::trial::run::<firmware_harness::server::trial::OfPrograms>()
+    firmware_harness::server::bench::run::<firmware_harness::server::bench::ProgramScenes>()
 }
 
 #[cfg(not(target_os = "none"))]

@@ -1,10 +1,10 @@
-//! Answers scenes by their bits: questions in by the pipe `counts`, replies out by `codes`.
+//! Certifies scenes that come by their bits: requests in by the pipe `counts`, replies out by `codes`.
 
 use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
 use semihosting::fs::File;
 use semihosting::io::Write;
 
-use crate::question::answer;
+use crate::scene_codec::certify;
 
 /// Answers until the host closes its end.
 pub fn run() -> ! {
@@ -15,23 +15,23 @@ pub fn run() -> ! {
     };
     semihosting::process::exit(match serve(counts, codes, scale) {
         Ok(()) => EXIT_DONE,
-        Err(Unanswerable) => EXIT_REFUSED,
+        Err(RequestError) => EXIT_REFUSED,
     })
 }
 
 /// A malformed request, or a host that does not take the reply.
-struct Unanswerable;
+struct RequestError;
 
-fn serve(mut questions: File, mut replies: File, scale: meter::Scale) -> Result<(), Unanswerable> {
-    while let Ok(question) = lockstep::words(&mut questions) {
-        let words = answer(&question, |judge| {
+fn serve(mut requests: File, mut replies: File, scale: meter::Scale) -> Result<(), RequestError> {
+    while let Ok(words) = lockstep::words(&mut requests) {
+        let words = certify(&words, |judge| {
             let start = meter::now();
             judge();
             u64::from(scale.instructions(meter::now().wrapping_sub(start)))
         })
-        .ok_or(Unanswerable)?;
+        .ok_or(RequestError)?;
         let bytes = words.map(u64::to_le_bytes);
-        replies.write_all(bytes.as_flattened()).map_err(|_| Unanswerable)?;
+        replies.write_all(bytes.as_flattened()).map_err(|_| RequestError)?;
     }
     Ok(())
 }

@@ -1,32 +1,32 @@
-//! What an emulated board and the host that simulates its world tell each other in each tick, as
-//! bytes.
+//! Lockstep protocol between an emulated board and the host that simulates its plant: the input and
+//! the output of a tick, as bytes.
 //!
 //! Each tick has a number, which the board repeats: one that faults may show what it does twice
 //! rather than not at all.
 
 use crate::servo_loop::State;
 
-/// What has become of the world since the last tick.
+/// The plant's input to a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moved {
+pub struct TickInput {
     /// The encoder's counter.
     pub count: u32,
     /// Whole periods that went by without a tick: 0 in time.
     pub missed: u16,
 }
 
-/// What the board has done by the end of the tick.
+/// The board's output at the end of the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shown {
-    /// What the converter holds.
+pub struct TickOutput {
+    /// The code that the DAC holds.
     pub code: u16,
     /// Whether the amplifier is on.
     pub amplifier: bool,
-    /// What the servo says that it is doing.
+    /// State of the servo loop.
     pub state: State,
 }
 
-impl Moved {
+impl TickInput {
     /// Length in bytes.
     pub const BYTES: usize = 8;
 
@@ -43,7 +43,7 @@ impl Moved {
     }
 }
 
-impl Shown {
+impl TickOutput {
     /// Length in bytes.
     pub const BYTES: usize = 6;
 
@@ -53,7 +53,7 @@ impl Shown {
         [a, b, self.amplifier as u8, self.state as u8, c, d]
     }
 
-    /// From bytes, with the tick's number; `None` for what [`Shown::to_bytes`] did not write.
+    /// From bytes, with the tick's number; `None` for what [`TickOutput::to_bytes`] did not write.
     pub fn from_bytes([a, b, amplifier, state, c, d]: [u8; Self::BYTES]) -> Option<(Self, u16)> {
         let (code, number) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]));
         let state = State::ALL.into_iter().find(|known| *known as u8 == state)?;
@@ -67,14 +67,14 @@ mod tests {
 
     #[test]
     fn comes_out_of_the_bytes_as_it_went_in() {
-        let moved = Moved { count: 0xffff_fff0, missed: 3 };
-        assert_eq!(moved.to_bytes(0x1234), [0xf0, 0xff, 0xff, 0xff, 3, 0, 0x34, 0x12]);
-        assert_eq!(Moved::from_bytes(moved.to_bytes(0xfedc)), (moved, 0xfedc));
+        let input = TickInput { count: 0xffff_fff0, missed: 3 };
+        assert_eq!(input.to_bytes(0x1234), [0xf0, 0xff, 0xff, 0xff, 3, 0, 0x34, 0x12]);
+        assert_eq!(TickInput::from_bytes(input.to_bytes(0xfedc)), (input, 0xfedc));
         for state in State::ALL {
-            let shown = Shown { code: 0x0123, amplifier: state.is_armed(), state };
-            assert_eq!(Shown::from_bytes(shown.to_bytes(0xabcd)), Some((shown, 0xabcd)));
+            let output = TickOutput { code: 0x0123, amplifier: state.is_armed(), state };
+            assert_eq!(TickOutput::from_bytes(output.to_bytes(0xabcd)), Some((output, 0xabcd)));
         }
-        assert_eq!(Shown::from_bytes([0, 8, 2, 0, 0, 0]), None);
-        assert_eq!(Shown::from_bytes([0, 8, 1, 6, 0, 0]), None);
+        assert_eq!(TickOutput::from_bytes([0, 8, 2, 0, 0, 0]), None);
+        assert_eq!(TickOutput::from_bytes([0, 8, 1, 6, 0, 0]), None);
     }
 }

@@ -1,7 +1,7 @@
-//! A scene put to a board by the bits of its numbers, and the board's answer.
+//! Codec of a scene by the bits of its numbers, and of the board's certify reply.
 //!
-//! The certificate is judged by the compiler, by the host and by the board; this is how a test asks
-//! a board, so that the three can be compared bit for bit. It is not how a scene gets to a servo.
+//! The compiler, the host and the board compute the same certificate; with this codec a test asks a
+//! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
 
 use firmware::certificate::{Answer, Assessment, assess};
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
@@ -12,35 +12,35 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 const TERMS: usize = MAX_DEGREE + 1;
 
 /// A scene as 64-bit words; an `f64` is its bits.
-pub type Question = [u64; WORDS];
+pub type SceneWords = [u64; WORDS];
 
 /// Words of a scene: 11 around the environment, its kind, a wall and a residual, a rational
 /// function.
 const WORDS: usize = 11 + 1 + (7 + 1) + (2 + 2 * (1 + TERMS));
 
 /// An enclosure's ends as bits; `None` where the index does not exist.
-pub type Ends = Option<(u64, u64)>;
+pub type IntervalBits = Option<(u64, u64)>;
 
-/// What the board found.
+/// Certificate that the board computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reply {
+pub struct CertifyReply {
     /// Index of the environment alone.
-    pub alpha: Ends,
+    pub alpha: IntervalBits,
     /// Index behind the coupling.
-    pub alpha_coupled: Ends,
+    pub alpha_coupled: IntervalBits,
     /// Equations 17 to 19.
     pub paper: Answer,
     /// Theory, section 4.1.
     pub exact: Answer,
-    /// Instructions that the judgement took; 0 where nothing counts them.
+    /// Instructions that certifying took; 0 where nothing counts them.
     pub instructions: u64,
 }
 
-/// A [`Reply`] as words.
+/// A [`CertifyReply`] as words.
 pub type ReplyWords = [u64; 9];
 
 /// The words of a scene.
-pub fn ask(scene: &Scene) -> Question {
+pub fn encode(scene: &Scene) -> SceneWords {
     let mut words = Cursor { words: [0; _], next: 0 };
     words.number(scene.device.inertia);
     words.number(scene.device.damping);
@@ -82,9 +82,9 @@ const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
 const NO_RATIONAL: Rational =
     Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
 
-/// The scene of the words; `None` if they are none.
-pub fn read(question: &Question) -> Option<Scene> {
-    let mut words = Cursor { words: *question, next: 0 };
+/// The scene of the words; `None` if they are malformed.
+pub fn decode(words: &SceneWords) -> Option<Scene> {
+    let mut words = Cursor { words: *words, next: 0 };
     let device = Device {
         inertia: words.take_number(),
         damping: words.take_number(),
@@ -111,39 +111,39 @@ pub fn read(question: &Question) -> Option<Scene> {
     Some(Scene { device, timing, coupling, environment, torque_limit })
 }
 
-/// Judges the scene of a question; `None` if the question is not one. `count` measures the
-/// judgement in instructions.
-pub fn answer(
-    question: &Question,
+/// Certifies the scene of the words; `None` if they are malformed. `count` measures the
+/// instructions that this takes.
+pub fn certify(
+    words: &SceneWords,
     count: impl FnOnce(&mut dyn FnMut()) -> u64,
 ) -> Option<ReplyWords> {
-    let scene = read(question)?;
+    let scene = decode(words)?;
     let mut found = None;
     let instructions = count(&mut || found = Some(assess(&scene)));
     let Assessment { alpha, alpha_coupled, paper, exact, .. } = found?;
     let mut words = Cursor { words: [0; _], next: 0 };
-    words.ends(alpha);
-    words.ends(alpha_coupled);
-    words.push(code(paper));
-    words.push(code(exact));
+    words.interval(alpha);
+    words.interval(alpha_coupled);
+    words.push(answer_code(paper));
+    words.push(answer_code(exact));
     words.push(instructions);
     Some(words.words)
 }
 
-/// The reply of the words; `None` if they are none.
-pub fn reply(words: &ReplyWords) -> Option<Reply> {
+/// The reply of the words; `None` if they are malformed.
+pub fn decode_reply(words: &ReplyWords) -> Option<CertifyReply> {
     let mut words = Cursor { words: *words, next: 0 };
-    Some(Reply {
-        alpha: words.take_ends(),
-        alpha_coupled: words.take_ends(),
-        paper: decode(words.take())?,
-        exact: decode(words.take())?,
+    Some(CertifyReply {
+        alpha: words.take_interval(),
+        alpha_coupled: words.take_interval(),
+        paper: answer_from_code(words.take())?,
+        exact: answer_from_code(words.take())?,
         instructions: words.take(),
     })
 }
 
 /// An answer as a word.
-fn code(answer: Answer) -> u64 {
+fn answer_code(answer: Answer) -> u64 {
     match answer {
         Answer::Pass => 0,
         Answer::Fail => 1,
@@ -152,8 +152,8 @@ fn code(answer: Answer) -> u64 {
 }
 
 /// The answer of a word.
-fn decode(word: u64) -> Option<Answer> {
-    [Answer::Pass, Answer::Fail, Answer::Undecided].into_iter().find(|a| code(*a) == word)
+fn answer_from_code(word: u64) -> Option<Answer> {
+    [Answer::Pass, Answer::Fail, Answer::Undecided].into_iter().find(|a| answer_code(*a) == word)
 }
 
 /// Words, and the place of the next one.
@@ -242,13 +242,13 @@ impl<const N: usize> Cursor<N> {
         Coefficients::new(values.get(..len)?)
     }
 
-    fn ends(&mut self, interval: Option<Interval>) {
+    fn interval(&mut self, interval: Option<Interval>) {
         self.push(interval.is_some() as u64);
         self.number(interval.map_or(0.0, Interval::lo));
         self.number(interval.map_or(0.0, Interval::hi));
     }
 
-    fn take_ends(&mut self) -> Ends {
+    fn take_interval(&mut self) -> IntervalBits {
         let is_some = self.take() != 0;
         let ends = (self.take(), self.take());
         is_some.then_some(ends)
@@ -293,14 +293,14 @@ mod tests {
             Environment::Rational(rational),
         ] {
             let asked = scene(environment);
-            assert_eq!(read(&ask(&asked)), Some(asked));
+            assert_eq!(decode(&encode(&asked)), Some(asked));
         }
     }
 
     #[test]
     fn words_that_are_no_scene_are_refused() {
-        assert!(read(&[u64::MAX; WORDS]).is_none());
-        assert!(read(&[0; WORDS]).is_none());
+        assert!(decode(&[u64::MAX; WORDS]).is_none());
+        assert!(decode(&[0; WORDS]).is_none());
     }
 
     #[test]
@@ -311,20 +311,20 @@ mod tests {
             coupling: Coupling::Rigid,
             ..scene(Environment::DelayedSpring(spring))
         };
-        let question = ask(&scene);
-        let words = answer(&question, |run| {
+        let words = encode(&scene);
+        let words = certify(&words, |run| {
             run();
             17
         });
         let found = assess(&scene);
         let bits = |i: Option<Interval>| i.map(|i| (i.lo().to_bits(), i.hi().to_bits()));
-        let expected = Reply {
+        let expected = CertifyReply {
             alpha: bits(found.alpha),
             alpha_coupled: bits(found.alpha_coupled),
             paper: found.paper,
             exact: found.exact,
             instructions: 17,
         };
-        assert_eq!(reply(&words.unwrap()), Some(expected));
+        assert_eq!(decode_reply(&words.unwrap()), Some(expected));
     }
 }

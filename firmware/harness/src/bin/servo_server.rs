@@ -1,11 +1,11 @@
-//! Plays scenes that the host sends by their bits, on the emulated board: it certifies each, and
-//! where it passes is its servo. The tests close the loop around it.
+//! Runs the servo of scenes that the host sends by their bits, on the emulated board, after certifying
+//! each. The tests close the loop around it.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    firmware_harness::server::player::run()
+    firmware_harness::server::servo::run()
 }
 
 #[cfg(not(target_os = "none"))]

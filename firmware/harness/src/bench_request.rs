@@ -1,21 +1,21 @@
-//! Arithmetic put to the trial: what a board is asked to compute in one way or another, and what it
-//! says of the result and of its instructions.
+//! Instruction benchmarks: a request to compute torques or sines, and the results with the
+//! instructions of each.
 //!
-//! A [`Trial`] goes to the board as [`Words`], which are answered by one byte: whether it can be
+//! A [`BenchRequest`] goes to the board as [`BenchRequestWords`], which are answered by one byte: whether it can be
 //! done. Then come [`Inputs`], any number of times, and each is answered by [`Outputs`].
 
 use firmware::number::Arithmetic;
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
-use crate::question::{self, Question, ask};
+use crate::scene_codec::{self, SceneWords, encode};
 use crate::sines::Sine;
-use crate::words::{self, MachineWords};
+use crate::transducer_codec::{self, TransducerWords};
 
-/// What is to be computed.
+/// The computation that is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is no heap, and never more than one")]
-pub enum Trial {
+pub enum BenchRequest {
     /// The torque of a scene at each count of an encoder, from rest.
     Servo {
         /// The scene, which has been judged.
@@ -41,7 +41,7 @@ pub type Outputs = [Output; BLOCK];
 pub struct Output {
     /// Torque in N m, or sine.
     pub value: f64,
-    /// The converter's code; of a sine none.
+    /// The DAC code; of a sine none.
     pub code: u16,
     /// Instructions that it took.
     pub instructions: u32,
@@ -72,34 +72,34 @@ pub const READY: u8 = 1;
 /// The board's first answer: its program has no scene of this type, or none can be built.
 pub const REFUSED: u8 = 0;
 
-/// Words in front of a trial's scene: a sine, or [`SERVO`], and the machine.
-const HEAD: usize = 1 + size_of::<MachineWords>() / 8;
-/// A trial as words.
-pub type Words = [u64; HEAD + size_of::<Question>() / 8];
+/// Words in front of the scene: a sine, or [`SERVO`], and the transducers.
+const HEAD: usize = 1 + size_of::<TransducerWords>() / 8;
+/// A request as words.
+pub type BenchRequestWords = [u64; HEAD + size_of::<SceneWords>() / 8];
 
-impl Trial {
+impl BenchRequest {
     /// Its words.
-    pub fn words(&self) -> Words {
+    pub fn encode(&self) -> BenchRequestWords {
         let mut words = [0; _];
         match self {
             Self::Servo { scene, transducers, arithmetic } => {
                 words[0] = SERVO;
-                words[1..HEAD].copy_from_slice(&words::ask(transducers, *arithmetic));
-                words[HEAD..].copy_from_slice(&ask(scene));
+                words[1..HEAD].copy_from_slice(&transducer_codec::encode(transducers, *arithmetic));
+                words[HEAD..].copy_from_slice(&encode(scene));
             }
-            Self::Sine(sine) => words[0] = words::place(&Sine::ALL, sine),
+            Self::Sine(sine) => words[0] = transducer_codec::index_of(&Sine::ALL, sine),
         }
         words
     }
 
-    /// The trial of the words; `None` if they are none.
-    pub fn read(words: &Words) -> Option<Self> {
+    /// The request of the words; `None` if they are malformed.
+    pub fn decode(words: &BenchRequestWords) -> Option<Self> {
         let (&[which, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
         if which != SERVO {
-            return words::at(&Sine::ALL, which).map(Self::Sine);
+            return transducer_codec::from_index(&Sine::ALL, which).map(Self::Sine);
         }
-        let (transducers, arithmetic) = words::read(*machine)?;
-        let scene = question::read(scene.try_into().ok()?)?;
+        let (transducers, arithmetic) = transducer_codec::decode(*machine)?;
+        let scene = scene_codec::decode(scene.try_into().ok()?)?;
         Some(Self::Servo { scene, transducers, arithmetic })
     }
 }

@@ -2,26 +2,28 @@
 
 use std::path::Path;
 
-use firmware_harness::trial::{BLOCK, Inputs, Output, Outputs, READY, Trial, Words};
+use firmware_harness::bench_request::{
+    BLOCK, BenchRequest, BenchRequestWords, Inputs, Output, Outputs, READY,
+};
 
 use super::{EmulatorError, Guest, Transport};
 
-/// An emulated board that computes in ways that the host chooses.
-pub struct Trials {
+/// An emulated board that measures computations that the host chooses.
+pub struct BenchClient {
     guest: Box<dyn Transport>,
 }
 
-impl Trials {
-    /// Starts the program; see [`build_trial`](crate::toolchain::Toolchain::build_trial).
+impl BenchClient {
+    /// Starts the program; see [`build_bench_programs`](crate::toolchain::Toolchain::build_bench_programs).
     ///
     /// # Errors
     /// Where the emulator cannot be started.
     pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
-        Ok(Self::over(Guest::boot(elf, &[])?))
+        Ok(Self::with_transport(Guest::boot(elf, &[])?))
     }
 
-    /// The same program, started by somebody else.
-    pub fn over(guest: impl Transport + 'static) -> Self {
+    /// A client of a program that runs already.
+    pub fn with_transport(guest: impl Transport + 'static) -> Self {
         Self { guest: Box::new(guest) }
     }
 
@@ -29,17 +31,21 @@ impl Trials {
     ///
     /// # Errors
     /// Where the board has ended, does not answer, or has no program for this.
-    pub fn compute(&mut self, trial: &Trial, inputs: &[u32]) -> Result<Vec<Output>, EmulatorError> {
+    pub fn compute(
+        &mut self,
+        request: &BenchRequest,
+        inputs: &[u32],
+    ) -> Result<Vec<Output>, EmulatorError> {
         let mut ready = [0];
-        self.guest.ask(&trial.words(), &mut ready)?;
+        self.guest.ask(&request.encode(), &mut ready)?;
         if ready != [READY] {
-            return Err(EmulatorError::NoTrial);
+            return Err(EmulatorError::NoBenchProgram);
         }
         let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
         for block in inputs.chunks(BLOCK) {
             outputs.extend(self.block(block)?);
         }
-        // What filled up the last block is nobody's.
+        // The padding of the last block.
         outputs.truncate(inputs.len());
         self.guest.exchange(&[0], &mut [])?;
         Ok(outputs)
@@ -64,5 +70,5 @@ impl Trials {
     }
 }
 
-/// A question fits into a pipe at once, so that asking never waits for the board.
-const _: () = assert!(size_of::<Inputs>() < 4096 && size_of::<Words>() < 4096);
+/// A request fits into a pipe's buffer, so that sending it never waits for the board.
+const _: () = assert!(size_of::<Inputs>() < 4096 && size_of::<BenchRequestWords>() < 4096);
