@@ -5,8 +5,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::dash::{Dash, SOLID};
-use super::hatch::Ground;
-use super::sheet::{Frame, whole};
+use super::hatch::Fill;
+use super::plot_area::{Frame, whole};
 use super::*;
 use crate::quantity::{shortened, significant};
 use crate::simulation::tick_status::TickStatus;
@@ -38,13 +38,13 @@ pub fn data(trace: Trace) -> Data {
 }
 
 /// What limited the torque, each once.
-fn reasons(trace: &Trace) -> Vec<(TickStatus, Ground)> {
+fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill)> {
     let occurs = |status: &TickStatus| trace.limit.contains(status);
-    let grounded = |status| Some((status, Ground::of(status)?));
+    let grounded = |status| Some((status, Fill::of(status)?));
     TickStatus::all().filter(occurs).filter_map(grounded).collect()
 }
 
-/// Height of the line of the key that names the grounds, in pixels.
+/// Height of the line of the legend that names the fills, in pixels.
 const ROW: i32 = 24;
 /// Height of a line of words, in pixels.
 const LINE: i32 = 20;
@@ -57,7 +57,7 @@ const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive i
                      the motor applies minus the coupling torque";
 
 /// Draws position above velocity and torque, over one time axis. Where the torque was limited or a
-/// tick was missed, the ground says why. `wanted` are times and angles to be shown in place of all.
+/// tick was missed, the fill says why. `wanted` are times and angles to be shown in place of all.
 ///
 /// # Errors
 /// Where there are fewer than two samples.
@@ -73,12 +73,12 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     meets("vertical", wanted.y.as_ref(), &span(seen))?;
     let angles = wanted.y.clone().unwrap_or(angle_axis(trace, &times));
     let words = wrapped(&words(trace, &times, &angles));
-    let key = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
-    let height = TITLE_ROOM + key + PANELS.iter().sum::<i32>() + LINE + 4;
+    let legend = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
+    let height = TITLE_ROOM + legend + PANELS.iter().sum::<i32>() + LINE + 4;
     draw_sized((SIZE.0, height as u32), |area| {
         let area =
             area.margin(units(TOP), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
-        let (above, area) = area.split_vertically(units(key));
+        let (above, area) = area.split_vertically(units(legend));
         for (row, line) in words.iter().enumerate() {
             let place = (units(SIZE.0 as i32 / 2), units(LINE * row as i32 + LINE / 2));
             above.draw(&Text::new(line.clone(), place, anchored(HPos::Center, VPos::Center)))?;
@@ -247,16 +247,16 @@ fn wrapped(words: &[String]) -> Vec<String> {
     lines
 }
 
-/// What the grounds of the torque mean, side by side.
-fn write_grounds(area: &Area<'_>, reasons: &[(TickStatus, Ground)]) -> Drawn<()> {
+/// The legend of the torque's fills, side by side.
+fn write_grounds(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
     const SWATCH: i32 = 30;
     const GAP: i32 = 8;
     // About as wide as letters are.
     let width = |name: &str| SWATCH + 3 * GAP + 7 * name.len() as i32;
     let all: i32 = reasons.iter().map(|(status, _)| width(name(*status))).sum();
     let mut x = (SIZE.0 as i32 - all) / 2;
-    for &(status, ground) in reasons {
-        ground.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
+    for &(status, fill) in reasons {
+        fill.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
         let place = (units(x + SWATCH + GAP), units(ROW / 2));
         let style = anchored(HPos::Left, VPos::Center);
         area.draw(&Text::new(name(status), place, style))?;
@@ -265,7 +265,7 @@ fn write_grounds(area: &Area<'_>, reasons: &[(TickStatus, Ground)]) -> Drawn<()>
     Ok(())
 }
 
-/// What a ground means.
+/// The meaning of a fill.
 fn name(status: TickStatus) -> &'static str {
     use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Ramp, Torque};
     match status {
@@ -298,7 +298,7 @@ fn torque(
     area: &Area<'_>,
     trace: &Trace,
     times: &Range<f64>,
-    reasons: &[(TickStatus, Ground)],
+    reasons: &[(TickStatus, Fill)],
 ) -> Drawn<()> {
     let (y, limits) = torque_axis(trace, times);
     let axis = match trace.time_unit {
@@ -306,8 +306,8 @@ fn torque(
         TimeUnit::Ticks => "time (ticks)",
     };
     let mut chart = panel(area, times, &y, Some(axis), "torque (N m)")?;
-    for &(status, ground) in reasons {
-        shade(&chart, trace, status, ground)?;
+    for &(status, fill) in reasons {
+        shade(&chart, trace, status, fill)?;
     }
     let level = |value: f64| [(times.start, value), (times.end, value)];
     if y.contains(&0.0) {
@@ -324,8 +324,8 @@ fn torque(
     release(&mut chart, trace, times, &y, false)
 }
 
-/// Covers the ground of the samples that were served so.
-fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, ground: Ground) -> Drawn<()> {
+/// Fills the background of the samples of this status.
+fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, fill: Fill) -> Drawn<()> {
     let plot = chart.plotting_area();
     let area = plot.strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
@@ -339,7 +339,7 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, ground: Groun
     let first = trace.time.partition_point(|time| *time < times.start).saturating_sub(1);
     let last = trace.time.partition_point(|time| *time < times.end);
     for run in runs(&trace.limit[..last.min(trace.limit.len())], first, status, place) {
-        ground.fill(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
+        fill.draw(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
     }
     Ok(())
 }

@@ -10,8 +10,8 @@ use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::emulator::Report;
 use crate::program::{self, Program, damper_wall};
@@ -31,7 +31,7 @@ pub struct Arguments {
     pub parts: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Most time in microseconds that a verdict may take on one core.
@@ -68,15 +68,15 @@ const C_CONTACT: f64 = 53.0;
 const C_FREE: f64 = 42.0;
 
 /// Ticks of each run in the emulator.
-const TICKS: usize = 5000;
+const DEFAULT_TICKS: usize = 5000;
 
 /// Measures and prints.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if arguments.parts {
         let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
         let scenes = inventories(&toolchain)?;
         arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
-        return Ok(Answer::Yes);
+        return Ok(CommandStatus::Success);
     }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         figures.extend(scene.figures());
     }
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 /// What every program has.
@@ -199,7 +199,7 @@ fn on_target(
             Input::Hand(Box::new(program.device())),
             controller.as_mut(),
             Some(Backend::Emulator(elf)),
-            TICKS,
+            DEFAULT_TICKS,
             || {},
         )?;
         spinner.finish_and_clear();

@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::answer::{Answer, CommandError};
-use super::flashed::Flashed;
-use super::own;
-use super::values::seconds;
+use super::rebuild_with_scene;
+use super::status::{CommandError, CommandStatus};
+use super::value_parsers::seconds;
+use super::virtual_board_build::VirtualBoardBuild;
 use crate::board_sim::{Pacing, SimulatedBoard};
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
@@ -46,7 +46,7 @@ const HAND_DURATION: f64 = 3600.0;
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Runs a program in a simulated hand until the time is up, Ctrl-C, or it is told to end.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let name = &arguments.scene;
     let program = Program::find(name).ok_or_else(|| no_program(name))?;
     let enough = Arc::new(AtomicBool::new(false));
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let board = match arguments.board {
         None => program.listen(device, address, Pacing::RealTime),
         Some(board) => {
-            let built = Flashed::build(board, program.name, NumberFormat::F32)?;
+            let built = VirtualBoardBuild::build(board, program.name, NumberFormat::F32)?;
             SimulatedBoard::from_virtual_board(
                 built.boot()?,
                 device,
@@ -79,12 +79,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         thread::sleep(POLL_INTERVAL);
     }
     board.end()?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 /// Why there is no simulated board of that name: a scene file may have been meant.
 fn no_program(name: &str) -> CommandError {
-    let (name, programs) = (name.to_owned(), own::scenes());
+    let (name, programs) = (name.to_owned(), rebuild_with_scene::scenes());
     match Path::new(&name).is_file() {
         true => CommandError::FileOnSimulatedBoard { file: name, programs },
         false => CommandError::NoProgram { name, programs },

@@ -9,9 +9,9 @@ use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 
-use super::answer::{Answer, CommandError};
-use super::common::{FormatArgument, MOST_TICKS, TICKS};
 use super::outcome::section;
+use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};
+use super::status::{CommandError, CommandStatus};
 use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
@@ -23,7 +23,7 @@ use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
 use crate::simulation::{Experiment, Integration, simulate};
-use crate::toolchain::{self, Tools};
+use crate::toolchain::{self, NumberFormat, Tools};
 use crate::verdict::{self, Verdict};
 use crate::worst_hand::{self, HandCase};
 
@@ -34,11 +34,11 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
     /// Number format of the servo
-    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
-    pub format: FormatArgument,
+    #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
+    pub format: NumberFormat,
     /// Ticks of each run; a picture needs two
-    #[arg(long, value_name = "N", default_value_t = TICKS,
-          value_parser = RangedU64ValueParser::<usize>::new().range(2..=MOST_TICKS))]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_TICKS,
+          value_parser = RangedU64ValueParser::<usize>::new().range(2..=MAX_TICKS))]
     pub ticks: usize,
 }
 
@@ -82,7 +82,7 @@ const PAST_THE_LINE: Scene = Scene {
 
 /// Sets up, builds, certifies, runs and draws. The answer is no where a scene is not certified or
 /// a code of the emulated board differs from the host's.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut out = io::stdout().lock();
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;
     let mut all_well = true;
     let spinner = progress::spinner(&format!("building {}", program::NAMES.join(", ")));
-    let built = toolchain.build_scenes(program::NAMES, arguments.format.into())?;
+    let built = toolchain.build_scenes(program::NAMES, arguments.format)?;
     spinner.finish_and_clear();
     for (program, elf) in program::ALL.iter().zip(&built) {
         let report = verdict::judge(program.name, &program.scene);
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
-    Ok(if all_well { Answer::Yes } else { Answer::No })
+    Ok(if all_well { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 fn emulate(
@@ -126,7 +126,7 @@ fn emulate(
     elf: &Path,
     arguments: &Arguments,
 ) -> Result<RunOutcome, CommandError> {
-    let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
+    let mut controller = program.controller(arguments.format, &program.transducers)?;
     let ticks = arguments.ticks;
     let bar = progress::bar(ticks as u64, program.name);
     let stepper = progress::stepper(&bar);

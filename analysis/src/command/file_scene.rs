@@ -3,8 +3,8 @@
 use firmware::encoder::CounterWidth;
 use firmware::servo::Transducers;
 
-use super::answer::CommandError;
-use super::own;
+use super::rebuild_with_scene;
+use super::status::CommandError;
 use crate::file::{self, SceneFile};
 use crate::hand::HandTrajectory;
 
@@ -17,7 +17,10 @@ const COUNTS_PER_TURN: f64 = 65_536.0;
 /// A scene file, or the sentence that there is neither such a file nor such a program.
 pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
-        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
+        return Err(CommandError::NoScene {
+            name: name.to_owned(),
+            programs: rebuild_with_scene::scenes(),
+        });
     }
     Ok(file::load(name)?)
 }

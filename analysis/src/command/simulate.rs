@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, SceneArgument, Steps, json};
+use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument, json};
+use super::status::{CommandError, CommandStatus};
 use crate::quantity::{rounded, significant};
 use crate::simulation::tick_status::TickStatus;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory, simulate};
@@ -22,14 +22,14 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub steps: Steps,
+    pub steps: IntegrationArguments,
     /// Print a line for each sample: time (s), position (rad), velocity (rad/s), torque (N m), and
     /// what limited it
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// A sample as a line of CSV.
@@ -47,7 +47,7 @@ const FARTHEST: f64 = 1e6;
 
 /// Simulates the scene, certified or not. Of a motion that grows beyond the range of numbers, what
 /// comes before is printed; the answer is no then, and where the device runs away.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let experiment = Experiment::of(&file, arguments.scene.folder())?;
     let integration = arguments.steps.integration();
@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     out.flush()?;
     experiment.completed(computed)?;
     match far {
-        None => Ok(Answer::Yes),
+        None => Ok(CommandStatus::Success),
         Some(sample) => {
             let time = sample as f64 * experiment.scene.timing.period;
             Err(CommandError::RanAway { farthest: FARTHEST, sample, time })

@@ -19,7 +19,7 @@ pub type Message = ToHost<String>;
 
 /// What became of a request, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum RequestResult {
     /// It is done: what was asked for runs.
     Done,
     /// It is refused, and nothing has changed. The sentence says why.
@@ -123,7 +123,7 @@ fn is_closed(error: &io::Error) -> bool {
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }
 
-impl From<Outcome> for Answer {
+impl From<Outcome> for RequestResult {
     fn from(outcome: Outcome) -> Self {
         match outcome {
             Outcome::Done => Self::Done,
@@ -203,7 +203,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn set(&mut self, changes: Changes) -> Result<Answer, LinkError> {
+    pub fn set(&mut self, changes: Changes) -> Result<RequestResult, LinkError> {
         let set = |id| ToBoard::Set { id, changes: changes.clone() };
         let outcome = self.request("a change of its parameters", set)?;
         self.in_words(outcome, &changes)
@@ -214,14 +214,18 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn in_words(&mut self, outcome: Outcome, changes: &Changes) -> Result<Answer, LinkError> {
+    pub fn in_words(
+        &mut self,
+        outcome: Outcome,
+        changes: &Changes,
+    ) -> Result<RequestResult, LinkError> {
         if let Outcome::Refused(Refusal::Set(step)) = outcome {
             let (description, running) = (self.description()?, self.running()?);
             let has = Parameters::of(running.values.iter().map(|(parameter, _)| *parameter));
             if let Err(reason) = description.explain(has, changes)
                 && reason.step() == step
             {
-                return Ok(Answer::Refused(reason.to_string()));
+                return Ok(RequestResult::Refused(reason.to_string()));
             }
         }
         Ok(outcome.into())
@@ -231,7 +235,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn arm(&mut self) -> Result<Answer, LinkError> {
+    pub fn arm(&mut self) -> Result<RequestResult, LinkError> {
         Ok(self.request("to arm", |id| ToBoard::Arm { id })?.into())
     }
 
@@ -239,7 +243,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn disarm(&mut self) -> Result<Answer, LinkError> {
+    pub fn disarm(&mut self) -> Result<RequestResult, LinkError> {
         Ok(self.request("to disarm", |id| ToBoard::Disarm { id })?.into())
     }
 

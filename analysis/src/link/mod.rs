@@ -9,6 +9,6 @@ mod transport;
 
 pub use address::{Address, AddressError};
 pub(crate) use connection::REQUEST;
-pub use connection::{Answer, Link, Message};
+pub use connection::{Link, Message, RequestResult};
 pub use error::LinkError;
 pub(crate) use transport::{Transport, is_timeout, open};

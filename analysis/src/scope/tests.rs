@@ -9,10 +9,10 @@ use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
-use super::feed::Event;
 use super::history::History;
+use super::poller::Event;
 use super::sample::Sample;
-use super::{Scope, view};
+use super::{Scope, tui};
 
 const BOARD: Board = Board {
     period: 0.001,
@@ -67,7 +67,7 @@ fn connected() -> Scope {
 /// What is on a terminal of that size, line by line.
 fn screen(scope: &Scope, width: u16, height: u16) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| view::draw(frame, scope)).unwrap();
+    terminal.draw(|frame| tui::draw(frame, scope)).unwrap();
     terminal.backend().to_string()
 }
 
@@ -121,7 +121,7 @@ fn shows_the_line_that_is_typed_and_all_of_the_answer() {
     scope.control.prompt = Some("stiffness = 2".to_owned());
     let sentence = "rejected: the environment needs alpha = 0.5 N m s/rad of damping, not below the \
                     delta = 0.022 N m s/rad that the device has; it would pass with stiffness <= 16";
-    scope.control.said = Some(sentence.to_owned());
+    scope.control.message = Some(sentence.to_owned());
     let shown = screen(&scope, 60, 40);
     let words = |text: &str| {
         text.replace(['"', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ")
@@ -138,12 +138,12 @@ fn colours_can_be_left_out() {
         let cells = &terminal.backend().buffer().content;
         cells.iter().filter(|cell| cell.fg != ratatui::style::Color::Reset).count()
     };
-    terminal.draw(|frame| view::draw(frame, &scope)).unwrap();
+    terminal.draw(|frame| tui::draw(frame, &scope)).unwrap();
     assert!(coloured(&terminal) > 0);
     terminal
         .draw(|frame| {
-            view::draw(frame, &scope);
-            view::without_colour(frame);
+            tui::draw(frame, &scope);
+            tui::without_colour(frame);
         })
         .unwrap();
     assert_eq!(coloured(&terminal), 0);

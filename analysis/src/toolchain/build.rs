@@ -14,11 +14,11 @@ use super::sources::{Sources, SourcesError, workspace_root};
 use super::{Board, TARGET};
 
 /// The format that a scene's program computes in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum NumberFormat {
     /// Single-precision floating point.
     F32,
-    /// The scene's fixed-point format.
+    /// The scene's fixed-point format; a scene file's is I8F24.
     Fixed,
 }
 
@@ -201,7 +201,7 @@ impl Toolchain {
     /// Where it does not.
     pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
         let build = ["--release", "--features", board.name(), "--bin", name, "--target", TARGET];
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         self.compile(name, &build)
     }
 
@@ -213,7 +213,7 @@ impl Toolchain {
     pub fn try_tests(&self, board: Board) -> Result<(), BuildError> {
         let (name, features) = ("on_target", format!("{board},on-target"));
         let build = ["--release", "--package", "firmware", "--target", TARGET];
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
     }
 
@@ -223,7 +223,7 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         let profile = self.workspace.root.join(FLASH);
         let mut cargo = self.cargo();
         cargo.current_dir(folder).args(["--release", "--bin", name, "--target", TARGET]);
@@ -315,7 +315,7 @@ impl Toolchain {
     fn build(&self, names: &[&str], variant: &Variant) -> Result<Vec<PathBuf>, BuildError> {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         let flash = ["--release", "--config", FLASH, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
         let with = ["--package", variant.package, "--features", &variant.features];
@@ -379,7 +379,7 @@ const FLASH: &str = "firmware/flash.toml";
 pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
-    let _alone = workspace.lock("scene")?;
+    let _lock = workspace.lock("scene")?;
     let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
     let profile = if cfg!(debug_assertions) { "debug" } else { "release" };

@@ -6,7 +6,7 @@
 mod apt;
 mod board;
 mod build;
-pub mod facts;
+pub mod host_environment;
 mod memory;
 pub mod observe;
 mod output;

@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 
 use crate::common::{answer, haptic, program};
 use analysis::board_sim::{Pacing, SimulatedBoard};
-use analysis::link::{Address, Answer, Link};
+use analysis::link::{Address, Link, RequestResult};
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, damper_wall};
 use analysis::scope::Scope;
 use analysis::scope::control::{Action, Reply, Request};
-use analysis::scope::feed::{Event, Feed};
+use analysis::scope::poller::{BoardPoller, Event};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
@@ -83,7 +83,7 @@ struct Rig {
 impl Rig {
     fn new(pacing: Pacing) -> Self {
         let rig = Self::off(pacing);
-        assert_eq!(rig.link().arm().unwrap(), Answer::Done);
+        assert_eq!(rig.link().arm().unwrap(), RequestResult::Done);
         rig
     }
 
@@ -346,18 +346,18 @@ fn wait_for(mut is_so: impl FnMut() -> bool) {
 fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
     let rig = Rig::new(Pacing::RealTime);
     let mut scope = Scope::new(rig.port(), 1.0);
-    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let poller = BoardPoller::start(rig.link(), NonZeroU32::MIN);
     let mut press = |text: &str, said: &str, is_so: fn(&Scope) -> bool| {
         for letter in text.chars() {
             let key = if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) };
             if let Action::Request(request) = scope.control.press(key.into()) {
-                feed.request(request);
+                poller.request(request);
             }
         }
         let end = Instant::now() + Duration::from_secs(20);
-        while !(is_so(&scope) && scope.control.said.as_ref().is_some_and(|s| s.contains(said))) {
-            assert!(Instant::now() < end, "{text:?}: {:?}", scope.control.said);
-            if let Some(event) = feed.next(Duration::from_millis(10)) {
+        while !(is_so(&scope) && scope.control.message.as_ref().is_some_and(|s| s.contains(said))) {
+            assert!(Instant::now() < end, "{text:?}: {:?}", scope.control.message);
+            if let Some(event) = poller.next(Duration::from_millis(10)) {
                 scope.take(event, |_| Ok::<(), std::convert::Infallible>(())).unwrap();
             }
         }
@@ -376,16 +376,16 @@ fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
 #[test]
 fn what_is_asked_without_a_link_is_not_done_later() {
     let rig = Rig::new(Pacing::RealTime);
-    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let poller = BoardPoller::start(rig.link(), NonZeroU32::MIN);
     let wait = |is_it: fn(&Event) -> bool| {
         let end = Instant::now() + Duration::from_secs(20);
-        while !feed.next(Duration::from_millis(10)).is_some_and(|event| is_it(&event)) {
+        while !poller.next(Duration::from_millis(10)).is_some_and(|event| is_it(&event)) {
             assert!(Instant::now() < end, "it takes too long");
         }
     };
     drop(rig.board);
     wait(|event| matches!(event, Event::Lost(_)));
-    feed.request(Request::Arm);
+    poller.request(Request::Arm);
     wait(|event| matches!(event, Event::Reply(Request::Arm, Reply::NoLink)));
 }
 
@@ -442,7 +442,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
         let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
         match with(stiffness, damping).certify_in(Format::F32) {
             Ok(_) => {
-                assert_eq!(outcome, Answer::Done, "set {i}");
+                assert_eq!(outcome, RequestResult::Done, "set {i}");
                 running = stiffness;
                 // Near its limit a wall is certified and rings at half the sample rate for as long as
                 // one likes: its torque at rest is still to come.
@@ -451,7 +451,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
                 }
             }
             Err(rejection) => {
-                assert_eq!(outcome, Answer::Refused(rejection.to_string()), "set {i}");
+                assert_eq!(outcome, RequestResult::Refused(rejection.to_string()), "set {i}");
                 refused += 1;
                 // Not for a single tick.
                 let last = rig.held.after(150);

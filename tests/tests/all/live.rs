@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use analysis::emulator::Emulator;
 use analysis::emulator::plant_thread::{PlantModel, PlantThread};
-use analysis::link::{Address, Answer, Link};
+use analysis::link::{Address, Link, RequestResult};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
 use firmware::board::lockstep_protocol::{TickInput, TickOutput};
@@ -146,8 +146,8 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
             (Parameter::Face, random.random_range(-0.01..0.01)),
         ];
         match link.set(set.into_iter().collect()).unwrap() {
-            Answer::Done => taken.push_back(set),
-            Answer::Refused(_) => refused += 1,
+            RequestResult::Done => taken.push_back(set),
+            RequestResult::Refused(_) => refused += 1,
         }
         // One swap after the other, so that each begins with a fade.
         hand.wait("it runs again", |output| output.state == State::Running);
@@ -184,7 +184,7 @@ fn the_board_boots_in_an_order_in_which_nothing_can_move() {
     }
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
     assert_eq!(link.status().unwrap().reset, ResetCause::PowerOn);
-    assert_eq!(link.arm().unwrap(), Answer::Done);
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
     hand.wait("it runs", |output| output.state == State::Running);
     let ticks = hand.ticks.lock().unwrap().clone();
     let armed = ticks.iter().skip_while(|(_, output)| *output == off).map(|(_, output)| output);
@@ -221,7 +221,7 @@ fn a_jump_of_the_encoder_and_a_missed_tick_stop_the_motor_until_it_is_armed() {
         let status = link.status().unwrap();
         assert_eq!(status.fault.and_then(|fault| fault.fault()), Some(fault));
         assert_eq!(hand.last(), Some(off));
-        assert_eq!(link.arm().unwrap(), Answer::Done);
+        assert_eq!(link.arm().unwrap(), RequestResult::Done);
         hand.wait("torque again", |output| {
             output.state == State::Running && output.amplifier && output.code < MID_SCALE - 100
         });
@@ -230,7 +230,7 @@ fn a_jump_of_the_encoder_and_a_missed_tick_stop_the_motor_until_it_is_armed() {
     // The largest step that a hand can do is none of them.
     let far = TickInput { count: jumped.count - LARGEST_STEP, missed: 0 };
     assert!(hand.provoke(far).iter().all(|(_, output)| output.state == State::Running));
-    assert_eq!(link.disarm().unwrap(), Answer::Done);
+    assert_eq!(link.disarm().unwrap(), RequestResult::Done);
     hand.wait("the amplifier is off", |output| !output.amplifier && output.code == MID_SCALE);
     world.end().unwrap().end().unwrap();
 }
@@ -262,7 +262,7 @@ fn a_fault_of_the_processor_is_remembered_through_the_reset() {
     let after = hand.ticks.lock().unwrap()[before..].to_vec();
     let stopped = after.iter().skip_while(|(_, output)| output.amplifier);
     assert!(stopped.clone().all(|(_, output)| !output.amplifier && output.code == MID_SCALE));
-    assert_eq!(link.arm().unwrap(), Answer::Done);
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
     hand.wait("it runs again", |output| output.state == State::Running && output.amplifier);
     world.end().unwrap().end().unwrap();
 }

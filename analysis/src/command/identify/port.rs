@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::command::answer::CommandError;
+use crate::command::status::CommandError;
 use crate::identify::port::SweepPort;
 use crate::identify::{IdentifyError, Record, record};
 use crate::link::Address;

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::command::answer::CommandError;
-use crate::command::values::not_negative;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::not_negative;
 use crate::file;
 use crate::identify::measurement::{self, Measurement};
 use crate::identify::rig::{MeasuredDevice, Sensing};

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::emulator::plant_thread::{FixedCount, PlantThread};
 use crate::emulator::{Emulator, EmulatorError};
-use crate::link::{Address, Answer, Link, LinkError};
+use crate::link::{Address, Link, LinkError, RequestResult};
 
 /// What a set took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, Liv
     let stack_left = link.status()?.stack_left;
     let report = plant.end()?.finish()?;
     Ok(LiveSet {
-        taken: outcome == Answer::Done,
+        taken: outcome == RequestResult::Done,
         instructions: report.below_instructions.max,
         interrupt: report.interrupt_instructions.max,
         stack_left,

@@ -4,16 +4,15 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use firmware::number::Format;
 use serde::Serialize;
 
-use super::answer::CommandError;
+use super::status::CommandError;
 use crate::file::{self, Purpose, SceneFile};
 use crate::number;
 use crate::simulation::Integration;
 use crate::simulation::method::Method;
-use crate::toolchain::NumberFormat;
 use crate::verdict::{Report, judge_in};
 
 /// The scene that a command is about.
@@ -46,9 +45,9 @@ pub fn folder(file: &str) -> &Path {
     Path::new(file).parent().unwrap_or(Path::new(""))
 }
 
-/// How the device is taken through a tick.
+/// Integration method of the device and its substeps.
 #[derive(Debug, Args)]
-pub struct Steps {
+pub struct IntegrationArguments {
     /// Method of integration of the device; the servo is computed tick by tick in all of them
     #[arg(long, value_enum, default_value_t)]
     pub method: Method,
@@ -58,23 +57,23 @@ pub struct Steps {
     pub substeps: u32,
 }
 
-impl Steps {
+impl IntegrationArguments {
     /// Method and steps.
     pub fn integration(&self) -> Integration {
         Integration { method: self.method, substeps: self.substeps }
     }
 }
 
-/// What the servo computes in.
+/// Number format of the servo's coefficients.
 #[derive(Debug, Args)]
-pub struct Arithmetic {
+pub struct CoefficientFormat {
     /// Judge the coefficients as this number format rounds them: f32, or fixed point of 32 bits
     /// such as i8f24; f64 are the numbers as they were written
     #[arg(long, default_value = "f64", value_parser = number::format)]
     pub format: Format,
 }
 
-impl Arithmetic {
+impl CoefficientFormat {
     /// The verdict on a file's scene.
     pub fn judge(&self, file: &SceneFile) -> Result<Report, CommandError> {
         number::fits(&file.scene, self.format)?;
@@ -82,39 +81,21 @@ impl Arithmetic {
     }
 }
 
-/// Number format of the servo, as the command line names it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FormatArgument {
-    /// Single-precision floating point.
-    F32,
-    /// The scene's fixed-point format; a scene file's is I8F24.
-    Fixed,
-}
-
-impl From<FormatArgument> for NumberFormat {
-    fn from(format: FormatArgument) -> Self {
-        match format {
-            FormatArgument::F32 => Self::F32,
-            FormatArgument::Fixed => Self::Fixed,
-        }
-    }
-}
-
-/// Ticks of a run that nothing else limits: the script of the hand and some time to come to rest.
-pub const TICKS: usize = 5000;
+/// Ticks of a run that nothing else limits: the trajectory of the hand and some time to come to rest.
+pub const DEFAULT_TICKS: usize = 5000;
 
 /// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
-pub const MOST_TICKS: u64 = 10_000_000;
+pub const MAX_TICKS: u64 = 10_000_000;
 
-/// For whom an answer is.
+/// Whether an answer is printed as JSON.
 #[derive(Debug, Args)]
-pub struct ForWhom {
+pub struct JsonOption {
     /// Print JSON
     #[arg(long, global = true)]
     pub json: bool,
 }
 
-impl ForWhom {
+impl JsonOption {
     /// Prints the answer as JSON, or as the text that is made of it.
     pub fn print<A: Serialize>(
         &self,

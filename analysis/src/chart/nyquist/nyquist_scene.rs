@@ -154,9 +154,9 @@ impl Curve {
     }
 }
 
-/// A scene in the plane.
+/// A scene as its Nyquist curves and the line that they must not cross.
 #[derive(Debug)]
-pub struct Judged {
+pub struct NyquistScene {
     /// What the person calls it.
     pub name: String,
     /// Period in s.
@@ -171,7 +171,7 @@ pub struct Judged {
     pub bound: Option<f64>,
 }
 
-impl Judged {
+impl NyquistScene {
     /// The curves of a scene.
     ///
     /// # Errors

@@ -5,15 +5,15 @@ use std::f64::consts::PI;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::{Curve, Judged, Role, lines};
+use super::{Curve, NyquistScene, Role, lines};
 use crate::chart::dash::Dash;
 use crate::chart::{Area, Drawn, FAINT, UNITS, anchored, units};
 use crate::quantity::{shortened, significant};
 use crate::unit_circle_poles::{Kind, UnitCirclePole};
 
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 19;
-/// Longest name in the key, in letters.
+/// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 48;
 
 /// What is written below the picture: lines with the patterns that they are about.
@@ -23,14 +23,14 @@ struct Entry {
     words: Vec<String>,
 }
 
-/// Height of the key in units of the drawing.
-pub(super) fn height(scenes: &[Judged]) -> i32 {
-    let rows: usize = key(scenes).iter().map(|entry| entry.words.len()).sum();
+/// Height of the legend in units of the drawing.
+pub(super) fn height(scenes: &[NyquistScene]) -> i32 {
+    let rows: usize = legend(scenes).iter().map(|entry| entry.words.len()).sum();
     units(ROW * rows as i32 + 10)
 }
 
-fn key(scenes: &[Judged]) -> Vec<Entry> {
-    let of = |(index, (scene, lines)): (usize, (&Judged, Vec<super::Line<'_>>))| {
+fn legend(scenes: &[NyquistScene]) -> Vec<Entry> {
+    let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<super::Line<'_>>))| {
         let name = match scenes.len() {
             1 => String::new(),
             _ => format!("{}: {}: ", index + 1, shortened(&scene.name, LONGEST_NAME)),
@@ -55,7 +55,7 @@ fn key(scenes: &[Judged]) -> Vec<Entry> {
 }
 
 /// What is said about a curve.
-fn curve(name: &str, scene: &Judged, curve: &Curve, is_single: bool) -> Vec<String> {
+fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Vec<String> {
     let what = match curve.role {
         Role::Judged => "",
         Role::JudgedLatched => "judged as well, updates being missed: ",
@@ -106,7 +106,7 @@ fn least_words(curve: &Curve) -> &'static str {
 }
 
 /// The line that is judged in place of a curve.
-fn bound(name: &str, scene: &Judged) -> Option<Entry> {
+fn bound(name: &str, scene: &NyquistScene) -> Option<Entry> {
     let linear = scene.curves.iter().any(|curve| curve.role == Role::Linear);
     let mut words = match scene.bound {
         _ if !linear => return None,
@@ -122,7 +122,7 @@ fn bound(name: &str, scene: &Judged) -> Option<Entry> {
 }
 
 /// How much larger what is judged may be.
-fn margins(scene: &Judged) -> Vec<String> {
+fn margins(scene: &NyquistScene) -> Vec<String> {
     if scene.limit.is_none() {
         let words = "no critical line: the rule for one-sided or limited scenes passes none behind a \
                      coupling that is rigid or stiffer than 2 delta/T";
@@ -163,9 +163,9 @@ fn sentence(pole: &UnitCirclePole) -> String {
     }
 }
 
-pub(super) fn write(area: &Area<'_>, scenes: &[Judged]) -> Drawn<()> {
+pub(super) fn write(area: &Area<'_>, scenes: &[NyquistScene]) -> Drawn<()> {
     let mut row = 0;
-    for Entry { sample, words } in key(scenes) {
+    for Entry { sample, words } in legend(scenes) {
         for (index, line) in words.into_iter().enumerate() {
             let middle = units(ROW * row + ROW / 2);
             if let Some((dash, ink, width)) = sample.filter(|_| index == 0) {

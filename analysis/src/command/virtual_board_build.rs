@@ -1,21 +1,21 @@
-//! What is flashed to a board, on a virtual one.
+//! Builds a virtual board and the program that goes to its flash.
 
 use std::path::PathBuf;
 
-use super::answer::CommandError;
+use super::status::CommandError;
 use crate::compare_run::Backend;
 use crate::progress;
 use crate::toolchain::{self, Board, NumberFormat, Tools};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
-/// A virtual board, and what goes to its flash.
-pub struct Flashed {
+/// A virtual board, and the program for its flash.
+pub struct VirtualBoardBuild {
     program: PathBuf,
     board: Board,
     elf: PathBuf,
 }
 
-impl Flashed {
+impl VirtualBoardBuild {
     /// Builds both, after setting up what is missing for that.
     pub fn build(board: Board, name: &str, format: NumberFormat) -> Result<Self, CommandError> {
         let tools = Tools::CompilerAndVirtualBoard;

@@ -1,10 +1,10 @@
-//! What is known of a machine: its compiler, its emulator, its packages.
+//! The host's environment: its compiler, its emulator, its packages.
 
 use super::Version;
 
-/// What was seen on the machine.
+/// Tools that were found on the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Facts {
+pub struct HostEnvironment {
     /// The compiler that `cargo` runs here.
     pub rust: Option<Rust>,
     /// Whether there is a rustup to add a target with.
@@ -14,7 +14,7 @@ pub struct Facts {
     /// Version of the emulator.
     pub qemu: Option<Version>,
     /// Whether there is what the virtual board's processor is built with.
-    pub native: Native,
+    pub native: NativeBuildTools,
     /// The packages, on a system that has Debian's.
     pub debian: Option<Debian>,
     /// Whether packages may be installed.
@@ -30,9 +30,9 @@ pub struct Rust {
     pub has_target: bool,
 }
 
-/// What builds a library in C, and reads its header.
+/// Tools that build a library in C and read its header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Native {
+pub struct NativeBuildTools {
     /// Whether there is cmake.
     pub cmake: bool,
     /// Whether there is make.

@@ -1,4 +1,4 @@
-//! What a command answers with, or why it has no answer.
+//! Status of a command: its verdict, or the error that kept it from one.
 
 use std::io;
 use std::path::PathBuf;
@@ -24,13 +24,13 @@ use crate::table::TableError;
 use crate::toolchain::{BuildError, SetupError, SourcesError};
 use crate::virtual_board::VirtualBoardError;
 
-/// The answer of a command that could be asked.
+/// Verdict of a command, which becomes the exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum CommandStatus {
     /// Exit status 0.
-    Yes,
+    Success,
     /// Exit status 1: rejected, undecided, unstable, different.
-    No,
+    NegativeVerdict,
 }
 
 /// Why a command has no answer; exit status 2.
@@ -292,7 +292,7 @@ impl From<BatchError> for CommandError {
 
 impl CommandError {
     /// Whether the question was good and this is its answer.
-    pub(super) fn is_a_no(&self) -> bool {
+    pub(super) fn is_negative_verdict(&self) -> bool {
         matches!(
             self,
             Self::Refused(_)

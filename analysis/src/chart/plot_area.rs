@@ -1,22 +1,22 @@
-//! A plane in units of the drawing, and what lies inside of a frame.
+//! The plot area of a chart in units of the drawing, and clipping of lines to a frame.
 
 use plotters::prelude::*;
 
 use crate::chart::dash::Dash;
 use crate::chart::{Area, Drawn, Plane, pen, units};
 
-/// A place in units of the drawing, from the upper left corner of the plot.
-pub(super) type Place = (f64, f64);
+/// A point in units of the drawing, from the upper left corner of the plot.
+pub(super) type DrawingPoint = (f64, f64);
 
 /// The plot: real parts to the right, imaginary parts upwards.
-pub(super) struct Sheet<'a> {
+pub(super) struct PlotArea<'a> {
     pub(super) area: Area<'a>,
     x: (f64, f64),
     y: (f64, f64),
-    size: Place,
+    size: DrawingPoint,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> PlotArea<'a> {
     pub(super) fn of(chart: &Plane<'_, 'a>) -> Self {
         let plot = chart.plotting_area();
         let (x, y) = (plot.get_x_range(), plot.get_y_range());
@@ -30,13 +30,13 @@ impl<'a> Sheet<'a> {
     }
 
     /// Where a value is drawn.
-    pub(super) fn place(&self, (re, im): (f64, f64)) -> Place {
+    pub(super) fn place(&self, (re, im): (f64, f64)) -> DrawingPoint {
         let part = |value: f64, (from, to): (f64, f64)| (value - from) / (to - from);
         (part(re, self.x) * self.size.0, (1.0 - part(im, self.y)) * self.size.1)
     }
 
     /// Where its conjugate is drawn.
-    pub(super) fn mirrored(&self, (x, y): Place) -> Place {
+    pub(super) fn mirrored(&self, (x, y): DrawingPoint) -> DrawingPoint {
         (x, 2.0 * self.place((0.0, 0.0)).1 - y)
     }
 
@@ -46,18 +46,23 @@ impl<'a> Sheet<'a> {
     }
 
     /// Draws a line so many pixels wide.
-    pub(super) fn line(&self, dash: Dash, places: &[Place], width: u32) -> Drawn<()> {
+    pub(super) fn line(&self, dash: Dash, places: &[DrawingPoint], width: u32) -> Drawn<()> {
         self.line_in(dash, places, pen(width))
     }
 
     /// Draws a line of another style than black.
-    pub(super) fn line_in(&self, dash: Dash, places: &[Place], style: ShapeStyle) -> Drawn<()> {
+    pub(super) fn line_in(
+        &self,
+        dash: Dash,
+        places: &[DrawingPoint],
+        style: ShapeStyle,
+    ) -> Drawn<()> {
         let points: Vec<_> = places.iter().map(whole).collect();
         dash.draw_styled(&self.area, &points, style)
     }
 
     /// Draws the head of an arrow in the middle of a line, or at another part of its length.
-    pub(super) fn arrow(&self, line: &[Place], part: f64) -> Drawn<()> {
+    pub(super) fn arrow(&self, line: &[DrawingPoint], part: f64) -> Drawn<()> {
         let lengths = line.windows(2).map(|pair| distance(pair[0], pair[1]));
         let mut left = part * lengths.clone().sum::<f64>();
         for (pair, length) in line.windows(2).zip(lengths) {
@@ -71,7 +76,7 @@ impl<'a> Sheet<'a> {
         Ok(())
     }
 
-    fn head(&self, tip: Place, along: Place) -> Drawn<()> {
+    fn head(&self, tip: DrawingPoint, along: DrawingPoint) -> Drawn<()> {
         let [long, half] = [units(12), units(4)].map(f64::from);
         let corner = |side: f64| {
             whole(&(
@@ -84,11 +89,11 @@ impl<'a> Sheet<'a> {
     }
 }
 
-pub(super) fn whole(place: &Place) -> (i32, i32) {
+pub(super) fn whole(place: &DrawingPoint) -> (i32, i32) {
     (place.0.round() as i32, place.1.round() as i32)
 }
 
-fn distance(a: Place, b: Place) -> f64 {
+fn distance(a: DrawingPoint, b: DrawingPoint) -> f64 {
     (b.0 - a.0).hypot(b.1 - a.1)
 }
 
@@ -103,17 +108,17 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Whether a place is inside or on the border; never true of what is not a number.
-    pub(super) fn contains(&self, (x, y): Place) -> bool {
+    pub(super) fn contains(&self, (x, y): DrawingPoint) -> bool {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }
 
     /// The place inside or on the border that is nearest to one.
-    pub(super) fn nearest(&self, (x, y): Place) -> Place {
+    pub(super) fn nearest(&self, (x, y): DrawingPoint) -> DrawingPoint {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
 
     /// Where the line from an inner place to an outer one crosses the border.
-    pub(super) fn crossing(&self, inner: Place, outer: Place) -> Place {
+    pub(super) fn crossing(&self, inner: DrawingPoint, outer: DrawingPoint) -> DrawingPoint {
         let part = |from: f64, to: f64, low: f64, high: f64| {
             let bound = if to > from { high } else { low };
             if to == from { f64::INFINITY } else { (bound - from) / (to - from) }
@@ -127,7 +132,10 @@ impl Frame {
     }
 
     /// Where a line leaves the frame for good; `None` where it ends inside, or never comes in.
-    pub(super) fn exit(&self, line: impl DoubleEndedIterator<Item = Place>) -> Option<Place> {
+    pub(super) fn exit(
+        &self,
+        line: impl DoubleEndedIterator<Item = DrawingPoint>,
+    ) -> Option<DrawingPoint> {
         let mut outer = None;
         for place in line.rev().filter(|place| place.0.is_finite() && place.1.is_finite()) {
             if self.contains(place) {
@@ -140,8 +148,11 @@ impl Frame {
 
     /// The parts of a line inside, up to where it crosses the border; `frame` is that of each
     /// place by its number.
-    pub(super) fn clip(line: &[Place], frame: impl Fn(usize) -> Self) -> Vec<Vec<Place>> {
-        let mut parts: Vec<Vec<Place>> = Vec::new();
+    pub(super) fn clip(
+        line: &[DrawingPoint],
+        frame: impl Fn(usize) -> Self,
+    ) -> Vec<Vec<DrawingPoint>> {
+        let mut parts: Vec<Vec<DrawingPoint>> = Vec::new();
         let mut open = false;
         for (i, &place) in line.iter().enumerate() {
             let inside = frame(i).contains(place);

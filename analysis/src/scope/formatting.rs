@@ -1,4 +1,4 @@
-//! What is known of a board, in words.
+//! The state of a board as text.
 
 use firmware::certificate::Parameter;
 use firmware::tuning;

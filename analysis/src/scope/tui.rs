@@ -9,7 +9,7 @@ use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 
 use super::control::{self, Control};
 use super::sample::Sample;
-use super::{Scope, words};
+use super::{Scope, formatting};
 use crate::quantity::{shortened, significant};
 
 /// Dots side by side in a character.
@@ -18,13 +18,14 @@ const DOTS: usize = 2;
 /// Draws all that is known.
 pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
     let width = usize::from(frame.area().width);
-    let said = scope.control.said.as_deref().map_or(Vec::new(), |said| wrapped(said, width));
+    let message =
+        scope.control.message.as_deref().map_or(Vec::new(), |message| wrapped(message, width));
     let [head, position, torque, facts, answer, keys] = Layout::vertical([
         Constraint::Length(2),
         Constraint::Fill(1),
         Constraint::Fill(1),
         Constraint::Length(4),
-        Constraint::Length(said.len() as u16),
+        Constraint::Length(message.len() as u16),
         Constraint::Length(1),
     ])
     .areas(frame.area());
@@ -32,7 +33,7 @@ pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
     draw_curve(frame, position, scope, "position, rad", |sample| sample.position);
     draw_curve(frame, torque, scope, "coupling torque, N m", |sample| sample.torque);
     frame.render_widget(Paragraph::new(facts_of(scope)), facts);
-    frame.render_widget(Paragraph::new(said), answer);
+    frame.render_widget(Paragraph::new(message), answer);
     frame.render_widget(last_line(&scope.control), keys);
 }
 
@@ -63,7 +64,7 @@ pub fn without_colour(frame: &mut Frame<'_>) {
 }
 
 fn heading(scope: &Scope, width: usize) -> Vec<Line<'static>> {
-    let program = scope.known.as_ref().map_or("", |known| &known.program);
+    let program = scope.connected.as_ref().map_or("", |connected| &connected.program);
     let mut state = Vec::new();
     if let Some((status, _)) = &scope.status {
         let colour = match (status.fault, status.state.is_armed()) {
@@ -92,25 +93,25 @@ fn trouble(scope: &Scope) -> Line<'static> {
     if let Some(fault) = scope.status.and_then(|(status, _)| status.fault) {
         return Line::from(fault.to_string()).red();
     }
-    match scope.known.as_ref().and_then(|known| known.remembered.as_ref()) {
-        Some(remembered) => Line::from(words::remembered(remembered)).yellow(),
+    match scope.connected.as_ref().and_then(|connected| connected.remembered.as_ref()) {
+        Some(remembered) => Line::from(formatting::remembered(remembered)).yellow(),
         None => Line::default(),
     }
 }
 
 fn facts_of(scope: &Scope) -> Vec<Line<'static>> {
-    let (Some(known), Some(running), Some((status, here))) =
-        (&scope.known, &scope.running, scope.status)
+    let (Some(connected), Some(running), Some((status, here))) =
+        (&scope.connected, &scope.running, scope.status)
     else {
         return Vec::new();
     };
     let slack = scope.history.last().map(|last| last.slack);
-    let energy = words::energy(&status, &known.board);
+    let energy = formatting::energy(&status, &connected.board);
     vec![
-        Line::from(words::numbers(running)),
-        Line::from(words::reserves(running, &status, &known.board, slack)),
-        Line::from(format!("{energy}   {}", words::limits(scope))),
-        Line::from(words::losses(&status, here)).dim(),
+        Line::from(formatting::numbers(running)),
+        Line::from(formatting::reserves(running, &status, &connected.board, slack)),
+        Line::from(format!("{energy}   {}", formatting::limits(scope))),
+        Line::from(formatting::losses(&status, here)).dim(),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! What `haptic advise` says of number formats, to a person and as JSON.
+//! The report of `haptic advise` on number formats, as text and as JSON.
 
 use std::cmp::Ordering;
 
@@ -14,7 +14,7 @@ use crate::text_table::markdown_table;
 
 /// The answer as JSON.
 #[derive(Serialize)]
-pub struct Answered {
+pub struct FormatReport {
     /// Its name.
     pub scene: String,
     /// Ticks a second.
@@ -24,7 +24,7 @@ pub struct Answered {
     /// The cheapest format that keeps to the figures.
     pub format: Option<&'static str>,
     /// The cheapest method of simulation.
-    pub simulation: Option<Simulated>,
+    pub simulation: Option<SimulationMethod>,
     /// Torque in N m by which the encoder alone hums.
     pub encoder_hum: Option<f64>,
     /// All formats, the cheapest first.
@@ -35,7 +35,7 @@ pub struct Answered {
 
 /// A method of simulation, at the rate of the kept table.
 #[derive(Serialize)]
-pub struct Simulated {
+pub struct SimulationMethod {
     /// Its name.
     pub method: String,
     /// Its steps in a sample.
@@ -128,7 +128,7 @@ fn number(value: f64) -> String {
 }
 
 /// The answer for a person.
-pub fn text(answered: &Answered) -> String {
+pub fn text(answered: &FormatReport) -> String {
     let mut table = markdown_table(
         [
             "format",
@@ -150,9 +150,9 @@ pub fn text(answered: &Answered) -> String {
         || "rigid".to_owned(),
         |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
     );
-    let Answered { scene, rate, message, .. } = answered;
+    let FormatReport { scene, rate, message, .. } = answered;
     let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
-        let Simulated { method, substeps, verdict_error, .. } = simulated;
+        let SimulationMethod { method, substeps, verdict_error, .. } = simulated;
         let error = significant(100.0 * verdict_error, 2);
         format!(
             "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \

@@ -17,7 +17,7 @@ use crate::link::{Link, LinkError, REQUEST};
 
 /// Time between two questions how it is going; also what the board hears of us, where it stops
 /// without a host.
-const BEAT: Duration = Duration::from_millis(100);
+const STATUS_INTERVAL: Duration = Duration::from_millis(100);
 /// Longest time until a request is passed on.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// Time between two tries to connect again.
@@ -49,23 +49,23 @@ pub enum Event {
     Lost(String),
 }
 
-/// A running feed; ends when dropped.
+/// A running poller; ends when dropped.
 #[derive(Debug)]
-pub struct Feed {
+pub struct BoardPoller {
     events: Receiver<Event>,
     requests: Sender<Request>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Feed {
+impl BoardPoller {
     /// Asks the board behind this link for every so many ticks.
     pub fn start(link: Link, every: NonZeroU32) -> Self {
         let (events, receiver) = mpsc::channel();
         let (requests, inbox) = mpsc::channel();
         let ended = Arc::new(AtomicBool::new(false));
-        let feeder = Feeder { events, requests: inbox, ended: ended.clone(), every };
-        let thread = thread::spawn(move || feeder.run(link));
+        let poller = PollerThread { events, requests: inbox, ended: ended.clone(), every };
+        let thread = thread::spawn(move || poller.run(link));
         Self { events: receiver, requests, ended, thread: Some(thread) }
     }
 
@@ -81,7 +81,7 @@ impl Feed {
     }
 }
 
-impl Drop for Feed {
+impl Drop for BoardPoller {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
@@ -91,8 +91,8 @@ impl Drop for Feed {
     }
 }
 
-/// The thread's side of a feed.
-struct Feeder {
+/// The thread's side of a poller.
+struct PollerThread {
     events: Sender<Event>,
     requests: Receiver<Request>,
     ended: Arc<AtomicBool>,
@@ -100,7 +100,7 @@ struct Feeder {
 }
 
 /// A request that the board has not answered yet.
-struct Pending {
+struct PendingRequest {
     id: Id,
     request: Request,
     /// When it is asked again.
@@ -109,8 +109,8 @@ struct Pending {
     end: Instant,
 }
 
-/// Why following a board ended.
-enum End {
+/// Why polling a board ended.
+enum PollEnd {
     /// Nobody listens any more.
     Over,
     /// The link.
@@ -119,28 +119,28 @@ enum End {
     Restarted,
 }
 
-impl From<LinkError> for End {
+impl From<LinkError> for PollEnd {
     fn from(error: LinkError) -> Self {
         Self::Lost(error)
     }
 }
 
-impl From<SendError<Event>> for End {
+impl From<SendError<Event>> for PollEnd {
     fn from(_: SendError<Event>) -> Self {
         Self::Over
     }
 }
 
-impl Feeder {
+impl PollerThread {
     fn run(&self, first: Link) {
         let address = first.address().clone();
         let mut link = Some(first);
         while !self.is_over() {
             let end = match link.take() {
-                Some(mut link) => self.follow(&mut link),
+                Some(mut link) => self.poll_board(&mut link),
                 None => match Link::open(&address) {
                     Ok(again) => {
-                        self.refuse();
+                        self.reject_requests();
                         link = Some(again);
                         continue;
                     }
@@ -148,11 +148,11 @@ impl Feeder {
                 },
             };
             match end {
-                Ok(()) | Err(End::Over) => return,
-                Err(End::Restarted) => self.lost("the board was started again".to_owned()),
-                Err(End::Lost(error)) => {
+                Ok(()) | Err(PollEnd::Over) => return,
+                Err(PollEnd::Restarted) => self.lost("the board was started again".to_owned()),
+                Err(PollEnd::Lost(error)) => {
                     self.lost(error.to_string());
-                    self.rest();
+                    self.wait_before_retry();
                 }
             }
         }
@@ -164,42 +164,46 @@ impl Feeder {
     }
 
     /// Waits a while before the next try.
-    fn rest(&self) {
+    fn wait_before_retry(&self) {
         let end = Instant::now() + RETRY;
         while !self.is_over() && Instant::now() < end {
-            self.refuse();
+            self.reject_requests();
             thread::sleep(Duration::from_millis(20));
         }
     }
 
     /// Passes on what the board says, until the link is lost or nobody listens.
-    fn follow(&self, link: &mut Link) -> Result<(), End> {
+    fn poll_board(&self, link: &mut Link) -> Result<(), PollEnd> {
         let (program, board) = (link.program().to_owned(), *link.board());
         self.events.send(Event::Connected { program, board, remembered: link.remembered() })?;
         link.send(&ToBoard::Stream(Some(self.every)))?;
         link.send(&ToBoard::Get)?;
         let mut pending = None;
-        let followed = self.listen(link, &mut pending);
-        if let Some(Pending { request, .. }) = pending {
+        let polled = self.poll_until_lost(link, &mut pending);
+        if let Some(PendingRequest { request, .. }) = pending {
             self.events.send(Event::Reply(request, Reply::Unanswered))?;
         }
-        followed?;
+        polled?;
         link.send(&ToBoard::Stream(None))?;
         Ok(())
     }
 
-    fn listen(&self, link: &mut Link, pending: &mut Option<Pending>) -> Result<(), End> {
+    fn poll_until_lost(
+        &self,
+        link: &mut Link,
+        pending: &mut Option<PendingRequest>,
+    ) -> Result<(), PollEnd> {
         let (mut beat, mut heard) = (Instant::now(), Instant::now());
         let mut last: Option<Status> = None;
         while !self.is_over() {
             self.ask(link, pending)?;
             if beat <= Instant::now() {
                 link.send(&ToBoard::Status)?;
-                beat = Instant::now() + BEAT;
+                beat = Instant::now() + STATUS_INTERVAL;
             }
             let Some(message) = link.receive(beat.min(Instant::now() + POLL_INTERVAL))? else {
                 if heard.elapsed() > SILENCE {
-                    return Err(End::Lost(link.silent("for its status", SILENCE)));
+                    return Err(PollEnd::Lost(link.silent("for its status", SILENCE)));
                 }
                 continue;
             };
@@ -211,7 +215,7 @@ impl Feeder {
                 ToHost::Status(status) => {
                     if let Some(last) = last.replace(status) {
                         if status.tick.wrapping_sub(last.tick) > u32::MAX / 2 {
-                            return Err(End::Restarted);
+                            return Err(PollEnd::Restarted);
                         }
                         // Somebody else has changed the numbers.
                         if status.sets != last.sets {
@@ -222,7 +226,7 @@ impl Feeder {
                 }
                 ToHost::Running(running) => self.events.send(Event::Running(running))?,
                 ToHost::Answer { id, outcome } if pending.as_ref().is_some_and(|p| p.id == id) => {
-                    let Some(Pending { request, .. }) = pending.take() else { continue };
+                    let Some(PendingRequest { request, .. }) = pending.take() else { continue };
                     let answer = link.in_words(outcome, &request.changes())?;
                     self.events.send(Event::Reply(request, Reply::Answered(answer)))?;
                     link.send(&ToBoard::Get)?;
@@ -240,26 +244,27 @@ impl Feeder {
 
     /// Passes on a request; one at a time, but that disarming waits for nothing. Asks again, since
     /// bytes get lost.
-    fn ask(&self, link: &mut Link, pending: &mut Option<Pending>) -> Result<(), End> {
+    fn ask(&self, link: &mut Link, pending: &mut Option<PendingRequest>) -> Result<(), PollEnd> {
         let now = Instant::now();
         while let Ok(request) = self.requests.try_recv() {
             if pending.is_some() && request != Request::Disarm {
                 self.events.send(Event::Reply(request, Reply::Busy))?;
                 continue;
             }
-            if let Some(Pending { request, .. }) = pending.take() {
+            if let Some(PendingRequest { request, .. }) = pending.take() {
                 self.events.send(Event::Reply(request, Reply::Unanswered))?;
             }
             let id = link.next_id();
             link.send(&request.message(id))?;
             self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
             let (again, end) = (now + REQUEST.again, now + REQUEST.end);
-            *pending = Some(Pending { id, request, again, end });
+            *pending = Some(PendingRequest { id, request, again, end });
         }
-        if let Some(Pending { request, .. }) = pending.take_if(|pending| now >= pending.end) {
+        if let Some(PendingRequest { request, .. }) = pending.take_if(|pending| now >= pending.end)
+        {
             self.events.send(Event::Reply(request, Reply::Unanswered))?;
         }
-        if let Some(Pending { id, request, again, .. }) = pending
+        if let Some(PendingRequest { id, request, again, .. }) = pending
             && now >= *again
         {
             *again = now + REQUEST.again;
@@ -270,7 +275,7 @@ impl Feeder {
 
     /// Drops what was asked for without a link: a motor is not switched on by a key that was pressed
     /// some time ago.
-    fn refuse(&self) {
+    fn reject_requests(&self) {
         for request in self.requests.try_iter() {
             // Nobody may be listening any more, which the next look tells.
             let _ = self.events.send(Event::Reply(request, Reply::NoLink));

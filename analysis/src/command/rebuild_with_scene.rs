@@ -5,20 +5,20 @@
 use std::os::unix::process::CommandExt;
 use std::process;
 
-use super::answer::{Answer, CommandError};
+use super::status::{CommandError, CommandStatus};
 use crate::program::Program;
 use crate::progress;
 use crate::toolchain::{Sources, build_haptic_with};
 
 /// Whether a name is that of a scene that this program was built without.
-pub fn is_new(name: &str) -> bool {
+pub fn needs_rebuild(name: &str) -> bool {
     // Without its source this program has the scenes that it was built with.
     let is_there = || Sources::find().and_then(|sources| sources.scenes()).unwrap_or_default();
     Program::find(name).is_none() && is_there().iter().any(|scene| scene == name)
 }
 
-/// Builds what knows the scene, and becomes that, with the same arguments.
-pub fn hand_over(scene: &str) -> Result<Answer, CommandError> {
+/// Builds a program that has the scene, and replaces this process by it, with the same arguments.
+pub fn rebuild_and_exec(scene: &str) -> Result<CommandStatus, CommandError> {
     let spinner = progress::spinner(&format!("building {scene} for this machine"));
     let program = build_haptic_with(scene)?;
     spinner.finish_and_clear();
