@@ -10,9 +10,9 @@ use std::path::Path;
 use unicorn_engine::RegisterARM;
 
 use crate::chip::Chip;
-use crate::device::Still;
+use crate::device::FixedDevice;
+use crate::error::{BoardError, BootError};
 use crate::machine::Machine;
-use crate::trouble::{BootError, Trouble};
 
 /// The instruction of a call, `BKPT 0xAB` (section 4.1).
 const CALL: u16 = 0xBEAB;
@@ -44,7 +44,7 @@ enum Handle {
 pub enum CallError {
     /// The board cannot go on.
     #[error(transparent)]
-    Trouble(#[from] Trouble),
+    BoardError(#[from] BoardError),
     /// The call is none that is answered here.
     #[error("the program calls operation {operation:#x} at {address:#010x}, which is not modelled")]
     NoOperation {
@@ -92,7 +92,7 @@ impl Guest {
         chip: &'static Chip,
         names: [&'static str; 2],
     ) -> Result<Self, BootError> {
-        let mut machine = Machine::boot(elf, chip, Box::new(Still))?;
+        let mut machine = Machine::boot(elf, chip, Box::new(FixedDevice))?;
         machine.debugged = true;
         let (questions, answers) = (VecDeque::new(), VecDeque::new());
         Ok(Self { machine, names, questions, closed: false, answers, console: Vec::new() })
@@ -135,13 +135,13 @@ impl Guest {
 
     /// Up to the next call, and the answer to it.
     fn run(&mut self) -> Result<(), CallError> {
-        let Err(trouble) = self.machine.run_for(LONGEST) else {
-            return Err(Trouble::Late { what: "a call", instructions: LONGEST }.into());
+        let Err(error) = self.machine.run_for(LONGEST) else {
+            return Err(BoardError::Late { what: "a call", instructions: LONGEST }.into());
         };
-        let Trouble::Breakpoint { address, .. } = trouble else { return Err(trouble.into()) };
+        let BoardError::Breakpoint { address, .. } = error else { return Err(error.into()) };
         let core = self.machine.core_mut();
         if core.memory(address, 2).as_deref() != Some(&CALL.to_le_bytes()) {
-            return Err(trouble.into());
+            return Err(error.into());
         }
         let operation = core.register(RegisterARM::R0);
         let block = core.register(RegisterARM::R1);

@@ -16,7 +16,7 @@ use firmware::wire::message::{
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
-use virtual_board::device::{Device, Still};
+use virtual_board::device::{Device, FixedDevice};
 use virtual_board::machine::Machine;
 use virtual_board::peripheral::pins::Level;
 
@@ -95,7 +95,7 @@ impl Bench {
     pub fn running(chip: &'static Chip, name: &'static str) -> Self {
         /// More than the tenth of a second in which it opens.
         const OPEN: u64 = 110;
-        let mut bench = Self::boot(chip, name, Still);
+        let mut bench = Self::boot(chip, name, FixedDevice);
         bench.armed();
         bench.run(OPEN);
         bench
@@ -110,23 +110,23 @@ impl Bench {
     /// the timer can pace it.
     pub fn period(&self) -> u64 {
         let board = self.machine.board();
-        board.pacer.period(board.clock.timer_divider())
+        board.tick_timer.period(board.clock.timer_divider())
     }
 
     /// Runs so many samples.
     pub fn run(&mut self, samples: u64) {
-        self.machine.run_samples(samples).unwrap_or_else(|trouble| panic!("{trouble}"));
+        self.machine.run_samples(samples).unwrap_or_else(|error| panic!("{error}"));
     }
 
     /// Runs so many instructions.
     pub fn run_for(&mut self, instructions: u64) {
-        self.machine.run_for(instructions).unwrap_or_else(|trouble| panic!("{trouble}"));
+        self.machine.run_for(instructions).unwrap_or_else(|error| panic!("{error}"));
     }
 
     /// Runs to the next update of the pacing timer, which comes before the next instruction.
     pub fn run_to_update(&mut self) {
         let board = self.machine.board();
-        let due = board.pacer.due().unwrap();
+        let due = board.tick_timer.due().unwrap();
         self.run_for(due - board.now);
     }
 

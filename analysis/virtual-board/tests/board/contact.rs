@@ -14,7 +14,7 @@ use virtual_board::chip::Chip;
 use virtual_board::device::Device;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
-use crate::device::{InHand, Sample};
+use crate::device::{HandHeldDevice, Sample};
 
 /// Samples of the servo in a minute.
 const MINUTE: u64 = 60_000;
@@ -24,7 +24,7 @@ const MINUTES: u64 = 60;
 /// A device in a hand that does the same over and over; and once a minute the encoder is spun away
 /// from the wall and back, far enough for a counter of 16 bits to wrap.
 struct Spun {
-    hand: InHand,
+    hand: HandHeldDevice,
     /// Samples so far.
     sample: u64,
 }
@@ -40,7 +40,7 @@ impl Spun {
         let (scene, transducers) = (&program.scene, &program.transducers);
         let period = scene.timing.period;
         let device = SimulatedDevice::new(scene.device, trajectory, period, transducers).unwrap();
-        Self { hand: InHand::with(device), sample: 0 }
+        Self { hand: HandHeldDevice::with(device), sample: 0 }
     }
 }
 

@@ -6,7 +6,7 @@ use firmware::servo_loop::State;
 use firmware::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
-use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
+use virtual_board::chip::{Chip, TICK_INTERRUPT, Unit};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
 use virtual_board::peripheral::pins::Level;
 
@@ -98,7 +98,7 @@ const CASES: &[Case] = &[
         bound: TIMEOUT,
         provoke: |bench| {
             let board = bench.machine.board_mut();
-            board.system.exceptions.enable(FIRST_INTERRUPT + PACER_INTERRUPT, false);
+            board.system.exceptions.enable(FIRST_INTERRUPT + TICK_INTERRUPT, false);
             board.now
         },
         resets: true,
@@ -167,10 +167,10 @@ const CASES: &[Case] = &[
     },
     Case {
         fault: "hard-fault",
-        cause: "the bus has an error at the converter's register, also for the fault's handler",
+        cause: "the bus has an error at the DAC's register, also for the fault's handler",
         program: "damper_wall",
         bound: 1.0,
-        provoke: |bench| breaks_in_a_tick(bench, Register::Converter),
+        provoke: |bench| breaks_in_a_tick(bench, Register::Dac),
         resets: true,
         expected: None,
     },
@@ -203,8 +203,8 @@ const CASES: &[Case] = &[
 pub enum Register {
     /// The encoder's counter.
     Encoder,
-    /// The converter's, where codes are written.
-    Converter,
+    /// The DAC's, where codes are written.
+    Dac,
 }
 
 impl Register {
@@ -212,7 +212,7 @@ impl Register {
     pub fn address(self, chip: &Chip) -> u32 {
         let (unit, offset) = match self {
             Self::Encoder => (Unit::Encoder, 0x24),
-            Self::Converter => (Unit::Converter, 0x08),
+            Self::Dac => (Unit::Dac, 0x08),
         };
         chip.map.iter().find(|place| place.unit == unit).unwrap().base + offset
     }

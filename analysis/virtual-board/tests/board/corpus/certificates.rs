@@ -10,7 +10,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::{floats, scenes, vectors};
 
-use super::{TOOLCHAIN, Virtual};
+use super::{TOOLCHAIN, VirtualGuest};
 
 /// Random scenes of each kind.
 const EACH: u64 = 24;
@@ -35,8 +35,10 @@ fn broken(rng: &mut ChaCha8Rng) -> Scene {
 #[test]
 fn certificates_are_equal() {
     let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
-    let mut boards =
-        [CertifyClient::with_transport(Virtual::boot(&elf)), CertifyClient::boot(&elf).unwrap()];
+    let mut boards = [
+        CertifyClient::with_transport(VirtualGuest::boot(&elf)),
+        CertifyClient::boot(&elf).unwrap(),
+    ];
     let mut asked: Vec<_> = vectors::all().iter().step_by(PART).map(|case| case.scene()).collect();
     let drawn = (0..EACH).map(ChaCha8Rng::seed_from_u64);
     asked.extend(drawn.flat_map(|mut rng| [scenes::any(&mut rng).scene, broken(&mut rng)]));

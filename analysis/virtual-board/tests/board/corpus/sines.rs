@@ -6,7 +6,7 @@ use firmware_harness::sines::Sine;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{TOOLCHAIN, Virtual};
+use super::{TOOLCHAIN, VirtualGuest};
 
 /// Random numbers of each kind.
 const EACH: usize = 640;
@@ -49,7 +49,7 @@ fn bits(value: f64) -> u64 {
 fn sines_are_equal() {
     let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
-        [BenchClient::with_transport(Virtual::boot(&elf)), BenchClient::boot(&elf).unwrap()];
+        [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let inputs = inputs();
     let words: Vec<_> = inputs.iter().map(|turn| turn.to_bits()).collect();
     for sine in Sine::ALL {

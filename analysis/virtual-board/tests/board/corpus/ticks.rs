@@ -8,7 +8,7 @@ use firmware_harness::bench_request::BenchRequest;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{TOOLCHAIN, Virtual, counts};
+use super::{TOOLCHAIN, VirtualGuest, counts};
 
 /// Ticks of each scene in each format and unit.
 const TICKS: usize = 448;
@@ -56,7 +56,7 @@ fn compare(
 fn ticks_are_equal() {
     let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
-        [BenchClient::with_transport(Virtual::boot(&elf)), BenchClient::boot(&elf).unwrap()];
+        [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut limited = Vec::new();
     for case in servo::cases() {

@@ -1,4 +1,4 @@
-//! Instructions that a conditional block skips (ARM DDI 0403E, A7.3): the engine says nothing of
+//! Instructions that an IT block (if-then) skips (ARM DDI 0403E, A7.3): the engine says nothing of
 //! them, but a core takes a clock for each.
 
 /// Instructions of a block, at most.
@@ -8,9 +8,9 @@ const TO_LAST: u32 = 2 + 4 * (LONGEST - 1);
 /// Bytes that can be skipped at once.
 const SKIPPED: u32 = 4 * LONGEST;
 
-/// Where the last instructions were, to find the block that a skipped one belongs to.
+/// Addresses of the last instructions, to find the IT block that a skipped one belongs to.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Trail {
+pub struct PcHistory {
     /// The latest, in the place of its number modulo the length.
     places: [u32; 8],
     /// How many there were.
@@ -21,7 +21,7 @@ pub struct Trail {
     next: u32,
 }
 
-impl Trail {
+impl PcHistory {
     /// Where the latest was.
     pub fn latest(&self) -> u32 {
         self.place(self.count.wrapping_sub(1))
@@ -116,11 +116,11 @@ mod tests {
     }
 
     fn skipped(run: &[(u32, u32)]) -> Vec<u64> {
-        let mut trail = Trail::default();
+        let mut history = PcHistory::default();
         let mut step = |&(address, size)| {
-            let follows = trail.is_next(address);
-            let skipped = if follows { 0 } else { trail.skip(address, read) };
-            trail.push(address, size);
+            let follows = history.is_next(address);
+            let skipped = if follows { 0 } else { history.skip(address, read) };
+            history.push(address, size);
             skipped
         };
         run.iter().map(&mut step).collect()

@@ -1,17 +1,17 @@
-//! Registers that only keep what is written: what they switch has no effect here.
+//! Inert registers: they keep what is written, and it has no effect here.
 
 use super::{Access, Unmodelled, only};
 
-/// A peripheral of such registers.
+/// A peripheral of inert registers.
 #[derive(Clone, Debug)]
-pub struct Plain {
+pub struct InertRegisters {
     /// Each register's place, its value out of reset, and its bits that may be written.
     layout: &'static [(u32, u32, u32)],
     /// What they hold, a word each from place 0 on; 0 where there is no register.
     values: Vec<u32>,
 }
 
-impl Plain {
+impl InertRegisters {
     /// Registers of this layout, out of reset: place, value, bits that may be written.
     pub fn new(layout: &'static [(u32, u32, u32)]) -> Self {
         let last = layout.iter().map(|&(offset, ..)| offset as usize / 4).max();

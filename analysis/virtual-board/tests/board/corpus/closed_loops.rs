@@ -11,15 +11,15 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::scenes;
 
-use super::{TOOLCHAIN, Virtual, counts};
+use super::{TOOLCHAIN, VirtualGuest, counts};
 
 const SCENES: u64 = 8;
 const TICKS: usize = 400;
 
 /// What the host does with a play: the same as the board.
-struct Here<'a>(&'a LoopRequest);
+struct HostServo<'a>(&'a LoopRequest);
 
-impl InEach for Here<'_> {
+impl InEach for HostServo<'_> {
     type Output = Result<Box<dyn Controller>, StartReply>;
 
     fn with<N: Number>(self) -> Self::Output {
@@ -50,11 +50,11 @@ fn draw(rng: &mut ChaCha8Rng) -> LoopRequest {
 fn plays_are_equal() {
     let elf = TOOLCHAIN.build_servo_server().unwrap_or_else(|error| panic!("{error}"));
     let mut boards =
-        [ServoClient::with_transport(Virtual::boot(&elf)), ServoClient::boot(&elf).unwrap()];
+        [ServoClient::with_transport(VirtualGuest::boot(&elf)), ServoClient::boot(&elf).unwrap()];
     let mut replies = [0; 3];
     for mut rng in (0..SCENES).map(ChaCha8Rng::seed_from_u64) {
         let request = draw(&mut rng);
-        let here = request.arithmetic.choose(Here(&request));
+        let here = request.arithmetic.choose(HostServo(&request));
         let reply = here.as_ref().err().copied().unwrap_or(StartReply::Ready);
         replies[reply as usize] += 1;
         for board in &mut boards {

@@ -1,4 +1,4 @@
-//! The digital-to-analogue converter's channel 1 (RM0440, 22.7; RM0090, 14.5): a code that is
+//! The digital-to-analogue converter (DAC), channel 1 (RM0440, 22.7; RM0090, 14.5): a code that is
 //! written appears at once, or at the next trigger.
 
 use super::{Access, Unmodelled, only};
@@ -14,7 +14,7 @@ pub struct Layout {
     /// CR: which trigger, as a field.
     pub trigger: u32,
     /// That field, where it is TIM6's update.
-    pub by_pacer: u32,
+    pub tim6_trigger: u32,
     /// Bits of CR that change nothing here.
     pub ignored: u32,
     /// Whether there is a mode register.
@@ -22,19 +22,24 @@ pub struct Layout {
 }
 
 /// The G4's.
-pub const G4: Layout =
-    Layout { triggered: 1 << 1, trigger: 0xF << 2, by_pacer: 7 << 2, ignored: 0, has_mode: true };
+pub const G4: Layout = Layout {
+    triggered: 1 << 1,
+    trigger: 0xF << 2,
+    tim6_trigger: 7 << 2,
+    ignored: 0,
+    has_mode: true,
+};
 
 /// The F405's.
 pub const F405: Layout =
-    Layout { triggered: 1 << 2, trigger: 0b111 << 3, by_pacer: 0, ignored: 0, has_mode: false };
+    Layout { triggered: 1 << 2, trigger: 0b111 << 3, tim6_trigger: 0, ignored: 0, has_mode: false };
 
 /// MCR of the G4: the range of bus clocks, which has no effect on codes.
 const CLOCK_RANGE: u32 = 0b11 << 14;
 
 /// The channel.
 #[derive(Clone, Debug)]
-pub struct Converter {
+pub struct Dac {
     layout: Layout,
     control: u32,
     mode: u32,
@@ -44,7 +49,7 @@ pub struct Converter {
     output: u32,
 }
 
-impl Converter {
+impl Dac {
     /// Out of reset.
     pub fn new(layout: Layout) -> Self {
         Self { layout, control: 0, mode: 0, held: 0, output: 0 }
@@ -62,8 +67,8 @@ impl Converter {
 
     /// The pacing timer's update.
     pub fn trigger(&mut self) {
-        let Layout { triggered, trigger, by_pacer, .. } = self.layout;
-        if self.control & triggered != 0 && self.control & trigger == by_pacer {
+        let Layout { triggered, trigger, tim6_trigger, .. } = self.layout;
+        if self.control & triggered != 0 && self.control & trigger == tim6_trigger {
             self.output = self.held;
         }
     }
@@ -81,11 +86,11 @@ impl Converter {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        let Layout { triggered, trigger, by_pacer, ignored, has_mode } = self.layout;
+        let Layout { triggered, trigger, tim6_trigger, ignored, has_mode } = self.layout;
         match offset {
             0x00 => {
                 only(value, ENABLE | triggered | trigger | ignored)?;
-                if value & triggered != 0 && value & trigger != by_pacer {
+                if value & triggered != 0 && value & trigger != tim6_trigger {
                     return Err(Unmodelled::Bits(value & trigger));
                 }
                 self.control = value;

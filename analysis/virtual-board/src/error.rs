@@ -6,7 +6,7 @@ use crate::peripheral::Unmodelled;
 
 /// Why a board cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Trouble {
+pub enum BoardError {
     /// The program uses what is not modelled.
     #[error("{what}; instruction {now} at {address:#010x}")]
     NotModelled {
@@ -84,7 +84,7 @@ pub enum BootError {
 /// Something that is not modelled was used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NotModelled {
-    /// Who, by name, or nobody where nothing is at the address.
+    /// Name of the unit; none where nothing is at the address.
     pub unit: Option<&'static str>,
     /// The register's name, where it has one.
     pub register: Option<&'static str>,
@@ -93,12 +93,12 @@ pub struct NotModelled {
     /// What was written, if it was.
     pub written: Option<u32>,
     /// Why it is not.
-    pub why: Why,
+    pub why: AccessError,
 }
 
-/// Why an access has no answer.
+/// Why an access fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum AccessError {
     /// Nothing of the virtual board is there.
     Nobody,
     /// The unit is, but not this register or these bits.
@@ -121,13 +121,13 @@ impl fmt::Display for NotModelled {
             None => write!(f, "{:#010x}, in {unit}: ", self.address)?,
         }
         match self.why {
-            Why::Nobody => f.write_str("the virtual board has no peripheral there"),
-            Why::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
-            Why::Unit(Unmodelled::Bits(bits)) => {
+            AccessError::Nobody => f.write_str("the virtual board has no peripheral there"),
+            AccessError::Unit(Unmodelled::Register) => f.write_str("that register is not modelled"),
+            AccessError::Unit(Unmodelled::Bits(bits)) => {
                 write!(f, "the bits {bits:#010x} are not modelled in that register")
             }
-            Why::Stopped => f.write_str("its clock is off, or it is held in reset"),
-            Why::Width => f.write_str("an access of that width is not modelled"),
+            AccessError::Stopped => f.write_str("its clock is off, or it is held in reset"),
+            AccessError::Width => f.write_str("an access of that width is not modelled"),
         }
     }
 }
@@ -136,11 +136,11 @@ impl fmt::Display for NotModelled {
 mod tests {
     use crate::board::Board;
     use crate::chip::{Chip, NUCLEO_G474RE};
-    use crate::device::Still;
+    use crate::device::FixedDevice;
 
     /// What a program is told that reads there, or writes this.
     fn said(address: u32, written: Option<u32>) -> String {
-        let mut board = Board::new(&NUCLEO_G474RE, Box::new(Still));
+        let mut board = Board::new(&NUCLEO_G474RE, Box::new(FixedDevice));
         // TIM6 and USART2 are clocked, and nothing else of their bus.
         board.write(0x4002_1058, 4, (1 << 4) | (1 << 17));
         match written {

@@ -3,14 +3,14 @@
 use unicorn_engine::RegisterARM;
 
 use super::Machine;
-use crate::chip::{FLASH, PACER_INTERRUPT};
+use crate::chip::{FLASH, TICK_INTERRUPT};
 use crate::core::exceptions::{FIRST_INTERRUPT, Number};
 use crate::core::system::FaultStatus;
+use crate::error::BoardError;
 use crate::frame::{self, Frame, THUMB};
-use crate::trouble::Trouble;
 
 /// The servo's interrupt.
-const SERVO: Number = FIRST_INTERRUPT + PACER_INTERRUPT;
+const SERVO: Number = FIRST_INTERRUPT + TICK_INTERRUPT;
 
 impl Machine {
     /// Begins to serve what may be served now; whether the core waits for more.
@@ -29,7 +29,7 @@ impl Machine {
     }
 
     /// A fault at the instruction where the core stands.
-    pub(super) fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), Trouble> {
+    pub(super) fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), BoardError> {
         let masks = self.core.masks();
         let board = self.core.board_mut();
         if !board.system.exceptions.can_fault(masks) {
@@ -38,7 +38,7 @@ impl Machine {
                 self.locked_up = true;
                 return Ok(());
             }
-            return Err(Trouble::LockedUp { now: board.now, address: self.core.last_address() });
+            return Err(BoardError::LockedUp { now: board.now, address: self.core.last_address() });
         }
         board.system.fault(status, address);
         Ok(())
@@ -71,7 +71,7 @@ impl Machine {
     }
 
     /// Ends the exception that is being served (B1.5.8): back to what its frame says.
-    pub(super) fn leave(&mut self, word: u32) -> Result<(), Trouble> {
+    pub(super) fn leave(&mut self, word: u32) -> Result<(), BoardError> {
         let Some(frame) = Frame::of(&self.core, word) else {
             let stack = self.core.register(RegisterARM::MSP);
             return self.fault(FaultStatus::State, stack);

@@ -14,7 +14,7 @@ const UPDATE: u32 = 1;
 
 /// The timer.
 #[derive(Clone, Debug, Default)]
-pub struct Pacer {
+pub struct BasicTimer {
     control: u32,
     trigger: u32,
     interrupt: u32,
@@ -27,7 +27,7 @@ pub struct Pacer {
     overflow: Option<u64>,
 }
 
-impl Pacer {
+impl BasicTimer {
     /// Out of reset.
     pub fn new() -> Self {
         Self { reload: 0xFFFF, ..Self::default() }
@@ -139,49 +139,49 @@ mod tests {
     const ARR: u32 = 0x2C;
 
     /// Prepared for a prescaler of 3 and a period of 1000, and started at 5000.
-    fn started(divider: u64) -> Pacer {
-        let mut pacer = Pacer::new();
+    fn started(divider: u64) -> BasicTimer {
+        let mut tick_timer = BasicTimer::new();
         for (register, value) in
             [(PSC, 2), (ARR, 999), (CR1, ONLY_OVERFLOW), (EGR, 1), (DIER, 1), (CR1, ENABLE)]
         {
-            pacer.write(register, value, 5000, divider).unwrap();
+            tick_timer.write(register, value, 5000, divider).unwrap();
         }
-        pacer
+        tick_timer
     }
 
     #[test]
     fn a_period_is_prescaler_times_reload_in_the_timer_s_own_clocks() {
         for divider in [1, 2] {
-            let (mut pacer, period) = (started(divider), 3000 * divider);
-            assert_eq!(pacer.due(), Some(5000 + period));
-            assert!(!pacer.advance(5000 + period - 1, divider) && !pacer.line());
+            let (mut tick_timer, period) = (started(divider), 3000 * divider);
+            assert_eq!(tick_timer.due(), Some(5000 + period));
+            assert!(!tick_timer.advance(5000 + period - 1, divider) && !tick_timer.line());
             // Late or not, the next one is a period behind.
-            assert!(pacer.advance(5000 + period + 7, divider) && pacer.line());
-            assert_eq!(pacer.due(), Some(5000 + 2 * period));
+            assert!(tick_timer.advance(5000 + period + 7, divider) && tick_timer.line());
+            assert_eq!(tick_timer.due(), Some(5000 + 2 * period));
         }
     }
 
     #[test]
     fn its_flag_stays_until_it_is_cleared() {
-        let mut pacer = started(1);
-        assert!(pacer.advance(8000, 1));
-        pacer.write(SR, UPDATE, 8001, 1).unwrap();
-        assert!(pacer.line(), "a one leaves it");
-        pacer.write(SR, 0, 8002, 1).unwrap();
-        assert!(!pacer.line());
-        assert_eq!(pacer.due(), Some(11_000));
+        let mut tick_timer = started(1);
+        assert!(tick_timer.advance(8000, 1));
+        tick_timer.write(SR, UPDATE, 8001, 1).unwrap();
+        assert!(tick_timer.line(), "a one leaves it");
+        tick_timer.write(SR, 0, 8002, 1).unwrap();
+        assert!(!tick_timer.line());
+        assert_eq!(tick_timer.due(), Some(11_000));
     }
 
     #[test]
     fn a_new_prescaler_waits_for_an_update_and_only_an_overflow_is_one_to_the_flag() {
-        let mut pacer = started(1);
-        pacer.write(PSC, 0, 5001, 1).unwrap();
-        assert_eq!(pacer.due(), Some(8000));
-        assert!(pacer.advance(8000, 1));
-        assert_eq!(pacer.due(), Some(9000));
-        let mut pacer = Pacer::new();
-        pacer.write(DIER, UPDATE, 0, 1).unwrap();
-        pacer.write(EGR, UPDATE, 0, 1).unwrap();
-        assert!(pacer.line(), "an update by the program is one, unless it says otherwise");
+        let mut tick_timer = started(1);
+        tick_timer.write(PSC, 0, 5001, 1).unwrap();
+        assert_eq!(tick_timer.due(), Some(8000));
+        assert!(tick_timer.advance(8000, 1));
+        assert_eq!(tick_timer.due(), Some(9000));
+        let mut tick_timer = BasicTimer::new();
+        tick_timer.write(DIER, UPDATE, 0, 1).unwrap();
+        tick_timer.write(EGR, UPDATE, 0, 1).unwrap();
+        assert!(tick_timer.line(), "an update by the program is one, unless it says otherwise");
     }
 }
