@@ -109,7 +109,7 @@ mod tests {
         let found = trace(run, None).unwrap();
         assert_eq!((found.time_unit, &found.time[..]), (TimeUnit::Ticks, &[0.0, 1.0][..]));
         assert_eq!((&found.position[..], &found.torque[..]), (&[0.5, 0.6][..], &[-1.0, 2.0][..]));
-        assert_eq!(found.limit, [TickStatus::UNLIMITED, TickStatus::Ran(LimitReason::Converter)]);
+        assert_eq!(found.limit, [TickStatus::UNLIMITED, TickStatus::Ran(LimitReason::DacRange)]);
         let found = trace(run, Some(0.25)).unwrap();
         assert_eq!((found.time_unit, &found.time[..]), (TimeUnit::Seconds, &[0.0, 0.25][..]));
 

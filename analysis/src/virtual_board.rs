@@ -52,7 +52,7 @@ pub enum VirtualBoardError {
 /// A sample that has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// The converter's code in it; none while nothing drives its pin.
+    /// The DAC's code in it; none while nothing drives its pin.
     pub code: Option<u16>,
     /// Whether the amplifier was on.
     pub amplifier: bool,

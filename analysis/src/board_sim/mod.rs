@@ -186,9 +186,10 @@ where
     let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
         .map_err(|step| not_started::<E, N, M>(&program, step))?;
     let (mut servo_loop, margin) = (booted.servo_loop, booted.margin);
-    let (reset, left) = (booted.reset, booted.left);
-    let facts = BoardInfo { name, timer_counts: TIMER_COUNTS, reset, left, stack_left: || None };
-    let mut session = Session::new(program, margin, facts, requests, ticks);
+    let (reset, previous_fault) = (booted.reset, booted.previous_fault);
+    let info =
+        BoardInfo { name, timer_counts: TIMER_COUNTS, reset, previous_fault, stack_left: || None };
+    let mut session = Session::new(program, margin, info, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();
     while !over.load(Ordering::Relaxed) {

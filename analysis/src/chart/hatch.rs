@@ -37,7 +37,7 @@ impl Fill {
         match status {
             TickStatus::Ran(LimitReason::None) => None,
             TickStatus::Ran(LimitReason::Torque) => Some(Self::Grey),
-            TickStatus::Ran(LimitReason::Converter) => Some(Self::Rising),
+            TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
             TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
             TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
             TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),

@@ -267,11 +267,11 @@ fn write_grounds(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
 
 /// The meaning of a fill.
 fn name(status: TickStatus) -> &'static str {
-    use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Ramp, Torque};
+    use firmware::torque::LimitReason::{Angle, DacRange, None, NotANumber, Ramp, Torque};
     match status {
         TickStatus::Ran(None) => "not limited",
         TickStatus::Ran(Torque) => "torque limit",
-        TickStatus::Ran(Converter) => "converter limit",
+        TickStatus::Ran(DacRange) => "converter limit",
         TickStatus::Ran(Angle) => "angle out of range",
         TickStatus::Ran(NotANumber) => "not a number",
         TickStatus::Ran(Ramp) => "fading in or out",

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::wire::message::{Changes, Running, Status};
+use firmware::wire::message::{ActiveParameters, Changes, Status};
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, json};
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         link::RequestResult::Done => None,
         link::RequestResult::Refused(sentence) => Some(sentence.as_str()),
     };
-    let (running, status) = (link.running()?, link.status()?);
+    let (running, status) = (link.parameters()?, link.status()?);
     if arguments.answer.json {
         json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
@@ -108,7 +108,7 @@ fn request(
 fn print(
     link: &Link,
     refused: Option<&str>,
-    running: &Running,
+    running: &ActiveParameters,
     status: &Status,
 ) -> Result<(), CommandError> {
     let (board, mut out) = (link.board(), io::stdout().lock());
@@ -119,8 +119,8 @@ fn print(
     if let Some(fault) = status.fault {
         writeln!(out, "stopped: {fault}")?;
     }
-    if let Some(remembered) = link.remembered() {
-        writeln!(out, "{}", formatting::remembered(&remembered))?;
+    if let Some(remembered) = link.previous_fault() {
+        writeln!(out, "{}", formatting::previous_fault(&remembered))?;
     }
     writeln!(out, "{}", formatting::reset(status))?;
     writeln!(out, "{}", formatting::numbers(running))?;
@@ -133,7 +133,7 @@ fn print(
 fn report<'a>(
     link: &'a Link,
     refused: Option<&'a str>,
-    running: &Running,
+    running: &ActiveParameters,
     status: &Status,
 ) -> Report<'a> {
     let board = link.board();
@@ -149,7 +149,7 @@ fn report<'a>(
         parameters: running.values.iter().map(named).collect(),
         state: status.state.as_str(),
         fault: status.fault.map(|fault| fault.to_string()),
-        remembered: link.remembered().as_ref().map(formatting::remembered),
+        remembered: link.previous_fault().as_ref().map(formatting::previous_fault),
         reset: status.reset.as_str(),
         missed: status.missed,
         worst_slack: formatting::worst_slack(status, board),

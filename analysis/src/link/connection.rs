@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use firmware::tuning::Parameters;
 use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Refusal, Remembered, Running,
-    Status, ToBoard, ToHost,
+    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
+    PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
@@ -48,7 +48,7 @@ pub struct Link {
     wire: Wire,
     program: String,
     board: Board,
-    remembered: Option<Remembered>,
+    previous_fault: Option<PreviousFault>,
     /// Drawn at first, so that an answer to somebody before us is not taken for ours.
     last_id: Id,
 }
@@ -142,15 +142,15 @@ impl Link {
             .map_err(|source| LinkError::Open { address: address.clone(), source })?;
         let (decoder, bytes) = (Decoder::new(), Box::new([0; 4096]));
         let mut wire = Wire { transport, decoder, bytes, filled: 0, used: 0 };
-        let (mut welcome, mut remembered) = (None, None);
+        let (mut welcome, mut previous_fault) = (None, None);
         let greeted = wire.ask(&ToBoard::Hello, QUESTION, |message| match message {
             ToHost::Welcome { protocol, program } if protocol == PROTOCOL => {
                 welcome = Some(program);
                 None
             }
             ToHost::Welcome { protocol, program } => Some(Err((protocol, program))),
-            ToHost::Remembered(fault) => {
-                remembered = Some(fault);
+            ToHost::PreviousFault(fault) => {
+                previous_fault = Some(fault);
                 None
             }
             // The last part of the greeting.
@@ -159,9 +159,14 @@ impl Link {
         });
         let address = address.clone();
         match greeted {
-            Ok(Some(Ok((program, board)))) => {
-                Ok(Self { address, wire, program, board, remembered, last_id: fastrand::u16(..) })
-            }
+            Ok(Some(Ok((program, board)))) => Ok(Self {
+                address,
+                wire,
+                program,
+                board,
+                previous_fault,
+                last_id: fastrand::u16(..),
+            }),
             Ok(Some(Err((theirs, program)))) => {
                 Err(LinkError::Protocol { address, program, theirs })
             }
@@ -190,8 +195,8 @@ impl Link {
     }
 
     /// What stopped the board before it was last started.
-    pub fn remembered(&self) -> Option<Remembered> {
-        self.remembered
+    pub fn previous_fault(&self) -> Option<PreviousFault> {
+        self.previous_fault
     }
 
     /// Frames from the board that were none.
@@ -220,8 +225,8 @@ impl Link {
         changes: &Changes,
     ) -> Result<RequestResult, LinkError> {
         if let Outcome::Refused(Refusal::Set(step)) = outcome {
-            let (description, running) = (self.description()?, self.running()?);
-            let has = Parameters::of(running.values.iter().map(|(parameter, _)| *parameter));
+            let (description, parameters) = (self.description()?, self.parameters()?);
+            let has = Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter));
             if let Err(reason) = description.explain(has, changes)
                 && reason.step() == step
             {
@@ -262,9 +267,9 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn running(&mut self) -> Result<Running, LinkError> {
+    pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
         self.ask("which parameters run", &ToBoard::Get, QUESTION, |message| match message {
-            ToHost::Running(running) => Some(running),
+            ToHost::ActiveParameters(parameters) => Some(parameters),
             _ => None,
         })
     }

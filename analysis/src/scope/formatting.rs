@@ -3,14 +3,14 @@
 use firmware::certificate::Parameter;
 use firmware::tuning;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
+use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
 
 use super::Scope;
 use crate::quantity::significant;
 
 /// The numbers that run, as they are typed: `stiffness=22 damping=0.01`.
-pub fn numbers(running: &Running) -> String {
-    changes(&running.values)
+pub fn numbers(parameters: &ActiveParameters) -> String {
+    changes(&parameters.values)
 }
 
 /// Parameters as they are typed.
@@ -25,8 +25,8 @@ pub fn name(parameter: Parameter) -> &'static str {
 }
 
 /// What stopped the board before it was last started.
-pub fn remembered(remembered: &Remembered) -> String {
-    format!("before the last reset, in tick {}: {}", remembered.tick, remembered.fault)
+pub fn previous_fault(previous_fault: &PreviousFault) -> String {
+    format!("before the last reset, in tick {}: {}", previous_fault.tick, previous_fault.fault)
 }
 
 /// Why the board was last reset.
@@ -36,8 +36,13 @@ pub fn reset(status: &Status) -> String {
 
 /// What the servo has to spare, of its certificate and of its time; `slack` in s is that of the
 /// last tick.
-pub fn reserves(running: &Running, status: &Status, board: &Board, slack: Option<f64>) -> String {
-    let margin = running.margin;
+pub fn reserves(
+    parameters: &ActiveParameters,
+    status: &Status,
+    board: &Board,
+    slack: Option<f64>,
+) -> String {
+    let margin = parameters.margin;
     let margin = margin.map_or("none".to_owned(), |m| format!("{} N m s/rad", significant(m, 4)));
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let now = slack.map(|slack| format!("{}, ", percent(slack / board.period))).unwrap_or_default();

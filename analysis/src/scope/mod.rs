@@ -11,7 +11,7 @@ mod tests;
 pub mod tui;
 
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Remembered, Running, Status};
+use firmware::wire::message::{ActiveParameters, Board, PreviousFault, Status};
 
 use self::control::Control;
 use self::history::History;
@@ -30,7 +30,7 @@ pub struct Scope {
     /// How it was going when it was last asked, and the frames that could not be read here.
     pub status: Option<(Status, Discarded)>,
     /// The numbers that run.
-    pub running: Option<Running>,
+    pub parameters: Option<ActiveParameters>,
     /// The last seconds.
     pub history: History,
     /// What is asked of the board.
@@ -45,7 +45,7 @@ pub struct ConnectedBoard {
     /// What its numbers mean.
     pub board: Board,
     /// What stopped it before it was last started.
-    pub remembered: Option<Remembered>,
+    pub previous_fault: Option<PreviousFault>,
     scale: Scale,
 }
 
@@ -54,7 +54,15 @@ impl Scope {
     pub fn new(address: String, window: f64) -> Self {
         let history = History::new(window);
         let control = Control::default();
-        Self { address, connected: None, lost: None, status: None, running: None, history, control }
+        Self {
+            address,
+            connected: None,
+            lost: None,
+            status: None,
+            parameters: None,
+            history,
+            control,
+        }
     }
 
     /// Takes in what the board says, and gives its ticks to `each`.
@@ -64,9 +72,9 @@ impl Scope {
         mut each: impl FnMut(&Sample) -> Result<(), E>,
     ) -> Result<(), E> {
         match event {
-            Event::Connected { program, board, remembered } => {
+            Event::Connected { program, board, previous_fault } => {
                 let scale = Scale::new(board);
-                self.connected = Some(ConnectedBoard { program, board, remembered, scale });
+                self.connected = Some(ConnectedBoard { program, board, previous_fault, scale });
                 self.lost = None;
                 self.history.clear();
             }
@@ -79,7 +87,7 @@ impl Scope {
                 }
             }
             Event::Status(status, discarded) => self.status = Some((status, discarded)),
-            Event::Running(running) => self.running = Some(running),
+            Event::ActiveParameters(parameters) => self.parameters = Some(parameters),
             Event::Reply(request, reply) => self.control.message = Some(reply.line(&request)),
             Event::Lost(why) => self.lost = Some(why),
         }

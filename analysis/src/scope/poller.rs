@@ -10,7 +10,9 @@ use std::time::{Duration, Instant};
 
 use firmware::servo_loop::Frame;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Id, Remembered, Running, Status, ToBoard, ToHost};
+use firmware::wire::message::{
+    ActiveParameters, Board, Id, PreviousFault, Status, ToBoard, ToHost,
+};
 
 use super::control::{Reply, Request};
 use crate::link::{Link, LinkError, REQUEST};
@@ -35,14 +37,14 @@ pub enum Event {
         /// What its numbers mean.
         board: Board,
         /// What stopped it before it was last started.
-        remembered: Option<Remembered>,
+        previous_fault: Option<PreviousFault>,
     },
     /// Ticks.
     Ticks(Vec<Frame>),
     /// How it is going, and the frames that the host could not read.
     Status(Status, Discarded),
     /// The numbers that run.
-    Running(Running),
+    ActiveParameters(ActiveParameters),
     /// What became of a request.
     Reply(Request, Reply),
     /// The link is lost, and a new one is tried.
@@ -175,7 +177,11 @@ impl PollerThread {
     /// Passes on what the board says, until the link is lost or nobody listens.
     fn poll_board(&self, link: &mut Link) -> Result<(), PollEnd> {
         let (program, board) = (link.program().to_owned(), *link.board());
-        self.events.send(Event::Connected { program, board, remembered: link.remembered() })?;
+        self.events.send(Event::Connected {
+            program,
+            board,
+            previous_fault: link.previous_fault(),
+        })?;
         link.send(&ToBoard::Stream(Some(self.every)))?;
         link.send(&ToBoard::Get)?;
         let mut pending = None;
@@ -224,7 +230,9 @@ impl PollerThread {
                     }
                     self.events.send(Event::Status(status, link.discarded()))?;
                 }
-                ToHost::Running(running) => self.events.send(Event::Running(running))?,
+                ToHost::ActiveParameters(parameters) => {
+                    self.events.send(Event::ActiveParameters(parameters))?
+                }
                 ToHost::Answer { id, outcome } if pending.as_ref().is_some_and(|p| p.id == id) => {
                     let Some(PendingRequest { request, .. }) = pending.take() else { continue };
                     let answer = link.in_words(outcome, &request.changes())?;
@@ -233,7 +241,7 @@ impl PollerThread {
                 }
                 // Of a greeting that was asked for twice, or of somebody else's question.
                 ToHost::Welcome { .. }
-                | ToHost::Remembered(_)
+                | ToHost::PreviousFault(_)
                 | ToHost::Board(_)
                 | ToHost::Described(_)
                 | ToHost::Answer { .. } => {}

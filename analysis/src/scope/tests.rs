@@ -5,7 +5,7 @@ use firmware::reset::ResetCause;
 use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
+use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -53,11 +53,14 @@ fn take(scope: &mut Scope, event: Event) {
 fn connected() -> Scope {
     let mut scope = Scope::new("COM3".to_owned(), 5.0);
     let fault = Fault::EncoderJump { counts: 900, largest: 100 }.into();
-    let remembered = Some(Remembered { fault, tick: 77, count: 0 });
+    let previous_fault = Some(PreviousFault { fault, tick: 77, count: 0 });
     let program = "damper_wall".to_owned();
-    take(&mut scope, Event::Connected { program, board: BOARD, remembered });
+    take(&mut scope, Event::Connected { program, board: BOARD, previous_fault });
     let values = Changes::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
-    take(&mut scope, Event::Running(Running { sets: 3, margin: Some(0.0015), values }));
+    take(
+        &mut scope,
+        Event::ActiveParameters(ActiveParameters { sets: 3, margin: Some(0.0015), values }),
+    );
     take(&mut scope, Event::Status(STATUS, Discarded::default()));
     let limit = |i| if i % 4 == 0 { LimitReason::Torque } else { LimitReason::None };
     take(&mut scope, Event::Ticks((0..12).map(|i| frame(i, 250, limit(i))).collect()));

@@ -93,23 +93,23 @@ fn trouble(scope: &Scope) -> Line<'static> {
     if let Some(fault) = scope.status.and_then(|(status, _)| status.fault) {
         return Line::from(fault.to_string()).red();
     }
-    match scope.connected.as_ref().and_then(|connected| connected.remembered.as_ref()) {
-        Some(remembered) => Line::from(formatting::remembered(remembered)).yellow(),
+    match scope.connected.as_ref().and_then(|connected| connected.previous_fault.as_ref()) {
+        Some(previous_fault) => Line::from(formatting::previous_fault(previous_fault)).yellow(),
         None => Line::default(),
     }
 }
 
 fn facts_of(scope: &Scope) -> Vec<Line<'static>> {
-    let (Some(connected), Some(running), Some((status, here))) =
-        (&scope.connected, &scope.running, scope.status)
+    let (Some(connected), Some(parameters), Some((status, here))) =
+        (&scope.connected, &scope.parameters, scope.status)
     else {
         return Vec::new();
     };
     let slack = scope.history.last().map(|last| last.slack);
     let energy = formatting::energy(&status, &connected.board);
     vec![
-        Line::from(formatting::numbers(running)),
-        Line::from(formatting::reserves(running, &status, &connected.board, slack)),
+        Line::from(formatting::numbers(parameters)),
+        Line::from(formatting::reserves(parameters, &status, &connected.board, slack)),
         Line::from(format!("{energy}   {}", formatting::limits(scope))),
         Line::from(formatting::losses(&status, here)).dim(),
     ]

@@ -17,7 +17,7 @@ use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Outcome, Refusal, Remembered, Running, Status, ToBoard, ToHost,
+    ActiveParameters, Board, Changes, Outcome, PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use firmware::wire::telemetry::Batch;
 use firmware::wire::{Decoder, Discarded, PROTOCOL, encode};
@@ -129,19 +129,19 @@ fn reads_every_message_to_the_host() {
         energy_step: 0.25,
         longest_gap: 0.036,
     };
-    let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
-    let running = Running { sets: 2, margin: None, values };
+    let remembered = PreviousFault { fault: fault().into(), tick: 300, count: -1 };
+    let running = ActiveParameters { sets: 2, margin: None, values };
     let refused = Outcome::Refused(Refusal::Set(Step::Servo));
     let unarmed = Outcome::Refused(Refusal::Fault(fault().into()));
     let messages = [
         ToHost::Welcome { protocol: PROTOCOL, program: "damper_wall" },
         ToHost::Board(numbers),
-        ToHost::Running(running),
+        ToHost::ActiveParameters(running),
         ToHost::Status(status()),
         ToHost::Answer { id: 65_535, outcome: refused },
         ToHost::Answer { id: 7, outcome: unarmed },
         ToHost::Answer { id: 0, outcome: Outcome::Done },
-        ToHost::Remembered(remembered),
+        ToHost::PreviousFault(remembered),
         ToHost::Telemetry(batch),
         ToHost::Described(description()),
     ];

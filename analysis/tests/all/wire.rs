@@ -363,7 +363,7 @@ fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
         }
     };
     let softer: fn(&Scope) -> bool = |scope| {
-        let running = scope.running.as_ref();
+        let running = scope.parameters.as_ref();
         running.is_some_and(|r| r.values.contains(&(Parameter::Stiffness, 12.5)))
     };
     press("tstiffness = 12.5\n", "stiffness=12.5: done", softer);

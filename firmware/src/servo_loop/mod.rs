@@ -1,7 +1,7 @@
 //! What one interrupt of the servo's timer does, on every board.
 //!
 //! ```text
-//! count -> servo -> code -> converter     in every tick, whatever else is the matter
+//! count -> servo -> code -> DAC           in every tick, whatever else is the matter
 //! disarmed -> fading in -> running -> fading out -> disarmed, or settling -> fading in
 //!     any of them -> faulted -> (armed again) -> fading in
 //! ```
@@ -92,13 +92,13 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A cycle around a rendering, disarmed.
     ///
-    /// `period` is the number of timer counts in a period, and `left` the fault that was left from
+    /// `period` is the number of timer counts in a period, and `previous_fault` the fault from
     /// before the last reset.
     pub fn new(
         rendering: PreparedServo<E, N, M>,
         options: &Options,
         period: u32,
-        left: Option<Fault>,
+        previous_fault: Option<Fault>,
     ) -> Self {
         let link_timeout = match options.link {
             LinkPolicy::Ignore => TimingLimits::LONGEST,
@@ -111,7 +111,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             energy: EnergyMonitor::default(),
             state: State::Disarmed,
             after_fade: AfterFade::Release,
-            fault: left,
+            fault: previous_fault,
             tick: 0,
             period,
             late: MissedUpdates::default(),

@@ -88,7 +88,7 @@ impl Startup for Board {
 
     fn guard(&mut self) {}
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         FaultRecord::NOTHING
     }
 

@@ -251,7 +251,7 @@ fn a_fault_of_the_processor_is_remembered_through_the_reset() {
     debugger.detach().unwrap();
     hand.wait("it has stopped", |output| !output.amplifier);
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
-    let remembered = link.remembered().expect("it remembers").fault.fault();
+    let remembered = link.previous_fault().expect("it remembers").fault.fault();
     assert!(
         matches!(remembered, Some(Fault::HardFault { address: NOWHERE, status }) if status != 0),
         "{remembered:?}"

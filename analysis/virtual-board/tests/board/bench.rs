@@ -11,7 +11,7 @@ use analysis::program::Program;
 use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
 use firmware::dac::DacCode;
 use firmware::wire::message::{
-    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Remembered, Status, ToBoard,
+    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 use virtual_board::board::Event;
@@ -224,16 +224,16 @@ impl Bench {
     }
 
     /// What the board says that stopped it before it was last started.
-    pub fn remembered(&mut self) -> Option<Remembered> {
+    pub fn previous_fault(&mut self) -> Option<PreviousFault> {
         // What comes behind it tells that there is none.
-        let mut remembered = None;
+        let mut previous_fault = None;
         self.say(&ToBoard::Hello);
         for _ in 0..20 {
             self.run(1);
             for message in self.hear() {
                 match message {
-                    Message::Remembered(record) => remembered = Some(record),
-                    Message::Board(_) => return remembered,
+                    Message::PreviousFault(record) => previous_fault = Some(record),
+                    Message::Board(_) => return previous_fault,
                     _ => {}
                 }
             }

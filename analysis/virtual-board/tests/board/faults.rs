@@ -287,8 +287,8 @@ impl Case {
         assert_eq!(status.state, state, "{what}");
         let reset = if self.resets { ResetCause::IndependentWatchdog } else { ResetCause::PowerOn };
         assert_eq!(status.reset, reset, "{what}");
-        let remembered = bench.remembered().and_then(|record| record.fault.fault());
-        assert_eq!(remembered, self.resets.then_some(told), "{what}");
+        let previous_fault = bench.previous_fault().and_then(|record| record.fault.fault());
+        assert_eq!(previous_fault, self.resets.then_some(told), "{what}");
         let log = bench.log();
         let says = |line: &String| line.contains("not armed") && line.contains(told.as_str());
         assert_eq!(log.iter().any(says), self.resets, "{what}: {log:?}");

@@ -149,7 +149,7 @@ fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
             }
             bench.machine.board_mut().system.reset_requested = true;
             bench.run(150);
-            let told = bench.remembered().and_then(|record| record.fault.fault());
+            let told = bench.previous_fault().and_then(|record| record.fault.fault());
             let was_jump = matches!(told, Some(Fault::EncoderJump { counts: 10_000, .. }));
             let state = bench.status().state;
             let expected = (!is_flipped, State::Disarmed);

@@ -6,7 +6,7 @@
 
 use core::hint::black_box;
 
-use super::exit::refuse;
+use super::exit::halt_with;
 use super::log::{Measured, Parts};
 use super::meter::{Scale, measure};
 use super::spread::Spread;
@@ -38,7 +38,7 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
     /// where it cannot be built.
     pub fn new(program: &Program<E>) -> Self {
         let built = Servo::build(&program.scene, &program.transducers);
-        let servo = built.unwrap_or_else(|_| refuse(Step::Servo.as_str()));
+        let servo = built.unwrap_or_else(|_| halt_with(Step::Servo.as_str()));
         let [contact, free, energy_cost, frame_cost] = [Spread::EMPTY; 4];
         let (energy, mode) = (EnergyMonitor::default(), core::marker::PhantomData);
         Self { servo, energy, last: None, contact, free, energy_cost, frame_cost, mode }

@@ -2,7 +2,7 @@
 
 use super::tick_timer::{Period, TickTimer};
 use super::{lines, lockstep};
-use crate::board::retained;
+use crate::board::fault_memory;
 use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
@@ -64,7 +64,7 @@ impl Hardware for Registers {
     fn feed_watchdog(&mut self) {}
 
     fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
-        retained::keep(record);
+        fault_memory::store(record);
     }
 }
 
@@ -76,13 +76,13 @@ impl Startup for Registers {
     /// The emulator has no watchdog.
     fn guard(&mut self) {}
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
-        retained::kept()
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
+        fault_memory::stored()
     }
 
     /// Nothing but its own program resets the emulated board.
     fn reset_cause(&mut self) -> ResetCause {
-        if retained::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
+        if fault_memory::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
     }
 
     fn period(&self) -> u32 {

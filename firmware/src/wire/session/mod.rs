@@ -28,8 +28,8 @@ use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
 use super::message::{
-    Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Running, Status, ToBoard,
-    ToHost,
+    ActiveParameters, Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Status,
+    ToBoard, ToHost,
 };
 use crate::boot::Program;
 use crate::environment::Discretize;
@@ -51,7 +51,7 @@ pub struct BoardInfo {
     /// Cause of the last reset.
     pub reset: ResetCause,
     /// The fault that stopped it before that reset.
-    pub left: Option<FaultRecord>,
+    pub previous_fault: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
 }
@@ -68,7 +68,7 @@ struct Set<E> {
 
 /// The board's end of the wire; `LENGTH` is that of the servo's queue of frames.
 pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
-    facts: BoardInfo,
+    info: BoardInfo,
     program: Program<E>,
     requests: Requests<'a, PreparedServo<E, N, M>>,
     frames: FrameReader<'a, LENGTH>,
@@ -97,12 +97,12 @@ where
     pub fn new(
         program: Program<E>,
         margin: Option<f64>,
-        facts: BoardInfo,
+        info: BoardInfo,
         requests: Requests<'a, PreparedServo<E, N, M>>,
         frames: FrameReader<'a, LENGTH>,
     ) -> Self {
         Self {
-            facts,
+            info,
             requests,
             frames,
             decoder: Decoder::new(),
@@ -209,7 +209,7 @@ where
         } else if let Some(status) = self.replies.status.take() {
             self.outbox.put(&ToHost::Status(self.status(&status)));
         } else if core::mem::take(&mut self.replies.parameters) {
-            self.outbox.put(&ToHost::Running(self.parameters()));
+            self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
         } else if core::mem::take(&mut self.replies.description) {
             self.outbox.put(&ToHost::Described(self.description()));
         }
@@ -222,12 +222,12 @@ where
     }
 
     fn greet(&mut self, part: Greeting) {
-        let message = match (part, self.facts.left) {
+        let message = match (part, self.info.previous_fault) {
             (Greeting::Welcome, _) => {
-                ToHost::Welcome { protocol: PROTOCOL, program: self.facts.name }
+                ToHost::Welcome { protocol: PROTOCOL, program: self.info.name }
             }
-            (Greeting::Remembered, Some(record)) => ToHost::Remembered(record.into()),
-            (Greeting::Remembered, None) => return self.send_reply(),
+            (Greeting::PreviousFault, Some(record)) => ToHost::PreviousFault(record.into()),
+            (Greeting::PreviousFault, None) => return self.send_reply(),
             (Greeting::Board, _) => ToHost::Board(self.board()),
         };
         self.outbox.put(&message);
@@ -257,7 +257,7 @@ where
         let period = self.program.scene.timing.period;
         Board {
             period,
-            timer_counts: self.facts.timer_counts,
+            timer_counts: self.info.timer_counts,
             counts_per_turn: transducers.counts_per_turn,
             full_scale_torque: transducers.full_scale_torque,
             energy_step: transducers.energy_unit(),
@@ -271,11 +271,11 @@ where
         Description { scene, transducers, rendering, format, timing }
     }
 
-    fn parameters(&self) -> Running {
+    fn parameters(&self) -> ActiveParameters {
         let Set { scene, margin } = &self.active;
         let named = |parameter| tuning::get(scene, parameter).map(|value| (parameter, value));
         let values = tuning::parameters(scene).iter().filter_map(named).collect();
-        Running { sets: self.revision, margin: *margin, values }
+        ActiveParameters { sets: self.revision, margin: *margin, values }
     }
 
     fn status(&self, servo: &servo_loop::Status) -> Status {
@@ -293,8 +293,8 @@ where
             dropped: servo.dropped,
             thinned: self.stream.thinned(),
             discarded: self.decoder.discarded(),
-            stack_left: (self.facts.stack_left)(),
-            reset: self.facts.reset,
+            stack_left: (self.info.stack_left)(),
+            reset: self.info.reset,
         }
     }
 }

@@ -110,7 +110,7 @@ impl Host {
         scene: Scene<E>,
         transducers: &Transducers,
     ) -> Result<(), HostClosed> {
-        let Ok(mut servo) = meter::judged_elsewhere::<E, N>(&scene, transducers) else {
+        let Ok(mut servo) = meter::uncertified_servo::<E, N>(&scene, transducers) else {
             return self.answer(&[REFUSED]);
         };
         self.answer(&[READY])?;

@@ -49,19 +49,19 @@ impl<const N: usize> Memory<N> {
     }
 }
 
-/// Keeps these words through resets.
-pub fn keep(words: &[u32; FaultRecord::WORDS]) {
+/// Stores these words through resets.
+pub fn store(words: &[u32; FaultRecord::WORDS]) {
     MEMORY.write(words);
 }
 
-/// The words that were kept, or noise.
-pub fn kept() -> [u32; FaultRecord::WORDS] {
+/// The stored words, or noise.
+pub fn stored() -> [u32; FaultRecord::WORDS] {
     MEMORY.read()
 }
 
-/// Keeps a fault that is met outside of the servo, where nobody knows the tick.
-pub fn keep_fault(fault: Fault) {
-    keep(&FaultRecord { fault, tick: 0, count: 0 }.encode());
+/// Stores a fault that occurs outside of the servo, where the tick is not known.
+pub fn store_fault(fault: Fault) {
+    store(&FaultRecord { fault, tick: 0, count: 0 }.encode());
 }
 
 /// Whether the supply has stayed on since this was last asked, as far as RAM can tell: it forgets once

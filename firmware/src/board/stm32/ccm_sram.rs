@@ -1,4 +1,4 @@
-//! Code in the G4 chips' core-coupled memory.
+//! Code in the G4 chips' core-coupled memory (CCM SRAM).
 //!
 //! At 170 MHz their flash has four wait states. A cache hides them from a loop, but not from an
 //! interrupt that comes after a certificate has been through the cache; in the core-coupled memory

@@ -13,20 +13,20 @@ use crate::dac::DacCode;
 // What the servo computes for is what this board's output is linear over.
 const _: () = assert!(
     DAC_RANGE.codes_each_way() >= DacCode::CODES_TO_FULL_SCALE,
-    "this board's converter saturates within the codes of full scale"
+    "this board's DAC saturates within the codes of full scale"
 );
 
-/// A channel of a converter, written to by one register access.
+/// A channel of the DAC, written to by one register access.
 #[derive(Clone, Copy)]
-pub struct Converter {
-    /// The converter.
+pub struct DacChannel {
+    /// The DAC.
     pub registers: pac::dac::Dac,
     /// Its channel, 0 or 1.
     pub channel: usize,
 }
 
-impl Converter {
-    /// Clocks the converter and lets it drive its pin, at mid-scale from the first moment on: the
+impl DacChannel {
+    /// Clocks the DAC and lets it drive its pin, at mid-scale from the first moment on: the
     /// chips' reset value would be full torque the negative way.
     pub fn connect<C: Channel>(
         self,
@@ -45,7 +45,7 @@ impl Converter {
         core::mem::forget(pin);
     }
 
-    /// Writes a code. It appears at the pacing timer's next update where the converter is latched,
+    /// Writes a code. It appears at the pacing timer's next update where the DAC is latched,
     /// and at once where it is not.
     #[inline(always)]
     pub fn write(self, code: DacCode) {
@@ -61,7 +61,7 @@ impl Converter {
         });
     }
 
-    /// The code that the converter puts out now.
+    /// The code that the DAC puts out now.
     pub fn output(self) -> u16 {
         self.registers.dor(self.channel).read().dor()
     }

@@ -8,14 +8,14 @@ use embassy_stm32::pac;
 /// 3.3 V is on, on every board: with a resistor to ground at its far end, a wire that is broken and
 /// a board without power are off.
 #[derive(Clone, Copy)]
-pub struct Line {
+pub struct OutputPin {
     /// Its port.
     pub port: pac::gpio::Gpio,
     /// Its number in the port, 0 to 15.
     pub pin: usize,
 }
 
-impl Line {
+impl OutputPin {
     /// Switches; one write, which interrupts nothing and can be interrupted by anything.
     #[inline(always)]
     pub fn set(self, on: bool) {
