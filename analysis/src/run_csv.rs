@@ -6,7 +6,7 @@ use std::path::Path;
 use thiserror::Error;
 
 use crate::simulation::tick_status::TickStatus;
-use crate::table::{Column, Place, Row, Table, TableError};
+use crate::table::{Column, FoundColumn, Row, Table, TableError};
 use crate::trace::{TimeUnit, Trace};
 
 /// Why a recorded run cannot be read.
@@ -85,7 +85,7 @@ fn read<R: Read>(mut table: Table<R>, period: Option<f64>) -> Result<Trace, RunC
     Ok(trace)
 }
 
-fn status(row: &Row<'_>, limit: Place) -> Result<TickStatus, TableError> {
+fn status(row: &Row<'_>, limit: FoundColumn) -> Result<TickStatus, TableError> {
     TickStatus::parse(row.text(limit)).ok_or_else(|| {
         let words: Vec<_> = TickStatus::all().map(TickStatus::as_str).collect();
         row.bad(limit, &format!("one of {}", words.join(", ")))

@@ -1,5 +1,5 @@
-//! What a search needs to know about an accepted scene, in the loop's units, and what its
-//! certificate allows.
+//! An accepted scene in the loop's units, as a search needs it, and the energy that its certificate
+//! allows.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,11 +14,11 @@ use firmware::servo_loop::READ_WITHIN;
 use rand::Rng;
 
 use crate::norm::Errors;
-use crate::scenes::Drawn;
+use crate::scenes::RandomScene;
 
 /// An accepted scene as numbers, in the loop's units: see [`crate::device`].
 #[derive(Clone, Copy, Debug)]
-pub struct Subject {
+pub struct NormalizedScene {
     /// Damping of the simulated device.
     pub damping: f64,
     /// Updates that may be missed in a row.
@@ -87,11 +87,11 @@ pub fn declared(scene: &Scene) -> f64 {
 /// An angle a sample below which nothing happens in the time that there is.
 const SLOWEST: f64 = 0.1;
 
-impl Subject {
+impl NormalizedScene {
     /// Of a drawn scene and its other one, which were both accepted. `None` where no bound is
     /// known on what encoder, numbers and converter do to the torque.
-    pub fn of(drawn: &Drawn, assessments: &[Assessment], format: Format) -> Option<Self> {
-        let Drawn { scene, transducers, .. } = drawn;
+    pub fn of(drawn: &RandomScene, assessments: &[Assessment], format: Format) -> Option<Self> {
+        let RandomScene { scene, transducers, .. } = drawn;
         let declared = declared(scene);
         let unit = declared / scene.timing.period;
         let steps = Resolution::of(transducers, None);

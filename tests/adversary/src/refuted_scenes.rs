@@ -1,12 +1,12 @@
-//! Scenes that shook although they had been certified once: each was accepted by a rule that was
-//! wrong, and shows what it was wrong about.
+//! Scenes that oscillated although they had been certified once: each was accepted by a rule that was
+//! wrong, and shows the rule's error.
 
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 
 /// One of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Shaking {
+pub struct RefutedScene {
     /// What it was accepted in spite of.
     pub name: &'static str,
     /// The scene.
@@ -42,10 +42,10 @@ fn rational(numerator: &[f64], denominator: &[f64]) -> Environment {
 }
 
 /// All of them.
-pub fn all() -> Vec<Shaking> {
+pub fn all() -> Vec<RefutedScene> {
     let damper = |k, b, n| Environment::DamperWall(wall(k, b, n));
-    let shaking = |name, scene| Shaking { name, scene, judged_as: None };
-    let hidden = |name, numerator: &[f64], denominator: &[f64]| Shaking {
+    let refuted = |name, scene| RefutedScene { name, scene, judged_as: None };
+    let hidden = |name, numerator: &[f64], denominator: &[f64]| RefutedScene {
         name,
         scene: scene(44.0, rational(numerator, denominator)),
         judged_as: Some(scene(44.0, rational(&[3.0], &[1.0]))),
@@ -57,11 +57,11 @@ pub fn all() -> Vec<Shaking> {
     vec![
         hidden("hidden (z + 1)^8", &eight.map(|c| 3.0 * c), &eight),
         hidden("hidden (z + 1)^4", &four.map(|c| 3.0 * c), &four),
-        shaking(
+        refuted(
             "missed updates on a latched board",
             Scene { timing: twice, torque_limit: Some(10.0), ..scene(22.0, damper(17.6, 0.0, 1)) },
         ),
-        shaking(
+        refuted(
             "a fade that locks a stable environment",
             scene(
                 15.18928491811924,
@@ -71,13 +71,13 @@ pub fn all() -> Vec<Shaking> {
                 ),
             ),
         ),
-        shaking(
+        refuted(
             "a fade that locks an unstable environment",
             scene(4.4, rational(&[2.42, 0.0], &[1.0, -1.05])),
         ),
-        shaking("half of the damping to spare", scene(44.0, damper(22.0, 0.0, 1))),
-        shaking("more than all of the damping to spare", scene(44.0, damper(1000.0, 0.0, 0))),
-        shaking(
+        refuted("half of the damping to spare", scene(44.0, damper(22.0, 0.0, 1))),
+        refuted("more than all of the damping to spare", scene(44.0, damper(1000.0, 0.0, 0))),
+        refuted(
             "more passivity than a rigid device has damping",
             Scene {
                 device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.22) },
