@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::controller::Controller;
 use crate::device::Energy;
-use crate::emulator::{Emulator, EmulatorError, Report, Stats};
+use crate::emulator::{Emulator, EmulatorError, EmulatorReport, Stats};
 use crate::hand::HandTrajectory;
 use crate::lockstep::{NoRemote, PlantIo, Recording, RemoteServo, Run, SimulatedDevice, run};
 use crate::simulation::tick_status::TickStatus;
@@ -44,9 +44,9 @@ pub enum Backend<'a> {
 #[derive(Clone, Debug)]
 pub enum BoardMeasurement {
     /// The emulated one.
-    Emulated(Box<Report>),
+    Emulated(Box<EmulatorReport>),
     /// A virtual one.
-    Virtual(virtual_board::Report),
+    Virtual(virtual_board::VirtualBoardReport),
 }
 
 impl BoardMeasurement {
@@ -82,7 +82,7 @@ pub struct RunOutcome {
 
 impl RunOutcome {
     /// What the emulated board measured, if that took part.
-    pub fn emulated(self) -> Option<Report> {
+    pub fn emulated(self) -> Option<EmulatorReport> {
         match self.board {
             Some(BoardMeasurement::Emulated(report)) => Some(*report),
             Some(BoardMeasurement::Virtual(_)) | None => None,

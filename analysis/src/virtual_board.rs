@@ -70,7 +70,7 @@ impl Sample {
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct VirtualBoardReport {
     /// Instructions from reading the count to writing the code.
     pub compute: Stats,
     /// Instructions of the servo's whole interrupt.
@@ -169,7 +169,7 @@ impl VirtualBoard {
     ///
     /// # Errors
     /// Where it has stopped before.
-    pub fn finish(mut self) -> Result<Report, VirtualBoardError> {
+    pub fn finish(mut self) -> Result<VirtualBoardReport, VirtualBoardError> {
         self.end().map_err(|error| self.stopped(&error))
     }
 
@@ -193,7 +193,7 @@ impl VirtualBoard {
         input.flush()
     }
 
-    fn end(&mut self) -> io::Result<Report> {
+    fn end(&mut self) -> io::Result<VirtualBoardReport> {
         self.input = None;
         while self.bytes::<1>()? != [END] {
             // A sample that nobody has asked for: behind its mark, code and amplifier.
@@ -206,7 +206,7 @@ impl VirtualBoard {
         let resets = u32::from_le_bytes(self.bytes()?);
         let mut log = Vec::new();
         self.output.read_to_end(&mut log)?;
-        Ok(Report { compute, interrupt, resets, log: self.decoder.decode(&log) })
+        Ok(VirtualBoardReport { compute, interrupt, resets, log: self.decoder.decode(&log) })
     }
 
     fn stats(&mut self) -> io::Result<Stats> {

@@ -22,9 +22,9 @@ use crate::tuning::{self, Prepared, Tunable};
 /// What a board has besides, before its servo runs.
 pub trait Startup: Hardware {
     /// Sets the encoder's counter to zero: where the device is now is its zero.
-    fn zero(&mut self);
+    fn zero_encoder(&mut self);
     /// Starts the watchdog. From here on only the servo feeds it.
-    fn guard(&mut self);
+    fn start_watchdog(&mut self);
     /// The words that outlived the reset; see [`FaultRecord`].
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS];
     /// Why the board was last reset. To be asked once: the chip forgets it then.
@@ -116,12 +116,12 @@ where
     let scene = black_box(program.scene);
     let Prepared { rendering, margin, .. } =
         tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
-    hardware.zero();
+    hardware.zero_encoder();
     let reset = hardware.reset_cause();
     let previous_fault = read_previous_fault(hardware, reset);
     let fault = previous_fault.map(|previous_fault| previous_fault.fault);
     let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
-    hardware.guard();
+    hardware.start_watchdog();
     let arms_because = reason_to_arm(&program.options, reset, previous_fault);
     if arms_because.is_some() {
         requests.arm();

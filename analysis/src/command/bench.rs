@@ -13,7 +13,7 @@ use firmware::scene::{Coupling, Scene};
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
 use crate::compare_run::{Backend, Input, run_with_backend};
-use crate::emulator::Report;
+use crate::emulator::EmulatorReport;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
@@ -235,7 +235,7 @@ fn on_target(
 
 /// The servo's interrupt and its parts. The parts are measured by themselves, outside of the
 /// interrupt, where the compiler can share less between them.
-fn interrupt(name: &str, board: &Report, has_budget: bool, figures: &mut Vec<Figure>) {
+fn interrupt(name: &str, board: &EmulatorReport, has_budget: bool, figures: &mut Vec<Figure>) {
     let budget = has_budget.then_some(INTERRUPT_BUDGET);
     let whole = board.interrupt_instructions.max as f64;
     let mut add = |what: &str, value: f64, against: Option<f64>, source| {

@@ -9,7 +9,7 @@ use super::status::{CommandError, CommandStatus};
 use crate::batch;
 use crate::quantity::significant;
 use crate::terminal;
-use crate::verdict::{Enclosure, Report, Verdict};
+use crate::verdict::{Enclosure, Verdict, VerdictReport};
 
 /// Arguments of `haptic certify`.
 #[derive(Debug, Args)]
@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 const VALUES: usize = 19;
 
 /// The report for a person.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &VerdictReport) -> String {
     let mut rows = vec![
         ("scene", report.name.clone()),
         ("verdict", format!("{:?}", report.verdict).to_uppercase()),

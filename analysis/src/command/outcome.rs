@@ -5,7 +5,7 @@ use firmware::dac::DacCode;
 use crate::compare_run::RunOutcome;
 use crate::program::Program;
 use crate::quantity::significant;
-use crate::verdict::Report;
+use crate::verdict::VerdictReport;
 
 /// What a run gave, for a person.
 pub fn text(outcome: &RunOutcome) -> String {
@@ -37,7 +37,7 @@ pub fn text(outcome: &RunOutcome) -> String {
 }
 
 /// What is shown of a scene that ran on a board: its verdict, and what it did.
-pub fn section(program: &Program, report: &Report, outcome: &RunOutcome) -> String {
+pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) -> String {
     let damping = |value: Option<f64>| {
         value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
     };

@@ -25,7 +25,7 @@ use crate::hand::HandTrajectory;
 use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
-use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
+use crate::toolchain::{self, Board, NumberFormat, Tools, UnknownBoard};
 use crate::{counts_csv, lockstep, verdict};
 
 /// Where a scene runs.
@@ -44,25 +44,25 @@ const BOARD: &str = "board:";
 
 /// There is no such target.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoTarget {
+pub enum UnknownTarget {
     /// Neither of the words.
     #[error("there is no target {0}; there are host, qemu and board:NAME, as board:nucleo-g474re")]
     Word(String),
     /// No such board.
     #[error(transparent)]
-    Board(#[from] NoBoard),
+    Board(#[from] UnknownBoard),
 }
 
 impl FromStr for Target {
-    type Err = NoTarget;
+    type Err = UnknownTarget;
 
-    fn from_str(text: &str) -> Result<Self, NoTarget> {
+    fn from_str(text: &str) -> Result<Self, UnknownTarget> {
         match text {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
             _ => match text.strip_prefix(BOARD) {
                 Some(name) => Ok(Self::Board(Board::find(name)?)),
-                None => Err(NoTarget::Word(text.into())),
+                None => Err(UnknownTarget::Word(text.into())),
             },
         }
     }

@@ -13,7 +13,7 @@ use crate::file::{self, Purpose, SceneFile};
 use crate::number;
 use crate::simulation::Integration;
 use crate::simulation::method::Method;
-use crate::verdict::{Report, judge_in};
+use crate::verdict::{VerdictReport, judge_in};
 
 /// The scene that a command is about.
 #[derive(Debug, Args)]
@@ -75,7 +75,7 @@ pub struct CoefficientFormat {
 
 impl CoefficientFormat {
     /// The verdict on a file's scene.
-    pub fn judge(&self, file: &SceneFile) -> Result<Report, CommandError> {
+    pub fn judge(&self, file: &SceneFile) -> Result<VerdictReport, CommandError> {
         number::fits(&file.scene, self.format)?;
         Ok(judge_in(&file.name, &file.scene, self.format, &file.steps()))
     }

@@ -189,7 +189,7 @@ pub enum CommandError {
     },
     /// The date of a page is none.
     #[error(transparent)]
-    Date(#[from] crate::date::NoDate),
+    Date(#[from] crate::date::InvalidDate),
     /// A page's file must be called one.
     #[error("{path}: the name of a page must end in .html")]
     NoPage {
@@ -237,7 +237,7 @@ pub enum CommandError {
     },
     /// A parameter was given two values.
     #[error(transparent)]
-    Twice(#[from] crate::link::change::Twice),
+    DuplicateParameter(#[from] crate::link::change::DuplicateParameter),
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),

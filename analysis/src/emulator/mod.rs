@@ -28,7 +28,7 @@ use tempfile::TempDir;
 
 pub use bench_client::BenchClient;
 pub use certify_client::CertifyClient;
-pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+pub use report::{Calibration, CertificateBits, EmulatorReport, ReportError, Stats};
 pub use servo_client::ServoClient;
 pub use transport::Transport;
 
@@ -129,7 +129,7 @@ pub enum EmulatorError {
     NoBenchProgram,
     /// The log does not say what a report needs.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    EmulatorReport(#[from] ReportError),
 }
 
 impl Emulator {
@@ -234,8 +234,8 @@ impl Emulator {
     ///
     /// # Errors
     /// Where the board does not end, ends with a failure, or its log is not understood.
-    pub fn finish(self) -> Result<Report, EmulatorError> {
-        Ok(Report::read(self.guest.finish()?)?)
+    pub fn finish(self) -> Result<EmulatorReport, EmulatorError> {
+        Ok(EmulatorReport::read(self.guest.finish()?)?)
     }
 
     /// Ends a program that has no scene to report of, and gives its log.

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// What a run on the emulated board measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct EmulatorReport {
     /// Ticks that the servo ran, those apart in which it was armed or swapped its set.
     pub ticks: u64,
     /// Frames that the log missed because its queue was full.
@@ -90,7 +90,7 @@ pub struct ReportError {
     pub log: String,
 }
 
-impl Report {
+impl EmulatorReport {
     /// Reads the log of a run.
     pub(super) fn read(log: Vec<String>) -> Result<Self, ReportError> {
         let lines = Lines::of(&log);
@@ -211,7 +211,7 @@ info spread=interrupt count=2 min=100 max=102 sum=202";
 
     #[test]
     fn a_log_becomes_a_report() {
-        let report = Report::read(log()).unwrap();
+        let report = EmulatorReport::read(log()).unwrap();
         assert_eq!(report.calibration, Calibration { per_instruction: 32, overhead: 7 });
         assert_eq!((report.ticks, report.dropped, report.overruns), (4, 1, 2));
         assert_eq!(report.certify_instructions, 100);
@@ -226,13 +226,13 @@ info spread=interrupt count=2 min=100 max=102 sum=202";
     #[test]
     fn a_log_that_lacks_a_line_says_which() {
         let log: Vec<_> = log().into_iter().filter(|line| !line.contains("ticks=")).collect();
-        let error = Report::read(log).unwrap_err();
+        let error = EmulatorReport::read(log).unwrap_err();
         assert_eq!((error.line.as_str(), error.key.as_str()), ("ticks", "ticks"));
     }
 
     #[test]
     fn a_calibration_of_zero_is_no_calibration() {
         let log = vec!["info per_instruction=0 overhead=0".to_owned()];
-        assert!(Report::read(log).is_err());
+        assert!(EmulatorReport::read(log).is_err());
     }
 }

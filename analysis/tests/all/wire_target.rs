@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::common::{answer, haptic};
-use analysis::emulator::{Emulator, Report};
+use analysis::emulator::{Emulator, EmulatorReport};
 use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
@@ -41,7 +41,7 @@ struct Seen {
 struct Board {
     seen: Arc<Mutex<Seen>>,
     over: Arc<AtomicBool>,
-    world: Option<JoinHandle<Report>>,
+    world: Option<JoinHandle<EmulatorReport>>,
     socket: PathBuf,
 }
 
@@ -126,14 +126,14 @@ impl Board {
     }
 
     /// Ends the board; gives what it says of itself.
-    fn end(mut self) -> Report {
+    fn end(mut self) -> EmulatorReport {
         self.over.store(true, Ordering::Relaxed);
         self.world.take().unwrap().join().unwrap()
     }
 }
 
 /// A world in which the device is held still.
-fn hold(mut emulator: Emulator, seen: &Mutex<Seen>, over: &AtomicBool) -> Report {
+fn hold(mut emulator: Emulator, seen: &Mutex<Seen>, over: &AtomicBool) -> EmulatorReport {
     while !over.load(Ordering::Relaxed) {
         let output = emulator.tick(TickInput { count: DEPTH, missed: 0 }).unwrap();
         let mut seen = seen.lock().unwrap();

@@ -18,7 +18,7 @@ use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::dac::DacChannel;
 use super::stm32::output_pin::OutputPin;
-use super::stm32::{Connected, clock_170, quadrature, serial};
+use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
@@ -60,7 +60,7 @@ pub fn clocks() -> Config {
 }
 
 /// Gives each pin its purpose; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> Connected {
+pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
@@ -80,7 +80,7 @@ pub fn connect_pins(chip: Peripherals) -> Connected {
         Timer::new(chip.TIM6),
     ));
     DAC.connect(chip.DAC1, chip.PA4);
-    Connected {
+    BoardPeripherals {
         // The virtual serial port of the debug probe that the board comes with; without the probe,
         // the pads TX and RX of J3.
         serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),

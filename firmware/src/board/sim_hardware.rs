@@ -58,9 +58,9 @@ impl<L: SimIo> Hardware for SimHardware<L> {
 }
 
 impl<L: SimIo> Startup for SimHardware<L> {
-    fn zero(&mut self) {}
+    fn zero_encoder(&mut self) {}
 
-    fn guard(&mut self) {}
+    fn start_watchdog(&mut self) {}
 
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         FaultRecord::NOTHING

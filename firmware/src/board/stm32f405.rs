@@ -21,7 +21,7 @@ use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
 use super::stm32::dac::DacChannel;
 use super::stm32::output_pin::OutputPin;
-use super::stm32::{Connected, quadrature, serial};
+use super::stm32::{BoardPeripherals, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
@@ -75,7 +75,7 @@ pub fn clocks() -> Config {
 }
 
 /// Gives each pin its purpose; the amplifier is off.
-pub fn connect_pins(chip: Peripherals) -> Connected {
+pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
@@ -90,7 +90,7 @@ pub fn connect_pins(chip: Peripherals) -> Connected {
         Timer::new(chip.TIM6),
     ));
     DAC.connect(chip.DAC1, chip.PA4);
-    Connected {
+    BoardPeripherals {
         // TX and RX of the communication header.
         serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
     }

@@ -54,7 +54,7 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
     let mut hardware = Registers::new(period(SCENE.timing.period));
-    hardware.zero();
+    hardware.zero_encoder();
     start_timer(&mut hardware);
     hardware
 }

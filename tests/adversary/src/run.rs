@@ -246,7 +246,7 @@ where
         let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
         board.angle = plan.zero;
-        firmware::boot::Startup::zero(&mut board);
+        firmware::boot::Startup::zero_encoder(&mut board);
         if plan.armed_by_boot {
             requests.arm();
         }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, Report};
+use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::studies::arithmetic::{Motion, cost};
 use analysis::studies::bench::live::live_set;
 use analysis::studies::tradeoff::{servo, sine};
@@ -87,7 +87,7 @@ fn run<E, N>(
     format: NumberFormat,
     certified: &Certified<Scene<E>>,
     transducers: &Transducers,
-) -> Report
+) -> EmulatorReport
 where
     E: Tunable<N>,
     N: Number,
@@ -115,7 +115,7 @@ fn bits(index: Option<Interval>) -> IntervalBits {
 }
 
 /// What holds for every run.
-fn check<E>(report: &Report, certified: &Certified<Scene<E>>) {
+fn check<E>(report: &EmulatorReport, certified: &Certified<Scene<E>>) {
     assert_eq!((report.ticks, report.dropped, report.overruns), (TICKS as u64, 0, 0));
     assert_eq!(report.calibration.per_instruction, 32, "the emulator counts 32 ns an instruction");
     assert_eq!(report.compute_instructions.count, TICKS as u64);

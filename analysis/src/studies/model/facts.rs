@@ -11,7 +11,7 @@ use crate::file::SceneFile;
 use crate::simulation::{Experiment, Integration, SimulationError, Trajectory, simulate};
 use crate::stability;
 use crate::studies::bench::median;
-use crate::verdict::{self, Report};
+use crate::verdict::{self, VerdictReport};
 
 /// What a model says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,7 +59,7 @@ impl Facts {
 
 /// The certificate of the scene on the model's device, if that has any passivity: its own, or what
 /// the file declares where that is less.
-fn certificate(model: Model, file: &SceneFile) -> Option<Report> {
+fn certificate(model: Model, file: &SceneFile) -> Option<VerdictReport> {
     let mut device = model.chain(file).as_rigid().ok()?;
     if let Some(declared) = declared(file) {
         device.passivity = Some(device.passivity.unwrap_or(device.damping).min(declared));

@@ -73,7 +73,7 @@ pub(super) unsafe fn open() -> Result<(), NoHost> {
 }
 
 /// Where the device is at the next tick is the encoder's zero.
-pub(super) fn zero() {
+pub(super) fn zero_count() {
     ZEROING.store(true, Ordering::Relaxed);
 }
 

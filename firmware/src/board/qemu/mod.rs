@@ -9,6 +9,8 @@
 //! F405 needs never returns there.
 
 mod exit;
+#[cfg(feature = "log")]
+mod instruction_stats;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -19,8 +21,6 @@ pub mod meter;
 mod parts;
 pub mod registers;
 pub mod serial;
-#[cfg(feature = "log")]
-mod spread;
 mod start;
 pub(super) mod stop;
 mod sweep;

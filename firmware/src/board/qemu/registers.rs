@@ -69,12 +69,12 @@ impl Hardware for Registers {
 }
 
 impl Startup for Registers {
-    fn zero(&mut self) {
-        lockstep::zero();
+    fn zero_encoder(&mut self) {
+        lockstep::zero_count();
     }
 
     /// The emulator has no watchdog.
-    fn guard(&mut self) {}
+    fn start_watchdog(&mut self) {}
 
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         fault_memory::stored()

@@ -78,7 +78,7 @@ where
     #[cfg(not(feature = "log"))]
     let _ = compiler;
     let link = prepare(name, program, period, statics);
-    connect();
+    open_pipes();
     tick_timer::start(timer, period);
     // Does not sleep: with WFI the emulator's time runs on by two periods of SysTick at a time.
     loop {
@@ -156,7 +156,7 @@ pub(super) fn period(seconds: f64) -> Period {
 }
 
 /// Opens the pipes to the host. The interrupt that uses them must not be enabled yet.
-pub(super) fn connect() {
+pub(super) fn open_pipes() {
     // SAFETY: called before the pacing starts.
     if unsafe { lockstep::open() }.is_err() {
         halt_with("no host holds the pipes");

@@ -1,6 +1,6 @@
 //! From reset to a measurement: the same codes as on the host, one a tick, from the first tick on.
 
-use super::start::{connect, period, start_timer};
+use super::start::{open_pipes, period, start_timer};
 use super::{lines, tick_timer};
 use crate::board::isr_cell::IsrCell;
 use crate::excitation::{Exciter, Sweep};
@@ -23,7 +23,7 @@ pub fn measure<const N: usize>(sweep: &'static Sweep<N>, cell: &'static SweepCel
     let period = period(sweep.period());
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { cell.init(Exciter::new(sweep)) };
-    connect();
+    open_pipes();
     lines::amplifier(true);
     tick_timer::start(timer, period);
     loop {

@@ -46,7 +46,7 @@ pub use sweep::{Setup, SweepCell, measure};
 pub type Mode = crate::servo::Latched;
 
 /// What a board gives besides its registers.
-pub struct Connected {
+pub struct BoardPeripherals {
     /// The port to the host.
     pub serial: serial::Serial,
 }

@@ -71,11 +71,11 @@ impl Hardware for Registers {
 }
 
 impl Startup for Registers {
-    fn zero(&mut self) {
+    fn zero_encoder(&mut self) {
         ENCODER.zero();
     }
 
-    fn guard(&mut self) {
+    fn start_watchdog(&mut self) {
         // While the core is halted the DAC holds its last code: what takes that away shall not
         // be halted with it.
         family::keep_watchdog_running();

@@ -14,7 +14,7 @@ use super::serial::Serial;
 use super::stop::stop;
 use super::tick_timer::Period;
 use super::wiring::{self, DAC, ENCODER};
-use super::{Connected, Mode, family};
+use super::{BoardPeripherals, Mode, family};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
@@ -177,7 +177,7 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
 }
 
 /// Clocks, interrupts and pins. The amplifier is off and the DAC at mid-scale.
-pub fn init_chip(filter: InputFilter) -> Connected {
+pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
     family::cache();
     // From here on a crystal that stops is a fault, and not a core that stands still.

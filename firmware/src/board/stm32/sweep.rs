@@ -150,12 +150,12 @@ pub fn measure<const N: usize>(
 ) -> ! {
     let mut serial = init_chip(setup.filter).serial;
     let mut hardware = Registers::new(period(sweep.period()));
-    hardware.zero();
+    hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
-    hardware.guard();
+    hardware.start_watchdog();
     start_timer(&mut hardware);
     let player = SweepIsr {
         beginning: exciter.clone(),

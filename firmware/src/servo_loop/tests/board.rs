@@ -87,11 +87,11 @@ impl Hardware for Board {
 }
 
 impl Startup for Board {
-    fn zero(&mut self) {
+    fn zero_encoder(&mut self) {
         self.events.push(Event::Zero);
         self.count = 0;
     }
-    fn guard(&mut self) {
+    fn start_watchdog(&mut self) {
         self.events.push(Event::Guard);
     }
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
@@ -166,7 +166,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
 
     /// The status, a tick later.
     pub fn status(&mut self) -> Status {
-        self.requests.ask_status();
+        self.requests.request_status();
         self.tick(self.board.count);
         let status = self.notices().into_iter().rev().find_map(|notice| match notice {
             Notice::Status(status) => Some(status),

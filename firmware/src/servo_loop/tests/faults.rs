@@ -208,7 +208,7 @@ fn with_link(link: LinkPolicy) -> Program<Spring> {
 fn a_host_that_falls_silent_lets_the_device_go() {
     let mut bench = running(&with_link(LinkPolicy::Release), 500);
     for _ in 0..10 {
-        bench.requests.heard();
+        bench.requests.host_alive();
         bench.stand(500, 199);
         assert_eq!(bench.servo_loop.state(), State::Running);
     }
@@ -228,7 +228,7 @@ fn a_host_that_falls_silent_lets_the_device_go() {
     bench.requests.arm();
     bench.tick(500);
     assert!(matches!(bench.notices()[..], [Notice::NotArmed(Fault::LinkLost { .. })]));
-    bench.requests.heard();
+    bench.requests.host_alive();
     assert_armed_again(&mut bench);
 }
 
@@ -239,7 +239,7 @@ fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
         bench.stand(500, 500);
         assert_eq!(bench.servo_loop.state(), State::Running);
         assert_eq!(bench.status().link_lost, lost);
-        bench.requests.heard();
+        bench.requests.host_alive();
         assert!(!bench.status().link_lost);
     }
 }

@@ -121,7 +121,7 @@ where
     pub fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(message) = self.decoder.push(byte) {
-                self.requests.heard();
+                self.requests.host_alive();
                 self.on_message(message);
             }
         }
@@ -163,7 +163,7 @@ where
             ToBoard::Hello => self.replies.greet(),
             ToBoard::Get => self.replies.parameters = true,
             ToBoard::Describe => self.replies.description = true,
-            ToBoard::Status => self.requests.ask_status(),
+            ToBoard::Status => self.requests.request_status(),
             ToBoard::Stream(every) => self.stream.set(every),
             ToBoard::Arm { id } => {
                 if self.replies.arm(id) {

@@ -2,14 +2,14 @@
 
 /// Smallest, largest and sum of a number of instructions.
 #[derive(Clone, Copy)]
-pub struct Spread {
+pub struct InstructionStats {
     count: u32,
     min: u32,
     max: u32,
     sum: u64,
 }
 
-impl Spread {
+impl InstructionStats {
     /// Of nothing.
     pub const EMPTY: Self = Self { count: 0, min: u32::MAX, max: 0, sum: 0 };
 
