@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::controller::Controller;
 use crate::device::Energy;
-use crate::emulator::{Emulator, EmulatorError, EmulatorReport, Stats};
+use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
 use crate::hand::HandTrajectory;
 use crate::lockstep::{NoRemote, PlantIo, Recording, RemoteServo, Run, SimulatedDevice, run};
 use crate::simulation::tick_status::TickStatus;
@@ -51,7 +51,7 @@ pub enum BoardMeasurement {
 
 impl BoardMeasurement {
     /// Instructions from count to code.
-    pub fn compute(&self) -> &Stats {
+    pub fn compute(&self) -> &InstructionStats {
         match self {
             Self::Emulated(report) => &report.compute_instructions,
             Self::Virtual(report) => &report.compute,
@@ -59,7 +59,7 @@ impl BoardMeasurement {
     }
 
     /// Instructions of the servo's whole interrupt.
-    pub fn interrupt(&self) -> &Stats {
+    pub fn interrupt(&self) -> &InstructionStats {
         match self {
             Self::Emulated(report) => &report.interrupt_instructions,
             Self::Virtual(report) => &report.interrupt,

@@ -13,7 +13,7 @@ use firmware::servo::RenderingOptions;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{encode, largest_frame};
 
-use crate::emulator::Stats;
+use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
 use crate::lockstep::RemoteServo;
 use crate::toolchain::Board;
@@ -72,9 +72,9 @@ impl Sample {
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualBoardReport {
     /// Instructions from reading the count to writing the code.
-    pub compute: Stats,
+    pub compute: InstructionStats,
     /// Instructions of the servo's whole interrupt.
-    pub interrupt: Stats,
+    pub interrupt: InstructionStats,
     /// Times that the board was reset.
     pub resets: u32,
     /// Lines of the log.
@@ -209,11 +209,11 @@ impl VirtualBoard {
         Ok(VirtualBoardReport { compute, interrupt, resets, log: self.decoder.decode(&log) })
     }
 
-    fn stats(&mut self) -> io::Result<Stats> {
+    fn stats(&mut self) -> io::Result<InstructionStats> {
         let mut number = || self.bytes().map(u64::from_le_bytes);
         let (count, min, max, sum) = (number()?, number()?, number()?, number()?);
         // A mean over nothing is none, and its neighbours say so.
-        Ok(Stats { count, min, max, mean: sum as f64 / count as f64 })
+        Ok(InstructionStats { count, min, max, mean: sum as f64 / count as f64 })
     }
 
     fn bytes<const N: usize>(&mut self) -> io::Result<[u8; N]> {

@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn every_reason_has_a_ground_of_its_own() {
+    fn every_reason_has_a_fill_of_its_own() {
         let fills: Vec<_> = TickStatus::all().filter_map(Fill::of).collect();
         assert_eq!(fills.len(), TickStatus::all().count() - 1);
         for (index, fill) in fills.iter().enumerate() {

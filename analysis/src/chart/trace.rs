@@ -84,7 +84,7 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
             above.draw(&Text::new(line.clone(), place, anchored(HPos::Center, VPos::Center)))?;
         }
         let (_, grounds) = above.split_vertically(units(LINE * words.len() as i32));
-        write_grounds(&grounds, &reasons)?;
+        write_fill_legend(&grounds, &reasons)?;
         let (first, area) = area.split_vertically(units(PANELS[0]));
         let (second, area) = area.split_vertically(units(PANELS[1]));
         let (third, signs) = area.split_vertically(units(PANELS[2]));
@@ -248,7 +248,7 @@ fn wrapped(words: &[String]) -> Vec<String> {
 }
 
 /// The legend of the torque's fills, side by side.
-fn write_grounds(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
+fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
     const SWATCH: i32 = 30;
     const GAP: i32 = 8;
     // About as wide as letters are.
@@ -409,7 +409,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_of_one_reason_are_one_ground_and_none_is_lost() {
+    fn samples_of_one_reason_are_one_fill_and_none_is_lost() {
         let [ran, missed] = [TickStatus::UNLIMITED, TickStatus::Missed];
         let limit = [ran, missed, missed, ran, missed, ran, ran, ran, missed];
         let wide = runs(&limit, 0, missed, |sample| units(10 * sample as i32));

@@ -55,9 +55,9 @@ impl BenchClient {
         let last = block.last().copied().unwrap_or_default();
         let inputs: [[u8; 4]; BLOCK] =
             std::array::from_fn(|i| block.get(i).copied().unwrap_or(last).to_le_bytes());
-        let question = [&[1], inputs.as_flattened()].concat();
+        let request = [&[1], inputs.as_flattened()].concat();
         let mut answer = [[0; Output::BYTES]; BLOCK];
-        self.guest.exchange(&question, answer.as_flattened_mut())?;
+        self.guest.exchange(&request, answer.as_flattened_mut())?;
         Ok(answer.map(Output::from_bytes))
     }
 

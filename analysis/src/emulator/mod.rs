@@ -28,7 +28,7 @@ use tempfile::TempDir;
 
 pub use bench_client::BenchClient;
 pub use certify_client::CertifyClient;
-pub use report::{Calibration, CertificateBits, EmulatorReport, ReportError, Stats};
+pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats, ReportError};
 pub use servo_client::ServoClient;
 pub use transport::Transport;
 
@@ -173,14 +173,14 @@ impl Emulator {
     pub fn tick(&mut self, input: TickInput) -> Result<TickOutput, EmulatorError> {
         // Never 0, which a board has before the first input.
         self.number = self.number.checked_add(1).unwrap_or(1);
-        let mut question = &input.to_bytes(self.number)[..];
+        let mut request = &input.to_bytes(self.number)[..];
         loop {
             let mut answer = [0; TickOutput::BYTES];
-            self.guest.exchange(question, &mut answer)?;
+            self.guest.exchange(request, &mut answer)?;
             match TickOutput::from_bytes(answer) {
                 Some((output, number)) if number == self.number => return Ok(output),
                 // A board that faulted shows it again.
-                Some(_) => question = &[],
+                Some(_) => request = &[],
                 None => return Err(EmulatorError::NoReply),
             }
         }
@@ -280,12 +280,12 @@ impl Guest {
     }
 
     /// Gives bytes to the board and waits until it has filled `answer`.
-    fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
+    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
         const WHAT: &str = "in the middle of a run";
         let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
         let process = &mut self.process;
         let mut ended = || process.try_wait().map(|status| status.is_some());
-        match pipes.exchange(question, answer, self.timeout, &mut ended) {
+        match pipes.exchange(request, answer, self.timeout, &mut ended) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => Err(self.silent(WHAT)),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Err(self.ended(WHAT)),

@@ -149,7 +149,7 @@ impl Recording {
     ///
     /// # Errors
     /// With what ended the sweep before its end.
-    pub fn whole(&self) -> Result<(), PortError> {
+    pub fn check_complete(&self) -> Result<(), PortError> {
         let Description { ticks, travel, speed, .. } = self.description;
         let (end, rows) = (self.end, self.rows);
         match end {
@@ -185,7 +185,7 @@ impl SweepPort {
             Description { period: 0.0, counts_per_turn: 0.0, ticks: 0, travel: 0.0, speed: 0.0 };
         let (address, rest) = (address.clone(), Vec::new());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
-        player.say(byte::STOP)?;
+        player.send_byte(byte::STOP)?;
         let settled = Instant::now() + SETTLE;
         while player.line(settled)?.is_some() {}
         player.rest.clear();
@@ -201,7 +201,7 @@ impl SweepPort {
     fn ask(&mut self) -> Result<(), PortError> {
         let end = Instant::now() + TIMEOUT;
         while Instant::now() < end {
-            self.say(byte::DESCRIBE)?;
+            self.send_byte(byte::DESCRIBE)?;
             let again = Instant::now() + TIMEOUT / 8;
             while let Some(line) = self.line(again)? {
                 if let Some(fields) = line.strip_prefix("identify,") {
@@ -223,7 +223,7 @@ impl SweepPort {
     /// # Errors
     /// Where the link is lost, or the board ends with an unknown word.
     pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
-        self.say(byte::BEGIN)?;
+        self.send_byte(byte::BEGIN)?;
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
         loop {
@@ -250,7 +250,7 @@ impl SweepPort {
         }
     }
 
-    fn say(&mut self, byte: u8) -> Result<(), PortError> {
+    fn send_byte(&mut self, byte: u8) -> Result<(), PortError> {
         self.told = Instant::now();
         let sent = self.transport.write_all(&[byte]).and_then(|()| self.transport.flush());
         sent.map_err(|source| self.lost(source))
@@ -264,7 +264,7 @@ impl SweepPort {
                 return Ok(Some(String::from_utf8_lossy(&line).trim_end().to_owned()));
             }
             if self.told.elapsed() >= LISTENING {
-                self.say(byte::LISTENING)?;
+                self.send_byte(byte::LISTENING)?;
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {

@@ -62,7 +62,7 @@ impl MeasuredDevice {
         Ok(Self {
             until: over(period - skew)?,
             after: (skew > 0.0).then(|| over(skew)).transpose()?,
-            state: plant.moving(0.0, 0.0),
+            state: plant.state_at(0.0, 0.0),
             seen: 0.0,
             encoder: SimulatedEncoder::new(counts_per_turn),
             torque_noise,

@@ -36,10 +36,10 @@ pub(crate) struct RetryTiming {
 }
 
 /// With what a board knows.
-const QUESTION: RetryTiming =
+const QUERY_TIMING: RetryTiming =
     RetryTiming { again: Duration::from_millis(250), end: Duration::from_secs(3) };
 /// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
-pub(crate) const REQUEST: RetryTiming =
+pub(crate) const REQUEST_TIMING: RetryTiming =
     RetryTiming { again: Duration::from_secs(2), end: Duration::from_secs(10) };
 
 /// A connection to a board that has said who it is.
@@ -143,7 +143,7 @@ impl Link {
         let (decoder, bytes) = (Decoder::new(), Box::new([0; 4096]));
         let mut wire = Wire { transport, decoder, bytes, filled: 0, used: 0 };
         let (mut welcome, mut previous_fault) = (None, None);
-        let greeted = wire.ask(&ToBoard::Hello, QUESTION, |message| match message {
+        let greeted = wire.ask(&ToBoard::Hello, QUERY_TIMING, |message| match message {
             ToHost::Welcome { protocol, program } if protocol == PROTOCOL => {
                 welcome = Some(program);
                 None
@@ -170,7 +170,7 @@ impl Link {
             Ok(Some(Err((theirs, program)))) => {
                 Err(LinkError::Protocol { address, program, theirs })
             }
-            Ok(None) => Err(LinkError::Silent { address, after: QUESTION.end }),
+            Ok(None) => Err(LinkError::Silent { address, after: QUERY_TIMING.end }),
             // A socket says so; a serial line is only silent.
             Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
                 Err(LinkError::InUse { address })
@@ -257,7 +257,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
-        self.ask("what exactly runs", &ToBoard::Describe, QUESTION, |message| match message {
+        self.ask("what exactly runs", &ToBoard::Describe, QUERY_TIMING, |message| match message {
             ToHost::Described(description) => Some(description),
             _ => None,
         })
@@ -268,7 +268,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
-        self.ask("which parameters run", &ToBoard::Get, QUESTION, |message| match message {
+        self.ask("which parameters run", &ToBoard::Get, QUERY_TIMING, |message| match message {
             ToHost::ActiveParameters(parameters) => Some(parameters),
             _ => None,
         })
@@ -279,7 +279,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
-        self.ask("how it is going", &ToBoard::Status, QUESTION, |message| match message {
+        self.ask("how it is going", &ToBoard::Status, QUERY_TIMING, |message| match message {
             ToHost::Status(status) => Some(status),
             _ => None,
         })
@@ -313,7 +313,7 @@ impl Link {
         message: impl Fn(Id) -> ToBoard,
     ) -> Result<Outcome, LinkError> {
         let sent = self.next_id();
-        self.ask(what, &message(sent), REQUEST, |message| match message {
+        self.ask(what, &message(sent), REQUEST_TIMING, |message| match message {
             ToHost::Answer { id, outcome } if id == sent => Some(outcome),
             _ => None,
         })

@@ -15,7 +15,7 @@ use firmware::wire::message::{
 };
 
 use super::control::{Reply, Request};
-use crate::link::{Link, LinkError, REQUEST};
+use crate::link::{Link, LinkError, REQUEST_TIMING};
 
 /// Time between two questions how it is going; also what the board hears of us, where it stops
 /// without a host.
@@ -265,7 +265,7 @@ impl PollerThread {
             let id = link.next_id();
             link.send(&request.message(id))?;
             self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
-            let (again, end) = (now + REQUEST.again, now + REQUEST.end);
+            let (again, end) = (now + REQUEST_TIMING.again, now + REQUEST_TIMING.end);
             *pending = Some(PendingRequest { id, request, again, end });
         }
         if let Some(PendingRequest { request, .. }) = pending.take_if(|pending| now >= pending.end)
@@ -275,7 +275,7 @@ impl PollerThread {
         if let Some(PendingRequest { id, request, again, .. }) = pending
             && now >= *again
         {
-            *again = now + REQUEST.again;
+            *again = now + REQUEST_TIMING.again;
             link.send(&request.message(*id))?;
         }
         Ok(())

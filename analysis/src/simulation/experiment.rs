@@ -66,7 +66,7 @@ impl Experiment {
     /// The scene and the machine of a file, at rest, with nothing to disturb them but latency.
     pub fn at_rest(file: &SceneFile) -> Self {
         Self {
-            plant: Plant::of(&file.chain).held(file.hand.unwrap_or_default()),
+            plant: Plant::of(&file.chain).with_hand(file.hand.unwrap_or_default()),
             latency: file.simulation.as_ref().map_or(0.0, |simulation| simulation.latency),
             ..Self::still(&file.scene)
         }

@@ -60,7 +60,7 @@ impl FrictionPlant {
         omega: f64,
         state: &DVector<f64>,
     ) -> Self {
-        let stuck = plant.clone().stuck();
+        let stuck = plant.clone().with_motor_stuck();
         let halves = |plant: &Plant, h: f64| -> Vec<DMatrix<f64>> {
             let length = |halving: usize| h * 0.5_f64.powi(halving as i32);
             let one = |halving| step(plant, discretization.method, omega, length(halving));
@@ -179,7 +179,7 @@ mod tests {
         let plant = Plant::rigid(Device { inertia: 0.5, damping: 0.0, passivity: None });
         let discretization =
             Discretization { method: Method::Exact, substeps: 1, period: 0.25, latency: 0.0 };
-        FrictionPlant::new(&plant, friction, &discretization, 0.0, &plant.moving(0.0, velocity))
+        FrictionPlant::new(&plant, friction, &discretization, 0.0, &plant.state_at(0.0, velocity))
     }
 
     #[test]

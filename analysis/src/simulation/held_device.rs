@@ -32,7 +32,7 @@ impl HeldDevice {
     /// # Errors
     /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(device: Device, hand: Hand, period: f64) -> Result<Self, SimulationError> {
-        let plant = Plant::rigid(device).led(hand);
+        let plant = Plant::rigid(device).with_moving_hand(hand);
         let tick = DiscretePlant::checked(&plant, &Discretization::exact(period), 0.0)?;
         Ok(Self { device, period, tick, velocity_energy: velocity_energy(&plant, period) })
     }

@@ -101,7 +101,7 @@ impl Simulator {
 
 fn linear(experiment: &Experiment, tick: &DiscretePlant) -> Option<Box<dyn Linear>> {
     let closed = ClosedLoop::new(tick, &experiment.scene).ok()?;
-    let start = experiment.plant.moving(experiment.start.position, experiment.start.velocity);
+    let start = experiment.plant.state_at(experiment.start.position, experiment.start.velocity);
     kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 

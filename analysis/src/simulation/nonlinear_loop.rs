@@ -77,7 +77,7 @@ impl NonlinearLoop {
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
             let before = self.torque;
-            *status = self.serve(*position);
+            *status = self.run_servo(*position);
             *torque = self.torque;
             self.machine.tick(self.k, hand_torque, [-before, -self.torque]);
             self.k += 1;
@@ -85,7 +85,7 @@ impl NonlinearLoop {
     }
 
     /// The servo's part in a tick that starts with the device at `position` rad.
-    fn serve(&mut self, position: f64) -> TickStatus {
+    fn run_servo(&mut self, position: f64) -> TickStatus {
         if self.missed.next().unwrap_or(false) {
             return TickStatus::Missed;
         }
@@ -117,7 +117,7 @@ impl Machine {
     pub(crate) fn new(experiment: &Experiment, integration: Integration) -> Self {
         let (plant, discretization) = (&experiment.plant, experiment.discretization(integration));
         let omega = experiment.hand_torque.omega();
-        let state = plant.moving(experiment.start.position, experiment.start.velocity);
+        let state = plant.state_at(experiment.start.position, experiment.start.velocity);
         if experiment.friction > 0.0 {
             let friction_plant =
                 FrictionPlant::new(plant, experiment.friction, &discretization, omega, &state);

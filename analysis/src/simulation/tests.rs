@@ -61,7 +61,7 @@ fn both_ways_of_running_a_linear_loop_agree() {
             let mut experiment =
                 Experiment { hand_torque, ..moving(&paper(environment), 500, 0.01) };
             let hand = Hand { inertia: 1e-5, damping: 0.001, stiffness: 0.3 };
-            experiment.plant = experiment.plant.held(hand);
+            experiment.plant = experiment.plant.with_hand(hand);
             experiment.latency = 2e-4;
             assert!(experiment.is_linear());
             let fast = simulate(&experiment, Integration::default()).unwrap();

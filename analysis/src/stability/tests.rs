@@ -88,7 +88,7 @@ fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides
     let hand = Hand { inertia: 0.02, damping: 0.1, stiffness: 300.0 };
     for delay in 0..5 {
         let mut experiment = spring(1.0, delay, standard);
-        experiment.plant = experiment.plant.clone().held(hand);
+        experiment.plant = experiment.plant.clone().with_hand(hand);
         experiment.latency = if delay == 2 { 3e-4 } else { 0.0 };
         let Some(limit) = critical_stiffness(&experiment, Integration::default()).unwrap() else {
             assert_eq!(delay, 0);
@@ -129,7 +129,7 @@ fn a_scene_without_passivity_has_a_loop() {
         let stability = judge(&experiment, Integration::default()).unwrap();
         assert_eq!(stability.verdict, Verdict::Unstable);
         let held = Hand { inertia: 0.0, damping: 0.5, stiffness: 0.0 };
-        experiment.plant = experiment.plant.clone().held(held);
+        experiment.plant = experiment.plant.clone().with_hand(held);
         assert_eq!(judge(&experiment, Integration::default()).unwrap().verdict, Verdict::Stable);
     }
 }

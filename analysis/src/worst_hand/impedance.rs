@@ -90,7 +90,7 @@ pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
         EncoderPlace::Motor => 0,
         EncoderPlace::Hand => device.masses().len() - 1,
     };
-    let plant = Plant::seen_at(encoder, &masses, &links).held(hand);
+    let plant = Plant::with_encoder_at(encoder, &masses, &links).with_hand(hand);
     let lag = device.actuator_lag();
-    if lag > 0.0 { plant.lagging(lag) } else { plant }
+    if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
 }

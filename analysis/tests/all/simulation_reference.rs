@@ -127,7 +127,7 @@ fn wall_in_a_hand_that_pushes() {
     let torque: Vec<f64> = (0..700).map(|k| 0.05 * f64::from((k * 37) % 101) / 101.0).collect();
     let environment = Environment::DamperWall(wall(22.0, 0.01, 1));
     let mut experiment = experiment(environment, Some(44.0), Motion::default());
-    experiment.plant = Plant::rigid(DEVICE).held(hand);
+    experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
     experiment.hand_torque = TorqueSignal::Held(torque.clone());
     let at = |k: usize| torque.get(k).copied().unwrap_or(0.0);
     let servo = delayed_wall(22.0, 0.01, 44.0);
@@ -180,7 +180,7 @@ fn limited_wall_with_a_face() {
     let mut experiment = experiment(environment, Some(coupling), start);
     experiment.scene.torque_limit = Some(limit);
     let hand = Hand { inertia: 3e-4, damping: 0.001, stiffness: 0.5 };
-    experiment.plant = Plant::rigid(DEVICE).held(hand);
+    experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
     let mut due = r(0.0);
     let servo = |x: &Real| {
         let torque = due.clone().limited(&r(limit));
@@ -203,7 +203,7 @@ fn chain_with_lag_and_sine() {
     let (amplitude, omega, phase) = (0.03, 411.0, 0.7);
     let environment = Environment::DelayedSpring(wall(stiffness, 0.0, 0));
     let mut experiment = experiment(environment, None, Motion::default());
-    experiment.plant = Plant::chain(&masses, &links).held(hand).lagging(lag);
+    experiment.plant = Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(lag);
     experiment.hand_torque = TorqueSignal::Sine { amplitude, omega, phase };
     let zero = || r(0.0);
     let last = r(masses[1].inertia) + r(hand.inertia);
@@ -300,7 +300,7 @@ fn spectral_radius() {
             let matrix = closed_wall(&rigid(hand), [stiffness, damping, coupling]);
             let environment = Environment::DamperWall(wall(stiffness, damping, 1));
             let mut experiment = experiment(environment, Some(coupling), Motion::default());
-            experiment.plant = Plant::rigid(DEVICE).held(hand);
+            experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
             let closed = closed_loop(&experiment, Integration::default()).unwrap();
             let found = eigenvalues(&closed.matrix).unwrap();
             let largest = found.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap();

@@ -20,7 +20,7 @@ pub fn measure(address: &Address, keep: Option<&Path>) -> Result<(Record, f64), 
         let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
         std::fs::write(path, &recording.text).map_err(unwritable)?;
     }
-    recording.whole()?;
+    recording.check_complete()?;
     let read = record::parse(&address.to_string(), recording.text.as_bytes());
     Ok((read.map_err(IdentifyError::from)?, counts_per_turn))
 }

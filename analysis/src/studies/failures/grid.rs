@@ -39,7 +39,8 @@ pub fn grid() -> Result<Study, FailureError> {
     // A spring with which the device resonates where the minimum is.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
     let mut grows = trial("in a hand that resonates there", &scene, PADDLES, End::Grows);
-    grows.experiment.plant = grows.experiment.plant.held(Hand { stiffness, ..Hand::default() });
+    grows.experiment.plant =
+        grows.experiment.plant.with_hand(Hand { stiffness, ..Hand::default() });
     let certificate = Claim::certificate(&scene);
     let trials = vec![grows.pushed(1.0, 300_000)];
     Ok(Study { claims: claims.into(), certificate, truth, trials })

@@ -47,7 +47,7 @@ impl<const N: usize> Stepper<N> {
     /// The angles at the samples, from the start of the case.
     fn run(&self, case: &Case, samples: usize) -> Vec<f64> {
         let start = case.experiment.start;
-        let moving = case.experiment.plant.moving(start.position, start.velocity);
+        let moving = case.experiment.plant.state_at(start.position, start.velocity);
         let mut state = SVector::<f64, N>::from_fn(|i, _| moving[i]);
         let mut angles = Vec::with_capacity(samples);
         for _ in 0..samples {
