@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use analysis::simulation::{Simulator, Stride, Trajectory};
+use analysis::simulation::{Integration, Simulator, Trajectory};
 use analysis::studies::bench::steps::{STEPS, by_hand, experiment};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
@@ -19,7 +19,7 @@ fn steps(criterion: &mut Criterion) {
         ("exact, delayed damper wall", experiment(0.01, 1, None)),
         ("exact, with torque limit", experiment(0.01, 1, Some(1.0))),
     ] {
-        let mut simulator = Simulator::new(&experiment, Stride::default()).expect("has a law");
+        let mut simulator = Simulator::new(&experiment, Integration::default()).expect("has a law");
         group.bench_function(name, |bencher| {
             bencher.iter(|| simulator.fill(black_box(&mut out)));
         });

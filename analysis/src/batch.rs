@@ -162,7 +162,7 @@ fn judge(
     format: Format,
     number: usize,
     bytes: &[u8],
-) -> Result<verdict::Report, BadScene> {
+) -> Result<verdict::VerdictReport, BadScene> {
     let text = file::text_of(file, number, bytes)?;
     let scene = file::parse_at(file, number, file::Format::Json, text)?;
     number::fits(&scene.scene, format)?;

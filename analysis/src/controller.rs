@@ -18,7 +18,7 @@ pub struct Tick {
     pub angle: f64,
     /// Coupling torque `F` in N m; the motor applies `-F`.
     pub torque: f64,
-    /// Code of the converter.
+    /// Code of the DAC.
     pub code: u16,
     /// Why the torque is less than the scene asked for.
     pub limit: LimitReason,

@@ -11,13 +11,13 @@ const EPOCH: &str = "SOURCE_DATE_EPOCH";
 /// The time that was asked for is none.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{EPOCH} = `{0}` is no number of seconds since 1970-01-01, up to the year 9999")]
-pub struct NoDate(String);
+pub struct InvalidDate(String);
 
 /// Today in UTC, as 2026-03-14; the day of `SOURCE_DATE_EPOCH` where that is set.
 ///
 /// # Errors
 /// Where that is no time.
-pub fn today() -> Result<String, NoDate> {
+pub fn today() -> Result<String, InvalidDate> {
     let seconds = match std::env::var_os(EPOCH) {
         Some(text) => text.to_string_lossy().into_owned(),
         None => {
@@ -28,9 +28,9 @@ pub fn today() -> Result<String, NoDate> {
     day(&seconds)
 }
 
-fn day(seconds: &str) -> Result<String, NoDate> {
+fn day(seconds: &str) -> Result<String, InvalidDate> {
     let time = seconds.parse().ok().and_then(|at| OffsetDateTime::from_unix_timestamp(at).ok());
-    time.map(|time| time.date().to_string()).ok_or_else(|| NoDate(seconds.to_owned()))
+    time.map(|time| time.date().to_string()).ok_or_else(|| InvalidDate(seconds.to_owned()))
 }
 
 #[cfg(test)]
@@ -42,7 +42,7 @@ mod tests {
         assert_eq!(day("0").unwrap(), "1970-01-01");
         assert_eq!(day("951782400").unwrap(), "2000-02-29");
         for bad in ["", "soon", "1e9", "9999999999999999"] {
-            assert_eq!(day(bad), Err(NoDate(bad.to_owned())));
+            assert_eq!(day(bad), Err(InvalidDate(bad.to_owned())));
         }
     }
 }

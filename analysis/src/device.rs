@@ -1,4 +1,4 @@
-//! What is around the servo besides its scene: a hand, an encoder, and the motion between them.
+//! The surroundings of the servo in a simulation: a hand, an encoder, and the motion between them.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Hand {
     /// Inertia `m_h` in kg m^2 that moves with the device.
     pub inertia: f64,
-    /// Damping `b_h` in N m s/rad towards the point where the hand wants to be.
+    /// Damping `b_h` in N m s/rad towards the hand's set-point.
     pub damping: f64,
     /// Stiffness `k_h` in N m/rad towards the same point.
     pub stiffness: f64,
@@ -22,9 +22,9 @@ pub struct Motion {
     pub velocity: f64,
 }
 
-/// Where the hand wants to be, over one tick.
+/// Set-point of the hand over one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grip {
+pub struct HandSetpoint {
     /// Angle in rad at the start of the tick.
     pub from: f64,
     /// Angle in rad at its end.

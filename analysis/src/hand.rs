@@ -1,28 +1,29 @@
-//! What a hand does over time: where it wants to be, and when it lets go.
+//! The trajectory of a hand: its set-point over time, and when it lets go.
 
 use firmware::environment::Environment;
 
-use crate::device::{Grip, Hand};
+use crate::device::{Hand, HandSetpoint};
 
-/// A hand's intention: it moves smoothly from one angle to the next, and lets go at the end.
+/// Set-point of a hand over time: it moves smoothly from one angle to the next, and the hand lets go
+/// at the end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Script {
-    /// What it does, in a few words.
-    pub story: &'static str,
+pub struct HandTrajectory {
+    /// What the hand does, in a few words.
+    pub description: &'static str,
     /// The hand, as long as it holds the device.
     pub hand: Hand,
-    /// Times in s, rising, with the angle in rad that the hand wants to be at then.
+    /// Times in s, rising, with the set-point in rad at each.
     pub path: Vec<(f64, f64)>,
     /// When it lets go, in s.
     pub release: f64,
 }
 
-/// A hand of an ordinary grip: an arm's muscles around a knob, with a little of its mass.
-pub const GRIP: Hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
+/// Impedance of a typical hand around a knob: the arm's muscles, with a little of its mass.
+pub const TYPICAL_HAND: Hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
 
-impl Script {
-    /// What shows an environment: a wall is pushed into, free motion is swung.
-    pub fn showing(environment: &Environment) -> Self {
+impl HandTrajectory {
+    /// The trajectory that demonstrates an environment: a wall is pushed into, free motion is swung.
+    pub fn for_environment(environment: &Environment) -> Self {
         match environment {
             Environment::FreeMode { .. } => Self::swing_and_let_go(),
             _ => Self::push_and_let_go(),
@@ -33,18 +34,23 @@ impl Script {
     pub fn push_and_let_go() -> Self {
         let path =
             vec![(0.25, 0.0), (0.5, -0.05), (1.25, 0.12), (1.75, 0.12), (2.5, -0.05), (3.25, 0.12)];
-        Self { story: "a hand pushes in and lets go", hand: GRIP, path, release: 3.75 }
+        Self {
+            description: "a hand pushes in and lets go",
+            hand: TYPICAL_HAND,
+            path,
+            release: 3.75,
+        }
     }
 
     /// Swings to and fro and lets go in the middle of a swing, so that the device coasts.
     pub fn swing_and_let_go() -> Self {
         let swing = |n: i32| (0.25 + 0.5 * f64::from(n), if n % 2 == 0 { -0.3 } else { 0.3 });
         let path = std::iter::once((0.0, 0.0)).chain((0..8).map(swing)).collect();
-        Self { story: "a hand swings it and lets go", hand: GRIP, path, release: 3.5 }
+        Self { description: "a hand swings it and lets go", hand: TYPICAL_HAND, path, release: 3.5 }
     }
 
-    /// The same again and again until so many seconds, without letting go.
-    pub fn over_and_over(self, until: f64) -> Self {
+    /// The same trajectory repeated for `until` seconds, without letting go.
+    pub fn repeated_until(self, until: f64) -> Self {
         /// Time in s from the end of one to the beginning of the next.
         const PAUSE: f64 = 0.5;
         let length = self.path.last().map_or(0.0, |&(end, _)| end) + PAUSE;
@@ -57,7 +63,7 @@ impl Script {
         Self { path, release: f64::INFINITY, ..self }
     }
 
-    /// Where the hand wants to be at a time in s: smoothly from point to point.
+    /// The set-point in rad at a time in s: smoothly from point to point.
     pub fn position(&self, time: f64) -> f64 {
         let next = self.path.partition_point(|&(at, _)| at <= time);
         let (Some(&(begin, from)), Some(&(end, to))) =
@@ -71,9 +77,9 @@ impl Script {
         from + (to - from) * s * s * (3.0 - 2.0 * s)
     }
 
-    /// The grip over the tick from `start` to `end` in s.
-    pub fn grip(&self, start: f64, end: f64) -> Grip {
-        Grip { from: self.position(start), to: self.position(end) }
+    /// The set-point over the tick from `start` to `end` in s.
+    pub fn setpoint(&self, start: f64, end: f64) -> HandSetpoint {
+        HandSetpoint { from: self.position(start), to: self.position(end) }
     }
 }
 
@@ -83,18 +89,20 @@ mod tests {
 
     #[test]
     fn the_path_goes_through_its_points_and_rests_at_its_ends() {
-        let script = Script::push_and_let_go();
-        for &(time, position) in &script.path {
-            assert!((script.position(time) - position).abs() < 1e-15);
+        let trajectory = HandTrajectory::push_and_let_go();
+        for &(time, position) in &trajectory.path {
+            assert!((trajectory.position(time) - position).abs() < 1e-15);
         }
-        assert_eq!(script.position(0.0), 0.0);
-        assert_eq!(script.position(99.0), 0.12);
+        assert_eq!(trajectory.position(0.0), 0.0);
+        assert_eq!(trajectory.position(99.0), 0.12);
     }
 
     #[test]
     fn what_is_done_over_and_over_is_the_same_each_time() {
-        let (once, often) =
-            (Script::push_and_let_go(), Script::push_and_let_go().over_and_over(60.0));
+        let (once, often) = (
+            HandTrajectory::push_and_let_go(),
+            HandTrajectory::push_and_let_go().repeated_until(60.0),
+        );
         for time in [0.3, 1.0, 3.0] {
             for n in 0..10 {
                 let again = often.position(time + 3.75 * f64::from(n));

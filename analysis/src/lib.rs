@@ -17,16 +17,16 @@ pub mod studies;
 
 // What runs: a program's scene in a servo, with a simulated device, a recording or a board around
 // it; and the device that was measured so.
+pub mod compare_run;
+pub mod counts_csv;
 pub mod identify;
 pub mod program;
-pub mod replay;
-pub mod scenario;
 
 // The board, emulated or virtual, what builds for it, and a board without hardware.
+pub mod board_sim;
 pub mod emulator;
-pub mod rig;
+pub mod lockstep;
 pub mod toolchain;
-pub mod twin;
 pub mod virtual_board;
 
 // A board that runs, at the other end of a wire, and the view of it.
@@ -35,18 +35,18 @@ pub mod scope;
 
 // What scenes are worth and would do, and how far one may go.
 pub mod batch;
-pub mod circle;
 pub mod closed_form;
 pub mod design;
 pub mod limits;
-pub mod map;
-pub mod mu;
+pub mod mu_analysis;
 pub mod open_loop;
-pub mod recorded;
 pub mod response;
+pub mod run_csv;
 pub mod simulation;
 pub mod stability;
+pub mod stability_map;
 pub mod trace;
+pub mod unit_circle_poles;
 pub mod verdict;
 pub mod worst_hand;
 
@@ -61,12 +61,12 @@ pub mod table;
 
 // Numbers and words.
 pub mod date;
-pub mod listing;
-pub mod minimum;
+pub mod line_search;
 pub mod number;
 pub mod progress;
 pub mod quantity;
 pub mod terminal;
+pub mod text_table;
 
 /// The scene file of the README, as this library reads it.
 ///

@@ -6,7 +6,7 @@ use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::{Coupling, Scene, Timing};
 
 use crate::response::Response;
-use crate::simulation::closed::transfers;
+use crate::simulation::closed_loop::transfers;
 
 /// How stiff a wall may be.
 #[derive(Clone, Copy, Debug, PartialEq)]

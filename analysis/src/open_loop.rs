@@ -10,10 +10,10 @@ use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::Scene;
 use nalgebra::Complex;
 
-use crate::map::plant::SampledPlant;
 use crate::response::Response;
-use crate::simulation::closed::transfers;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::{Experiment, Integration, SimulationError};
+use crate::stability_map::plant::SampledPlant;
 
 /// Frequencies of a curve.
 const POINTS: usize = 2000;
@@ -63,7 +63,7 @@ impl OpenLoop {
     /// Where the machine or the scene has none.
     pub fn of(experiment: &Experiment) -> Result<Self, SimulationError> {
         let scene = &experiment.scene;
-        let plant = SampledPlant::new(&experiment.tick(Stride::default())?);
+        let plant = SampledPlant::new(&experiment.tick(Integration::default())?);
         let is_stable = plant.is_stable_under(scene).map_err(SimulationError::LoopTransfers)?;
         let product = Self::product(&plant, scene).map_err(SimulationError::LoopTransfers)?;
         let half = 0.5 / scene.timing.period;
@@ -165,13 +165,14 @@ mod tests {
         for delay in 0..4 {
             let experiment = Experiment::at_rest(&file(3.0, 0.0, delay));
             let found = OpenLoop::of(&experiment).unwrap();
-            let critical = critical_stiffness(&experiment, Stride::default()).unwrap().unwrap();
+            let critical =
+                critical_stiffness(&experiment, Integration::default()).unwrap().unwrap();
             let margin = found.gain_margin().unwrap();
             assert!((3.0 * margin.value / critical - 1.0).abs() < 1e-6, "{delay} {margin:?}");
             assert!(found.is_stable && found.phase_margin().unwrap().value > 0.0);
         }
         let critical = Experiment::at_rest(&file(1.0, 0.0, 2));
-        let critical = critical_stiffness(&critical, Stride::default()).unwrap().unwrap();
+        let critical = critical_stiffness(&critical, Integration::default()).unwrap().unwrap();
         let shaking = Experiment::at_rest(&file(1.1 * critical, 0.0, 2));
         let shaking = OpenLoop::of(&shaking).unwrap();
         assert!(!shaking.is_stable && shaking.phase_margin().unwrap().value < 0.0);
@@ -186,7 +187,7 @@ mod tests {
         let lag = |samples: usize| 360.0 * margin.hertz * 0.001 * samples as f64;
         for delay in 1..=8 {
             let experiment = Experiment::at_rest(&file(6.0, 0.0, delay));
-            let stability = stability::judge(&experiment, Stride::default()).unwrap();
+            let stability = stability::judge(&experiment, Integration::default()).unwrap();
             let stable = stability.verdict == stability::Verdict::Stable;
             assert_eq!(stable, lag(delay) < margin.value, "{delay} {margin:?}");
         }

@@ -24,12 +24,12 @@ use firmware::scene::Scene;
 use firmware::servo::{BuildError, Servo, Transducers};
 use serde::Serialize;
 
+use crate::board_sim::{Pacing, SimulatedBoard};
 use crate::controller::Controller;
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
 use crate::link::Address;
-use crate::rig::{Plant, SimulatedDevice};
+use crate::lockstep::{PlantIo, SimulatedDevice};
 use crate::toolchain::NumberFormat;
-use crate::twin::{Clock, Twin};
 
 /// A scene with a program of its own.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ pub struct Program {
     /// The encoder and the motor that it is built for.
     pub transducers: Transducers,
     /// What a hand does to show it.
-    pub script: fn() -> Script,
+    pub trajectory: fn() -> HandTrajectory,
     /// What its servo keeps from tick to tick, in a format.
     pub state: fn(NumberFormat) -> State,
     /// Builds its servo on the host.
@@ -71,7 +71,7 @@ impl State {
 pub type Build = fn(NumberFormat, &Transducers) -> Result<Box<dyn Controller>, BuildError>;
 
 /// Starts a program on a board that is a thread.
-pub type Listen = fn(Box<dyn Plant + Send>, &Address, Clock) -> io::Result<Twin>;
+pub type Listen = fn(Box<dyn PlantIo + Send>, &Address, Pacing) -> io::Result<SimulatedBoard>;
 
 impl Program {
     /// Its servo on the host, with other transducers where a recording comes from another encoder.
@@ -90,7 +90,7 @@ impl Program {
     pub fn device(&self) -> SimulatedDevice {
         SimulatedDevice::new(
             self.scene.device,
-            (self.script)(),
+            (self.trajectory)(),
             self.scene.timing.period,
             &self.transducers,
         )
@@ -103,11 +103,11 @@ impl Program {
     /// Where the address cannot be listened at.
     pub fn listen(
         &self,
-        plant: Box<dyn Plant + Send>,
+        plant: Box<dyn PlantIo + Send>,
         address: &Address,
-        clock: Clock,
-    ) -> io::Result<Twin> {
-        (self.listen)(plant, address, clock)
+        pacing: Pacing,
+    ) -> io::Result<SimulatedBoard> {
+        (self.listen)(plant, address, pacing)
     }
 
     /// The program of that name.
@@ -138,7 +138,9 @@ macro_rules! program {
             name: stringify!($module),
             scene: $module::SCENE.as_data(),
             transducers: $module::TRANSDUCERS,
-            script: || $crate::hand::Script::showing(&$module::SCENE.as_data().environment),
+            trajectory: || {
+                $crate::hand::HandTrajectory::for_environment(&$module::SCENE.as_data().environment)
+            },
             state: |format| match format {
                 $crate::toolchain::NumberFormat::F32 => {
                     $crate::program::State::of::<$module::Environment, f32>()
@@ -158,14 +160,14 @@ macro_rules! program {
                     )
                 }
             },
-            listen: |plant, address, clock| {
+            listen: |plant, address, pacing| {
                 let program = $module::PROGRAM;
-                $crate::twin::Twin::start::<_, f32, ::firmware::servo::Latched>(
+                $crate::board_sim::SimulatedBoard::start::<_, f32, ::firmware::servo::Latched>(
                     stringify!($module),
                     program,
                     plant,
                     address,
-                    clock,
+                    pacing,
                 )
             },
         }

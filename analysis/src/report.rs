@@ -8,13 +8,13 @@ use crate::chart::Picture;
 use crate::device::Hand;
 use crate::file::{SceneFile, write};
 use crate::quantity::significant;
-use crate::verdict::{Enclosure, Report, RuleAnswer, Verdict};
+use crate::verdict::{Enclosure, RuleAnswer, Verdict, VerdictReport};
 
 /// What a page is made of.
 #[derive(Debug)]
 pub struct Page<'p> {
     /// The judged scene.
-    pub report: &'p Report,
+    pub report: &'p VerdictReport,
     /// What it was read from.
     pub file: &'p SceneFile,
     /// Where that is, as somebody named it.
@@ -104,7 +104,7 @@ impl Page<'_> {
     }
 }
 
-fn verdict(report: &Report) -> Markup {
+fn verdict(report: &VerdictReport) -> Markup {
     let (class, word) = match report.verdict {
         Verdict::Certified => ("verdict certified", "CERTIFIED"),
         Verdict::Rejected => ("verdict rejected", "REJECTED"),
@@ -170,7 +170,7 @@ fn hand(hand: Option<Hand>) -> String {
     )
 }
 
-fn numbers(report: &Report, scene: &Scene) -> Markup {
+fn numbers(report: &VerdictReport, scene: &Scene) -> Markup {
     let (period, device) = (scene.timing.period, scene.device);
     let hertz = significant(1.0 / period, 6);
     let coupling = match scene.coupling {

@@ -84,9 +84,9 @@ pub struct Column {
     pub bound: &'static str,
 }
 
-/// A column that a table has.
+/// A column that was found in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct FoundColumn {
     index: usize,
     /// Which of its names it has.
     pub name: &'static str,
@@ -143,19 +143,19 @@ impl<R: Read> Table<R> {
     }
 
     /// Where a column is, if it is there.
-    pub fn find(&self, column: Column) -> Option<Place> {
+    pub fn find(&self, column: Column) -> Option<FoundColumn> {
         let at = |name: &str| self.header.iter().position(|is| is.eq_ignore_ascii_case(name));
         column
             .names
             .iter()
-            .find_map(|name| Some(Place { index: at(name)?, name, bound: column.bound }))
+            .find_map(|name| Some(FoundColumn { index: at(name)?, name, bound: column.bound }))
     }
 
     /// Where a column is.
     ///
     /// # Errors
     /// Where it is missing.
-    pub fn column(&self, column: Column) -> Result<Place, TableError> {
+    pub fn column(&self, column: Column) -> Result<FoundColumn, TableError> {
         self.find(column).ok_or_else(|| {
             let names: Vec<_> = column.names.iter().map(|name| format!("`{name}`")).collect();
             let columns = self.header.iter().map(excerpt).collect::<Vec<_>>().join(", ");
@@ -203,7 +203,7 @@ impl Row<'_> {
     /// Where it is none.
     pub fn number<T: FromStr>(
         &self,
-        place: Place,
+        place: FoundColumn,
         admits: impl Fn(&T) -> bool,
     ) -> Result<T, TableError> {
         let value = self.text(place).parse().ok().filter(admits);
@@ -211,7 +211,7 @@ impl Row<'_> {
     }
 
     /// What is wrong with the field in a column, where that depends on the rows before.
-    pub fn bad(&self, place: Place, bound: &str) -> TableError {
+    pub fn bad(&self, place: FoundColumn, bound: &str) -> TableError {
         TableError::BadField {
             file: self.file.to_owned(),
             line: self.line,
@@ -223,7 +223,7 @@ impl Row<'_> {
     }
 
     /// The field in a column.
-    pub fn text(&self, place: Place) -> &str {
+    pub fn text(&self, place: FoundColumn) -> &str {
         self.fields.get(place.index).unwrap_or_default()
     }
 }

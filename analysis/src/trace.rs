@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::file::SceneFile;
-use crate::simulation::drive::Drive;
-use crate::simulation::served::Served;
-use crate::simulation::{Experiment, SimulationError, Stride, simulate};
+use crate::simulation::tick_status::TickStatus;
+use crate::simulation::torque_signal::TorqueSignal;
+use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
 /// A step of the encoder is at most one in so many of the largest velocity.
 const STEPS: f64 = 20.0;
@@ -15,7 +15,7 @@ const SMEARED: usize = 12;
 
 /// What the samples are counted in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Clock {
+pub enum TimeUnit {
     /// Seconds.
     #[default]
     Seconds,
@@ -29,7 +29,7 @@ pub struct Trace {
     /// What it is called.
     pub title: String,
     /// What the times are in.
-    pub clock: Clock,
+    pub time_unit: TimeUnit,
     /// When the samples were taken, each later than the one before.
     pub time: Vec<f64>,
     /// Angle of the device in rad, a sample each.
@@ -46,7 +46,7 @@ pub struct Trace {
     /// What the torque is limited to, in N m.
     pub torque_limit: Option<f64>,
     /// Why the torque is not what the scene asked for.
-    pub limit: Vec<Served>,
+    pub limit: Vec<TickStatus>,
     /// When the hand lets go, on the same clock.
     pub release: Option<f64>,
     /// Angle in rad beyond which a one-sided wall is felt.
@@ -64,14 +64,15 @@ impl Trace {
     /// Where the file has no `[simulation]`, or its scene cannot run.
     pub fn simulated(file: &SceneFile, folder: &Path) -> Result<Self, SimulationError> {
         let experiment = Experiment::of(file, folder)?;
-        let motion = simulate(&experiment, Stride::default())?;
+        let motion = simulate(&experiment, Integration::default())?;
         let period = file.scene.timing.period;
-        let drive = |k: usize| experiment.drive.held(k) + experiment.drive.sine(k, period)[0];
-        let is_driven = experiment.drive != Drive::Free;
-        let driven = is_driven.then(|| (0..experiment.samples).map(drive).collect());
+        let hand_torque =
+            |k: usize| experiment.hand_torque.held(k) + experiment.hand_torque.sine(k, period)[0];
+        let is_driven = experiment.hand_torque != TorqueSignal::Free;
+        let driven = is_driven.then(|| (0..experiment.samples).map(hand_torque).collect());
         let trace = Self {
             title: file.name.clone(),
-            clock: Clock::Seconds,
+            time_unit: TimeUnit::Seconds,
             time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
             position: motion.position,
             velocity: motion.velocity,

@@ -12,7 +12,7 @@ use firmware::scene::Scene;
 use firmware::servo::Latched;
 use serde::Serialize;
 
-use crate::minimum::least;
+use crate::line_search::minimizing_angle;
 use crate::quantity::significant;
 use crate::response::Response;
 
@@ -99,7 +99,7 @@ impl AtRest {
 
 /// A judged scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct VerdictReport {
     /// What the person calls the scene.
     pub name: String,
     /// The answer.
@@ -148,13 +148,13 @@ pub struct Report {
 }
 
 /// Judges a scene as it was written, of a machine of which nothing more is known.
-pub fn judge(name: &str, scene: &Scene) -> Report {
+pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
     judge_in(name, scene, Format::F64, &Resolution::default())
 }
 
 /// Judges the coefficients of a scene as a number format rounds them, and its assumptions by what
 /// is known of the machine.
-pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> Report {
+pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> VerdictReport {
     let (assessment, rejection) = match certify_in(scene, format) {
         Ok(assessment) => (assessment, None),
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
@@ -174,7 +174,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
         None => passed(margin, assumptions.rest()),
         Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
     };
-    Report {
+    VerdictReport {
         name: name.to_owned(),
         verdict,
         rules: Rules { paper: answer(assessment.paper), exact: answer(assessment.exact) },
@@ -236,5 +236,5 @@ fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let velocity = Response::new(judged).from_velocity(scene.timing.period);
     let real = |theta: f64| velocity.at_angle(theta).re;
     let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
-    least(real, angle(cosine.hi()), angle(cosine.lo()))
+    minimizing_angle(real, angle(cosine.hi()), angle(cosine.lo()))
 }

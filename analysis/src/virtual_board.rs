@@ -13,9 +13,9 @@ use firmware::servo::RenderingOptions;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{encode, largest_frame};
 
-use crate::emulator::Stats;
+use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
-use crate::rig::Twin;
+use crate::lockstep::RemoteServo;
 use crate::toolchain::Board;
 
 /// What a board says at the end of a sample, and when it is asked to end.
@@ -52,7 +52,7 @@ pub enum VirtualBoardError {
 /// A sample that has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// The converter's code in it; none while nothing drives its pin.
+    /// The DAC's code in it; none while nothing drives its pin.
     pub code: Option<u16>,
     /// Whether the amplifier was on.
     pub amplifier: bool,
@@ -61,20 +61,20 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The code that the motor felt: without an amplifier, or a level at its input, that of no
-    /// torque.
-    pub fn felt(&self) -> u16 {
+    /// The code that acts on the motor: that of no torque while the amplifier is off or no code drives
+    /// its input.
+    pub fn applied_code(&self) -> u16 {
         self.code.filter(|_| self.amplifier).unwrap_or(DacCode::MID_SCALE.get())
     }
 }
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct VirtualBoardReport {
     /// Instructions from reading the count to writing the code.
-    pub compute: Stats,
+    pub compute: InstructionStats,
     /// Instructions of the servo's whole interrupt.
-    pub interrupt: Stats,
+    pub interrupt: InstructionStats,
     /// Times that the board was reset.
     pub resets: u32,
     /// Lines of the log.
@@ -139,7 +139,7 @@ impl VirtualBoard {
     ///
     /// # Errors
     /// Where the board stops, or its servo is not armed.
-    pub fn engage(&mut self, period: f64) -> Result<(), VirtualBoardError> {
+    pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
         let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
         // A request is a few bytes; the buffer has room for the longest.
         let arm = encode(&ToBoard::Arm { id: 0 }, &mut buffer).unwrap_or_default();
@@ -149,7 +149,7 @@ impl VirtualBoard {
             if on {
                 // Rounded up, and two for the ticks in which it begins and ends.
                 let fading = (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2;
-                return self.stand(fading);
+                return self.hold_still(fading);
             }
         }
         let log = self.end().map_err(|error| self.stopped(&error))?.log.join("; ");
@@ -157,7 +157,7 @@ impl VirtualBoard {
     }
 
     /// So many samples in which the device stands still; then the board waits for the first count.
-    fn stand(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
+    fn hold_still(&mut self, samples: usize) -> Result<(), VirtualBoardError> {
         for _ in 1..samples {
             self.sample()?;
             self.answer(self.count, &[])?;
@@ -169,7 +169,7 @@ impl VirtualBoard {
     ///
     /// # Errors
     /// Where it has stopped before.
-    pub fn finish(mut self) -> Result<Report, VirtualBoardError> {
+    pub fn finish(mut self) -> Result<VirtualBoardReport, VirtualBoardError> {
         self.end().map_err(|error| self.stopped(&error))
     }
 
@@ -193,7 +193,7 @@ impl VirtualBoard {
         input.flush()
     }
 
-    fn end(&mut self) -> io::Result<Report> {
+    fn end(&mut self) -> io::Result<VirtualBoardReport> {
         self.input = None;
         while self.bytes::<1>()? != [END] {
             // A sample that nobody has asked for: behind its mark, code and amplifier.
@@ -206,14 +206,14 @@ impl VirtualBoard {
         let resets = u32::from_le_bytes(self.bytes()?);
         let mut log = Vec::new();
         self.output.read_to_end(&mut log)?;
-        Ok(Report { compute, interrupt, resets, log: self.decoder.decode(&log) })
+        Ok(VirtualBoardReport { compute, interrupt, resets, log: self.decoder.decode(&log) })
     }
 
-    fn stats(&mut self) -> io::Result<Stats> {
+    fn stats(&mut self) -> io::Result<InstructionStats> {
         let mut number = || self.bytes().map(u64::from_le_bytes);
         let (count, min, max, sum) = (number()?, number()?, number()?, number()?);
         // A mean over nothing is none, and its neighbours say so.
-        Ok(Stats { count, min, max, mean: sum as f64 / count as f64 })
+        Ok(InstructionStats { count, min, max, mean: sum as f64 / count as f64 })
     }
 
     fn bytes<const N: usize>(&mut self) -> io::Result<[u8; N]> {
@@ -246,11 +246,11 @@ impl Drop for VirtualBoard {
 
 /// The board waits for a count, holds what it had computed before, and that sample's code is the
 /// answer.
-impl Twin for VirtualBoard {
+impl RemoteServo for VirtualBoard {
     type Error = VirtualBoardError;
 
     fn exchange(&mut self, raw: i32) -> Result<u16, VirtualBoardError> {
         self.answer(raw, &[])?;
-        Ok(self.sample()?.felt())
+        Ok(self.sample()?.applied_code())
     }
 }

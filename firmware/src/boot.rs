@@ -22,11 +22,11 @@ use crate::tuning::{self, Prepared, Tunable};
 /// What a board has besides, before its servo runs.
 pub trait Startup: Hardware {
     /// Sets the encoder's counter to zero: where the device is now is its zero.
-    fn zero(&mut self);
+    fn zero_encoder(&mut self);
     /// Starts the watchdog. From here on only the servo feeds it.
-    fn guard(&mut self);
+    fn start_watchdog(&mut self);
     /// The words that outlived the reset; see [`FaultRecord`].
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS];
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS];
     /// Why the board was last reset. To be asked once: the chip forgets it then.
     fn reset_cause(&mut self) -> ResetCause;
     /// Timer counts in the servo's period.
@@ -88,8 +88,8 @@ pub struct Booted<E: Discretize<N>, N: Number, M> {
     pub margin: Option<f64>,
     /// Why the board was reset.
     pub reset: ResetCause,
-    /// What was left from before the reset.
-    pub left: Option<FaultRecord>,
+    /// Fault from before the reset.
+    pub previous_fault: Option<FaultRecord>,
     /// Why the servo arms itself in its first tick, if it does.
     pub arms_because: Option<Reason>,
 }
@@ -116,17 +116,17 @@ where
     let scene = black_box(program.scene);
     let Prepared { rendering, margin, .. } =
         tuning::prepare(&scene, &[], &program.transducers, &program.rendering)?;
-    hardware.zero();
+    hardware.zero_encoder();
     let reset = hardware.reset_cause();
-    let left = left(hardware, reset);
-    let fault = left.map(|left| left.fault);
+    let previous_fault = read_previous_fault(hardware, reset);
+    let fault = previous_fault.map(|previous_fault| previous_fault.fault);
     let servo_loop = ServoLoop::new(rendering, &program.options, hardware.period(), fault);
-    hardware.guard();
-    let arms_because = reason_to_arm(&program.options, reset, left);
+    hardware.start_watchdog();
+    let arms_because = reason_to_arm(&program.options, reset, previous_fault);
     if arms_because.is_some() {
         requests.arm();
     }
-    Ok(Booted { servo_loop, margin, reset, left, arms_because })
+    Ok(Booted { servo_loop, margin, reset, previous_fault, arms_because })
 }
 
 /// Why a servo may arm itself: only where its program says so, and only where the supply was switched
@@ -134,19 +134,21 @@ where
 fn reason_to_arm(
     options: &Options,
     reset: ResetCause,
-    left: Option<FaultRecord>,
+    previous_fault: Option<FaultRecord>,
 ) -> Option<Reason> {
     match options.arming {
-        Arming::AtPowerOn(reason) if reset == ResetCause::PowerOn && left.is_none() => Some(reason),
+        Arming::AtPowerOn(reason) if reset == ResetCause::PowerOn && previous_fault.is_none() => {
+            Some(reason)
+        }
         Arming::AtPowerOn(_) | Arming::WhenAsked => None,
     }
 }
 
-/// What was left from before the reset.
-fn left(hardware: &mut impl Startup, reset: ResetCause) -> Option<FaultRecord> {
+/// Reads the fault from before the reset.
+fn read_previous_fault(hardware: &mut impl Startup, reset: ResetCause) -> Option<FaultRecord> {
     let by_watchdog = reset == ResetCause::IndependentWatchdog;
     // A panic or a hard fault lets the watchdog reset the board: what it wrote says more.
-    FaultRecord::decode(&hardware.kept()).or(by_watchdog.then_some(FaultRecord {
+    FaultRecord::decode(&hardware.stored_fault()).or(by_watchdog.then_some(FaultRecord {
         fault: Fault::Watchdog,
         tick: 0,
         count: 0,

@@ -1,4 +1,4 @@
-//! The 12-bit converter that drives the motor's current amplifier.
+//! The 12-bit DAC that drives the motor's current amplifier.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ pub trait Dac {
     fn write(&mut self, code: DacCode);
 }
 
-/// A code of a 12-bit converter: mid-scale is no torque, one code up is one step of positive
+/// A code of a 12-bit DAC: mid-scale is no torque, one code up is one step of positive
 /// motor torque.
 ///
 /// ```
@@ -45,7 +45,7 @@ impl DacCode {
         Self(bits & Self::MAX.0)
     }
 
-    /// The code as the converter wants it.
+    /// The code as the DAC wants it.
     #[inline(always)]
     pub const fn get(self) -> u16 {
         self.0
@@ -57,11 +57,11 @@ impl DacCode {
     }
 }
 
-/// What a converter's output is good for: near its rails the output buffer saturates, where a torque
+/// What a DAC's output is good for: near its rails the output buffer saturates, where a torque
 /// would be less than its code says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputRange {
-    /// The least that the converter's supply and reference can be, in V.
+    /// The least that the DAC's supply and reference can be, in V.
     pub supply: f64,
     /// What the output cannot come nearer to either rail than, in V.
     pub headroom: f64,

@@ -16,8 +16,8 @@ pub enum LimitReason {
     None = 0,
     /// The scene's torque limit.
     Torque = 1,
-    /// The converter's full scale; the scene has no limit of its own.
-    Converter = 2,
+    /// The DAC's full scale; the scene has no limit of its own.
+    DacRange = 2,
     /// The position left the range of the number format; the angle stands still.
     Angle = 3,
     /// The torque was not a number; no torque was given.
@@ -29,14 +29,14 @@ pub enum LimitReason {
 impl LimitReason {
     /// All of them, in the order of their numbers.
     pub const ALL: [Self; 6] =
-        [Self::None, Self::Torque, Self::Converter, Self::Angle, Self::NotANumber, Self::Ramp];
+        [Self::None, Self::Torque, Self::DacRange, Self::Angle, Self::NotANumber, Self::Ramp];
 
     /// The reason in one word, for tables.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::None => "none",
             Self::Torque => "torque",
-            Self::Converter => "converter",
+            Self::DacRange => "converter",
             Self::Angle => "angle",
             Self::NotANumber => "not-a-number",
             Self::Ramp => "ramp",

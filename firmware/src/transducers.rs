@@ -112,9 +112,9 @@ impl Transducers {
         Ok(bound)
     }
 
-    /// The limiter of a scene's torque limit, or else of the converter's range.
+    /// The limiter of a scene's torque limit, or else of the DAC's range.
     pub(crate) fn limiter<N: Number>(&self, limit: Option<f64>) -> Result<Limiter<N>, BuildError> {
-        let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::Converter };
+        let reason = if limit.is_some() { LimitReason::Torque } else { LimitReason::DacRange };
         let bound = N::bound_from_f64(self.bound(limit)?)
             .map_err(|reason| BuildError::Unrepresentable { name: "torque limit", reason })?;
         let name = "torque limit in the servo's number format";

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// A scene in both forms.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub struct ExactScene {
     /// What the firmware judges.
     pub scene: Scene,
     /// What the reference judges.
@@ -68,9 +68,9 @@ impl Frame {
     }
 
     /// The scene with an environment, and its exact transfer function.
-    pub fn with(&self, environment: Environment, fraction: (Poly, Poly)) -> Drawn {
+    pub fn with(&self, environment: Environment, fraction: (Poly, Poly)) -> ExactScene {
         let Self { delta, period, coupling } = *self;
-        Drawn {
+        ExactScene {
             scene: Scene {
                 device: Device { inertia: 1e-4, damping: delta, passivity: None },
                 timing: Timing { period, worst_period: None },
@@ -105,7 +105,7 @@ pub struct Poles {
 
 /// A random rational environment, scaled so that its index lies within a factor of about three of
 /// the device's passivity.
-pub fn rational(rng: &mut impl Rng, poles: Poles) -> Drawn {
+pub fn rational(rng: &mut impl Rng, poles: Poles) -> ExactScene {
     let frame = Frame::draw(rng);
     let count = rng.random_range(1..=poles.count);
     let denominator = rounded(&polynomial(rng, count, poles.nearest), 44);
@@ -122,7 +122,7 @@ pub fn rational(rng: &mut impl Rng, poles: Poles) -> Drawn {
     data(&frame, &numerator, &denominator, delay)
 }
 
-fn data(frame: &Frame, numerator: &[f64], denominator: &[f64], delay: usize) -> Drawn {
+fn data(frame: &Frame, numerator: &[f64], denominator: &[f64], delay: usize) -> ExactScene {
     let coefficients = |c: &[f64]| Coefficients::new(c).expect("at most eight poles are drawn");
     let exact = |c: &[f64]| Poly::descending(&c.iter().copied().map(q).collect::<Vec<Q>>());
     let environment = Environment::Rational(Rational {
@@ -214,7 +214,7 @@ pub fn sum_of(a: &(Poly, Poly), b: &(Poly, Poly)) -> (Poly, Poly) {
 }
 
 /// A wall with a random stiffness, damping, filter and delay, near what the device allows.
-pub fn wall(rng: &mut impl Rng) -> Drawn {
+pub fn wall(rng: &mut impl Rng) -> ExactScene {
     let frame = Frame::draw(rng);
     let delay = rng.random_range(0..=8);
     let stiffness = short(frame.unit() * log_uniform(rng, 0.02, 4.0), 16);
@@ -232,7 +232,7 @@ pub fn wall(rng: &mut impl Rng) -> Drawn {
 }
 
 /// A free mode, with or without a wall behind it.
-pub fn free(rng: &mut impl Rng) -> Drawn {
+pub fn free(rng: &mut impl Rng) -> ExactScene {
     let frame = Frame::draw(rng);
     let residual = short(frame.delta * rng.random_range(-0.2..1.0), 24);
     let free = |delay| free_fraction(frame.delta - residual, &frame, delay);
@@ -249,7 +249,7 @@ pub fn free(rng: &mut impl Rng) -> Drawn {
 
 /// Any of the above; rational environments have up to three poles, none nearer the circle than
 /// 0.02, so that the closed loop's eigenvalues are well conditioned.
-pub fn any(rng: &mut impl Rng) -> Drawn {
+pub fn any(rng: &mut impl Rng) -> ExactScene {
     match rng.random_range(0..4) {
         0 => wall(rng),
         1 => free(rng),

@@ -18,12 +18,12 @@ pub struct Infimum {
     /// A number that it is not above.
     pub upper: BigRational,
     /// Where it is.
-    pub place: Place,
+    pub minimizer: Minimizer,
 }
 
 /// Where an infimum over the half line is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum Minimizer {
     /// At 0.
     Zero,
     /// There.
@@ -71,12 +71,12 @@ pub fn infimum(
         waiting.extend(ordered);
     }
     let reach = &best.0 + tolerance(&best.0);
-    let place = match (zero <= reach, infinity <= reach) {
-        (true, _) => Place::Zero,
-        (_, true) => Place::Infinity,
-        _ => Place::At(critical_point(p, r, &best.1, w)),
+    let minimizer = match (zero <= reach, infinity <= reach) {
+        (true, _) => Minimizer::Zero,
+        (_, true) => Minimizer::Infinity,
+        _ => Minimizer::At(critical_point(p, r, &best.1, w)),
     };
-    Infimum { lower, upper: best.0, place }
+    Infimum { lower, upper: best.0, minimizer }
 }
 
 /// A part of `0 <= t <= 1` with the Bernstein coefficients on it, all times one positive number.

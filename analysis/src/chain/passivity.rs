@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::disk::{LeastReal, places};
 use super::exact::Decimal;
-use super::infimum::{Place, infimum};
+use super::infimum::{Minimizer, infimum};
 use super::two_port::TwoPort;
 use super::{Chain, EncoderPlace};
 use crate::quantity::significant;
@@ -147,11 +147,11 @@ impl Chain {
             BigRational::new_raw(numerator, denominator << PRECISION)
         };
         let found = infimum(&p, &r, tolerance);
-        let reached = match found.place {
+        let reached = match found.minimizer {
             _ if p.degree().max(r.degree()) == 0 => Reached::Everywhere,
-            Place::Zero => Reached::AtRest,
-            Place::At(square) => Reached::At(square.sqrt()),
-            Place::Infinity => Reached::AtInfinity,
+            Minimizer::Zero => Reached::AtRest,
+            Minimizer::At(square) => Reached::At(square.sqrt()),
+            Minimizer::Infinity => Reached::AtInfinity,
         };
         (found.lower, found.upper, reached)
     }

@@ -6,16 +6,16 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::dash::Dash;
-use super::sheet::{Frame, whole};
+use super::plot_area::{Frame, whole};
 use super::*;
 use crate::open_loop::{Margin, OpenLoop};
 use crate::quantity::{shortened, significant};
 
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 20;
 /// Heights of the panels in pixels.
 const PANELS: [i32; 2] = [290, 270];
-/// Longest name in the key, in letters.
+/// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 40;
 /// Decades above and below a gain of 1 that are shown unless somebody asks for more.
 const DECADES: f64 = 3.0;
@@ -49,8 +49,8 @@ pub fn bode(
     let gains = span(gains.chain([1.0]));
     let y = wanted.y.clone().unwrap_or(gains.start / 2.0..gains.end * 2.0);
     let words = words(loops);
-    let key = ROW * words.len() as i32 + 10;
-    let height = TITLE_ROOM + PANELS.iter().sum::<i32>() + key;
+    let legend = ROW * words.len() as i32 + 10;
+    let height = TITLE_ROOM + PANELS.iter().sum::<i32>() + legend;
     draw_sized((SIZE.0, height as u32), |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(&shortened(title, 72), text(TITLE))?;
         let (upper, area) = area.split_vertically(units(PANELS[0]));
@@ -58,7 +58,7 @@ pub fn bode(
         paint_gains(&upper, loops, &x, &y)?;
         let phases = padded(span(seen().map(|point| point.phase).chain([-180.0])), 0.06);
         paint_phases(&lower, loops, &x, &phases)?;
-        write_key(&below, &words)
+        write_legend(&below, &words)
     })
 }
 
@@ -212,7 +212,7 @@ pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
     loops.iter().map(of).collect()
 }
 
-fn write_key(area: &Area<'_>, words: &[String]) -> Drawn<()> {
+fn write_legend(area: &Area<'_>, words: &[String]) -> Drawn<()> {
     for (row, line) in words.iter().enumerate() {
         let middle = units(ROW * row as i32 + ROW / 2);
         Dash::of(row).draw(area, &[(units(20), middle), (units(60), middle)], 2)?;

@@ -9,9 +9,9 @@ use super::*;
 use crate::simulation::method::Method;
 use crate::studies::failures::region::{METHODS, Region};
 
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
-/// Lines of the key.
+/// Lines of the legend.
 const ROWS: i32 = 4;
 /// Stiffness in N m/rad at the lower and the upper end of the picture.
 const STIFFNESS: Range<f64> = 300.0..400_000.0;
@@ -39,12 +39,12 @@ pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
     draw_sized(size, |area| {
         let title = "What methods of integration call stable";
         let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
-        let (plots, key) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM - 20));
+        let (plots, legend) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM - 20));
         let panels = plots.split_evenly((1, regions.len()));
         for (panel, region) in panels.iter().zip(regions) {
             paint(panel, region)?;
         }
-        write_key(&key)
+        write_legend(&legend)
     })
 }
 
@@ -140,7 +140,7 @@ fn runs(line: &[(i32, i32)], level: i32) -> Vec<(i32, i32)> {
     runs
 }
 
-fn write_key(area: &Area<'_>) -> Drawn<()> {
+fn write_legend(area: &Area<'_>) -> Drawn<()> {
     let style = || anchored(HPos::Left, VPos::Center);
     let cell = |index: i32| (units(30 + 400 * (index % 2)), units(ROW * (index / 2) + ROW / 2));
     let (x, y) = cell(0);

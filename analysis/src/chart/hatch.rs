@@ -1,4 +1,4 @@
-//! Grounds that can be told apart without colour, also where they are a pixel wide.
+//! Fill patterns that can be told apart without colour, also where they are a pixel wide.
 
 use std::ops::Range;
 
@@ -6,17 +6,17 @@ use firmware::torque::LimitReason;
 use plotters::prelude::*;
 
 use super::{Area, Drawn, FORBIDDEN, UNITS, pen, units};
-use crate::simulation::served::Served;
+use crate::simulation::tick_status::TickStatus;
 
-/// Units between two lines of a hatching; all grounds of a kind share one grid of them, so that
+/// Units between two lines of a hatching; all fills of a kind share one grid of them, so that
 /// narrow ones beside each other show it too.
 const SPACING: i32 = units(7);
 /// Lines that let a black curve be seen on them.
 const INK: RGBColor = RGBColor(150, 150, 150);
 
-/// A ground.
+/// A fill pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum Fill {
     /// Light grey.
     Grey,
     /// Lines that rise to the right.
@@ -31,22 +31,22 @@ pub enum Ground {
     Upright,
 }
 
-impl Ground {
-    /// The ground of samples that were served so; `None` for those that were served in full.
-    pub fn of(served: Served) -> Option<Self> {
-        match served {
-            Served::Ran(LimitReason::None) => None,
-            Served::Ran(LimitReason::Torque) => Some(Self::Grey),
-            Served::Ran(LimitReason::Converter) => Some(Self::Rising),
-            Served::Ran(LimitReason::Angle) => Some(Self::Falling),
-            Served::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
-            Served::Ran(LimitReason::Ramp) => Some(Self::Upright),
-            Served::Missed => Some(Self::Level),
+impl Fill {
+    /// The fill behind samples of this status; `None` for those whose torque was not limited.
+    pub fn of(status: TickStatus) -> Option<Self> {
+        match status {
+            TickStatus::Ran(LimitReason::None) => None,
+            TickStatus::Ran(LimitReason::Torque) => Some(Self::Grey),
+            TickStatus::Ran(LimitReason::DacRange) => Some(Self::Rising),
+            TickStatus::Ran(LimitReason::Angle) => Some(Self::Falling),
+            TickStatus::Ran(LimitReason::NotANumber) => Some(Self::Crossed),
+            TickStatus::Ran(LimitReason::Ramp) => Some(Self::Upright),
+            TickStatus::Missed => Some(Self::Level),
         }
     }
 
     /// Covers a rectangle, in units of the area.
-    pub(super) fn fill(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
+    pub(super) fn draw(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
         let lines = match self {
             Self::Grey => {
                 let corners = [(x.start, y.start), (x.end, y.end)];
@@ -64,9 +64,9 @@ impl Ground {
         Ok(())
     }
 
-    /// A rectangle of it with a border, for a key.
+    /// A rectangle of it with a border, for a legend.
     pub(super) fn swatch(self, area: &Area<'_>, x: &Range<i32>, y: &Range<i32>) -> Drawn<()> {
-        self.fill(area, x, y)?;
+        self.draw(area, x, y)?;
         area.draw(&Rectangle::new([(x.start, y.start), (x.end, y.end)], pen(1)))
     }
 }
@@ -118,11 +118,11 @@ mod tests {
     }
 
     #[test]
-    fn every_reason_has_a_ground_of_its_own() {
-        let grounds: Vec<_> = Served::all().filter_map(Ground::of).collect();
-        assert_eq!(grounds.len(), Served::all().count() - 1);
-        for (index, ground) in grounds.iter().enumerate() {
-            assert!(!grounds[..index].contains(ground));
+    fn every_reason_has_a_fill_of_its_own() {
+        let fills: Vec<_> = TickStatus::all().filter_map(Fill::of).collect();
+        assert_eq!(fills.len(), TickStatus::all().count() - 1);
+        for (index, fill) in fills.iter().enumerate() {
+            assert!(!fills[..index].contains(fill));
         }
     }
 }

@@ -9,7 +9,7 @@ use super::*;
 use crate::limits::Point;
 use crate::quantity::significant;
 
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 20;
 /// Room for the numbers and the name of the axis on the right, in pixels.
 const RIGHT_LABELS: i32 = units(84);
@@ -64,13 +64,13 @@ pub fn limits(
     let left = stiffness.start / (height(&ripple) * APART * APART)..stiffness.end * APART;
     let right = ripple.start / APART..ripple.end * height(&stiffness) * APART * APART;
     let left = wanted.unwrap_or(left);
-    let key = ROW * (curves.len() as i32 + 3) + 10;
-    let size = (SIZE.0, (SIZE.1 as i32 + key) as u32);
+    let legend = ROW * (curves.len() as i32 + 3) + 10;
+    let size = (SIZE.0, (SIZE.1 as i32 + legend) as u32);
     draw_sized(size, |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
         let (plot, below) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
         paint(&plot, curves, (rates, left, right), own)?;
-        write_key(&below, note, curves, own)
+        write_legend(&below, note, curves, own)
     })
 }
 
@@ -136,7 +136,7 @@ fn paint(
     Ok(())
 }
 
-fn write_key(area: &Area<'_>, note: &str, curves: &[DelayCurve], own: &Own) -> Drawn<()> {
+fn write_legend(area: &Area<'_>, note: &str, curves: &[DelayCurve], own: &Own) -> Drawn<()> {
     let style = || anchored(HPos::Left, VPos::Center);
     let middle = |row: usize| units(ROW * row as i32 + ROW / 2);
     for (row, curve) in curves.iter().enumerate() {

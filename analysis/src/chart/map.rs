@@ -4,13 +4,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
-use super::hatch::Ground;
-use super::strips::polygons;
+use super::cell_polygons::polygons;
+use super::hatch::Fill;
 use super::*;
-use crate::map::border::Border;
-use crate::map::{Map, Region};
+use crate::stability_map::border::Border;
+use crate::stability_map::{Map, Region};
 
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
 
 /// What a map is drawn with.
@@ -35,10 +35,10 @@ fn grey(region: Region) -> RGBColor {
 }
 
 /// The lines over the regions in which a verdict is missing or wrong.
-fn hatching(region: Region) -> Option<Ground> {
+fn hatching(region: Region) -> Option<Fill> {
     match region {
-        Region::Undecided => Some(Ground::Rising),
-        Region::Wrong => Some(Ground::Crossed),
+        Region::Undecided => Some(Fill::Rising),
+        Region::Wrong => Some(Fill::Crossed),
         _ => None,
     }
 }
@@ -54,30 +54,30 @@ fn name(region: Region) -> &'static str {
     }
 }
 
-/// The regions of the key, the best first; what is rarely there only where it is.
+/// The regions of the legend, the best first; what is rarely there only where it is.
 fn named(map: &Map) -> Vec<Region> {
     let is_named = |region: &Region| hatching(*region).is_none() || map.share(*region) > 0.0;
     Region::ALL.into_iter().rev().filter(is_named).collect()
 }
 
-/// Height in pixels of the map's key.
-fn key(map: &Map, overlay: &Overlay) -> i32 {
+/// Height in pixels of the map's legend.
+fn legend(map: &Map, overlay: &Overlay) -> i32 {
     let entries = named(map).len() + usize::from(overlay.border.is_some()) + 1;
     ROW * entries.div_ceil(2) as i32 + 20
 }
 
-/// Draws a map: the regions in greys, their key below, the border of the closed form as a broken
+/// Draws a map: the regions in greys, their legend below, the border of the closed form as a broken
 /// line, the scene as a cross.
 ///
 /// # Errors
 /// Where the drawing fails.
 pub fn map(map: &Map, overlay: &Overlay) -> Result<Picture, ChartError> {
-    let size = (SIZE.0, SIZE.1 + key(map, overlay) as u32);
+    let size = (SIZE.0, SIZE.1 + legend(map, overlay) as u32);
     draw_sized(size, |area| {
         let area = area.margin(units(TOP), 0, 0, 0).titled(&overlay.title, text(TITLE))?;
-        let (plot, key) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
+        let (plot, legend) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM));
         regions(&plot, map, overlay)?;
-        write_key(&key, map, overlay)
+        write_legend(&legend, map, overlay)
     })
 }
 
@@ -130,17 +130,17 @@ fn hatch(chart: &Plane<'_, '_>, map: &Map) -> Drawn<()> {
     for column in 0..map.columns {
         let x = along(width, column, map.columns)..along(width, column + 1, map.columns);
         for row in 0..map.rows {
-            let Some(ground) = hatching(map.at(column, row)) else { continue };
+            let Some(fill) = hatching(map.at(column, row)) else { continue };
             let top = height as i32;
             let y = top - along(height, row + 1, map.rows)..top - along(height, row, map.rows);
-            ground.fill(&area, &x, &y)?;
+            fill.draw(&area, &x, &y)?;
         }
     }
     Ok(())
 }
 
 /// The regions that the map has, each with its grey, then the lines and the cross.
-fn write_key(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
+fn write_legend(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
     let cell = |index: usize| {
         (units(30 + 390 * (index % 2) as i32), units(ROW * (index / 2) as i32 + ROW / 2))
     };
@@ -150,8 +150,8 @@ fn write_key(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
         let (x, y) = cell(index);
         let corners = [(x, y - units(7)), (x + units(34), y + units(7))];
         area.draw(&Rectangle::new(corners, grey(region).filled()))?;
-        if let Some(ground) = hatching(region) {
-            ground.fill(area, &(x..x + units(34)), &(y - units(7)..y + units(7)))?;
+        if let Some(fill) = hatching(region) {
+            fill.draw(area, &(x..x + units(34)), &(y - units(7)..y + units(7)))?;
         }
         area.draw(&Rectangle::new(corners, pen(1)))?;
         let share = crate::quantity::significant(100.0 * map.share(region), 3);

@@ -3,6 +3,7 @@
 
 pub mod axes;
 pub mod bode;
+pub mod cell_polygons;
 pub mod dash;
 pub mod data;
 mod error;
@@ -15,8 +16,7 @@ pub mod limits;
 pub mod map;
 pub mod nyquist;
 pub mod picture;
-mod sheet;
-pub mod strips;
+mod plot_area;
 pub mod trace;
 pub mod tradeoff;
 

@@ -5,12 +5,12 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axes::Axes;
 use super::dash::{Dash, SOLID};
-use super::hatch::Ground;
-use super::sheet::{Frame, whole};
+use super::hatch::Fill;
+use super::plot_area::{Frame, whole};
 use super::*;
 use crate::quantity::{shortened, significant};
-use crate::simulation::served::Served;
-use crate::trace::{Clock, Trace};
+use crate::simulation::tick_status::TickStatus;
+use crate::trace::{TimeUnit, Trace};
 
 /// Ends a run where a picture cannot show it any more.
 pub fn drawable(trace: Trace) -> Trace {
@@ -19,7 +19,7 @@ pub fn drawable(trace: Trace) -> Trace {
 
 /// The numbers of the picture.
 pub fn data(trace: Trace) -> Data {
-    let (velocity, clock) = (trace.velocities(), trace.clock);
+    let (velocity, time_unit) = (trace.velocities(), trace.time_unit);
     let rows = (0..trace.time.len()).map(move |i| {
         let known = |column: &[f64]| Cell::from(column.get(i).copied());
         let limit = trace.limit.get(i).map_or("", |limit| limit.as_str());
@@ -27,24 +27,24 @@ pub fn data(trace: Trace) -> Data {
         let motion = [trace.time[i].into(), trace.position[i].into(), known(&velocity)];
         motion.into_iter().chain(torques).chain([limit.into()]).collect()
     });
-    match clock {
-        Clock::Seconds => {
+    match time_unit {
+        TimeUnit::Seconds => {
             Data::new(&["time", "position", "velocity", "torque", "hand", "limit"], rows)
         }
-        Clock::Ticks => {
+        TimeUnit::Ticks => {
             Data::new(&["tick", "position", "velocity", "torque", "hand", "limit"], rows)
         }
     }
 }
 
 /// What limited the torque, each once.
-fn reasons(trace: &Trace) -> Vec<(Served, Ground)> {
-    let occurs = |served: &Served| trace.limit.contains(served);
-    let grounded = |served| Some((served, Ground::of(served)?));
-    Served::all().filter(occurs).filter_map(grounded).collect()
+fn reasons(trace: &Trace) -> Vec<(TickStatus, Fill)> {
+    let occurs = |status: &TickStatus| trace.limit.contains(status);
+    let grounded = |status| Some((status, Fill::of(status)?));
+    TickStatus::all().filter(occurs).filter_map(grounded).collect()
 }
 
-/// Height of the line of the key that names the grounds, in pixels.
+/// Height of the line of the legend that names the fills, in pixels.
 const ROW: i32 = 24;
 /// Height of a line of words, in pixels.
 const LINE: i32 = 20;
@@ -57,7 +57,7 @@ const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive i
                      the motor applies minus the coupling torque";
 
 /// Draws position above velocity and torque, over one time axis. Where the torque was limited or a
-/// tick was missed, the ground says why. `wanted` are times and angles to be shown in place of all.
+/// tick was missed, the fill says why. `wanted` are times and angles to be shown in place of all.
 ///
 /// # Errors
 /// Where there are fewer than two samples.
@@ -73,18 +73,18 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     meets("vertical", wanted.y.as_ref(), &span(seen))?;
     let angles = wanted.y.clone().unwrap_or(angle_axis(trace, &times));
     let words = wrapped(&words(trace, &times, &angles));
-    let key = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
-    let height = TITLE_ROOM + key + PANELS.iter().sum::<i32>() + LINE + 4;
+    let legend = LINE * words.len() as i32 + if reasons.is_empty() { 0 } else { ROW };
+    let height = TITLE_ROOM + legend + PANELS.iter().sum::<i32>() + LINE + 4;
     draw_sized((SIZE.0, height as u32), |area| {
         let area =
             area.margin(units(TOP), 0, 0, 0).titled(&shortened(&trace.title, 72), text(TITLE))?;
-        let (above, area) = area.split_vertically(units(key));
+        let (above, area) = area.split_vertically(units(legend));
         for (row, line) in words.iter().enumerate() {
             let place = (units(SIZE.0 as i32 / 2), units(LINE * row as i32 + LINE / 2));
             above.draw(&Text::new(line.clone(), place, anchored(HPos::Center, VPos::Center)))?;
         }
         let (_, grounds) = above.split_vertically(units(LINE * words.len() as i32));
-        write_grounds(&grounds, &reasons)?;
+        write_fill_legend(&grounds, &reasons)?;
         let (first, area) = area.split_vertically(units(PANELS[0]));
         let (second, area) = area.split_vertically(units(PANELS[1]));
         let (third, signs) = area.split_vertically(units(PANELS[2]));
@@ -120,9 +120,9 @@ fn velocity(area: &Area<'_>, trace: &Trace, times: &Range<f64>) -> Drawn<()> {
     // One from angles has steps, which are small beside the velocity itself.
     let rest = trace.velocity.is_empty().then_some(0.0);
     let y = padded(span(seen(&velocity, trace, times).chain(rest)), 0.12);
-    let name = match trace.clock {
-        Clock::Seconds => "velocity (rad/s)",
-        Clock::Ticks => "velocity (rad/tick)",
+    let name = match trace.time_unit {
+        TimeUnit::Seconds => "velocity (rad/s)",
+        TimeUnit::Ticks => "velocity (rad/tick)",
     };
     let mut chart = panel(area, times, &y, None, name)?;
     if y.contains(&0.0) {
@@ -223,9 +223,9 @@ fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> 
         words.push(format!("velocity from {few}"));
     }
     if let Some(lost) = trace.lost {
-        let unit = match trace.clock {
-            Clock::Seconds => "s",
-            Clock::Ticks => "ticks",
+        let unit = match trace.time_unit {
+            TimeUnit::Seconds => "s",
+            TimeUnit::Ticks => "ticks",
         };
         let when = significant(lost, 6);
         words.push(format!("not drawn from {when} {unit} on: too large for a picture"));
@@ -247,35 +247,35 @@ fn wrapped(words: &[String]) -> Vec<String> {
     lines
 }
 
-/// What the grounds of the torque mean, side by side.
-fn write_grounds(area: &Area<'_>, reasons: &[(Served, Ground)]) -> Drawn<()> {
+/// The legend of the torque's fills, side by side.
+fn write_fill_legend(area: &Area<'_>, reasons: &[(TickStatus, Fill)]) -> Drawn<()> {
     const SWATCH: i32 = 30;
     const GAP: i32 = 8;
     // About as wide as letters are.
     let width = |name: &str| SWATCH + 3 * GAP + 7 * name.len() as i32;
-    let all: i32 = reasons.iter().map(|(served, _)| width(name(*served))).sum();
+    let all: i32 = reasons.iter().map(|(status, _)| width(name(*status))).sum();
     let mut x = (SIZE.0 as i32 - all) / 2;
-    for &(served, ground) in reasons {
-        ground.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
+    for &(status, fill) in reasons {
+        fill.swatch(area, &(units(x)..units(x + SWATCH)), &(units(4)..units(ROW - 4)))?;
         let place = (units(x + SWATCH + GAP), units(ROW / 2));
         let style = anchored(HPos::Left, VPos::Center);
-        area.draw(&Text::new(name(served), place, style))?;
-        x += width(name(served));
+        area.draw(&Text::new(name(status), place, style))?;
+        x += width(name(status));
     }
     Ok(())
 }
 
-/// What a ground means.
-fn name(served: Served) -> &'static str {
-    use firmware::torque::LimitReason::{Angle, Converter, None, NotANumber, Ramp, Torque};
-    match served {
-        Served::Ran(None) => "not limited",
-        Served::Ran(Torque) => "torque limit",
-        Served::Ran(Converter) => "converter limit",
-        Served::Ran(Angle) => "angle out of range",
-        Served::Ran(NotANumber) => "not a number",
-        Served::Ran(Ramp) => "fading in or out",
-        Served::Missed => "tick missed",
+/// The meaning of a fill.
+fn name(status: TickStatus) -> &'static str {
+    use firmware::torque::LimitReason::{Angle, DacRange, None, NotANumber, Ramp, Torque};
+    match status {
+        TickStatus::Ran(None) => "not limited",
+        TickStatus::Ran(Torque) => "torque limit",
+        TickStatus::Ran(DacRange) => "converter limit",
+        TickStatus::Ran(Angle) => "angle out of range",
+        TickStatus::Ran(NotANumber) => "not a number",
+        TickStatus::Ran(Ramp) => "fading in or out",
+        TickStatus::Missed => "tick missed",
     }
 }
 
@@ -298,16 +298,16 @@ fn torque(
     area: &Area<'_>,
     trace: &Trace,
     times: &Range<f64>,
-    reasons: &[(Served, Ground)],
+    reasons: &[(TickStatus, Fill)],
 ) -> Drawn<()> {
     let (y, limits) = torque_axis(trace, times);
-    let axis = match trace.clock {
-        Clock::Seconds => "time (s)",
-        Clock::Ticks => "time (ticks)",
+    let axis = match trace.time_unit {
+        TimeUnit::Seconds => "time (s)",
+        TimeUnit::Ticks => "time (ticks)",
     };
     let mut chart = panel(area, times, &y, Some(axis), "torque (N m)")?;
-    for &(served, ground) in reasons {
-        shade(&chart, trace, served, ground)?;
+    for &(status, fill) in reasons {
+        shade(&chart, trace, status, fill)?;
     }
     let level = |value: f64| [(times.start, value), (times.end, value)];
     if y.contains(&0.0) {
@@ -324,8 +324,8 @@ fn torque(
     release(&mut chart, trace, times, &y, false)
 }
 
-/// Covers the ground of the samples that were served so.
-fn shade(chart: &Plane<'_, '_>, trace: &Trace, served: Served, ground: Ground) -> Drawn<()> {
+/// Fills the background of the samples of this status.
+fn shade(chart: &Plane<'_, '_>, trace: &Trace, status: TickStatus, fill: Fill) -> Drawn<()> {
     let plot = chart.plotting_area();
     let area = plot.strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
@@ -338,8 +338,8 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, served: Served, ground: Ground) -
     };
     let first = trace.time.partition_point(|time| *time < times.start).saturating_sub(1);
     let last = trace.time.partition_point(|time| *time < times.end);
-    for run in runs(&trace.limit[..last.min(trace.limit.len())], first, served, place) {
-        ground.fill(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
+    for run in runs(&trace.limit[..last.min(trace.limit.len())], first, status, place) {
+        fill.draw(&area, &(run.start..run.end.min(width as i32)), &(0..height as i32))?;
     }
     Ok(())
 }
@@ -347,14 +347,14 @@ fn shade(chart: &Plane<'_, '_>, trace: &Trace, served: Served, ground: Ground) -
 /// Where samples that were served so are, in units of the drawing: at least a pixel each, and one
 /// where they are less than a pixel apart; those before the `first` left out.
 fn runs(
-    limit: &[Served],
+    limit: &[TickStatus],
     first: usize,
-    served: Served,
+    status: TickStatus,
     place: impl Fn(usize) -> i32,
 ) -> Vec<Range<i32>> {
     let mut runs: Vec<Range<i32>> = Vec::new();
     let samples = limit.iter().enumerate().skip(first);
-    for (sample, _) in samples.filter(|(_, is)| **is == served) {
+    for (sample, _) in samples.filter(|(_, is)| **is == status) {
         let from = place(sample);
         let to = place(sample + 1).max(from + units(1));
         match runs.last_mut() {
@@ -409,8 +409,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_of_one_reason_are_one_ground_and_none_is_lost() {
-        let [ran, missed] = [Served::IN_FULL, Served::Missed];
+    fn samples_of_one_reason_are_one_fill_and_none_is_lost() {
+        let [ran, missed] = [TickStatus::UNLIMITED, TickStatus::Missed];
         let limit = [ran, missed, missed, ran, missed, ran, ran, ran, missed];
         let wide = runs(&limit, 0, missed, |sample| units(10 * sample as i32));
         assert_eq!(wide, [units(10)..units(30), units(40)..units(50), units(80)..units(90)]);

@@ -16,9 +16,9 @@ use marks::Mark;
 
 /// Width and height of a panel in pixels.
 const PANEL: (u32, u32) = (520, 350);
-/// Height of a line of the key in pixels.
+/// Height of a line of the legend in pixels.
 const ROW: i32 = 22;
-/// Width of an entry of the key in pixels.
+/// Width of an entry of the legend in pixels.
 const ENTRY: i32 = 240;
 /// Room inside a panel around its points, as a part of a decade.
 const ROOM: f64 = 0.35;
@@ -90,7 +90,7 @@ pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError
         for (plot, (case, error)) in plots.iter().zip(panels.each()) {
             Panel { table, case, error }.paint(plot, costs.clone())?;
         }
-        write_key(&below, table, per_row)
+        write_legend(&below, table, per_row)
     })
 }
 
@@ -209,12 +209,12 @@ fn stairs(front: impl Iterator<Item = (i32, i32)>) -> Vec<(i32, i32)> {
     line
 }
 
-/// Rows of families in the key.
+/// Rows of families in the legend.
 fn rows(table: &Tradeoff, per_row: i32) -> i32 {
     (table.families().len() as i32 + per_row - 1) / per_row
 }
 
-fn write_key(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
+fn write_legend(area: &Area<'_>, table: &Tradeoff, per_row: i32) -> Drawn<()> {
     let style = || anchored(HPos::Left, VPos::Center);
     let place = |index: usize| {
         let (row, column) = (index as i32 / per_row, index as i32 % per_row);

@@ -10,17 +10,17 @@ use firmware::certificate::Parameter;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Scene};
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
-use crate::emulator::Report;
-use crate::listing::listing;
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
+use crate::compare_run::{Backend, Input, run_with_backend};
+use crate::emulator::EmulatorReport;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Beside, Input, play};
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
+use crate::text_table::markdown_table;
 use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 
 /// Arguments of `haptic bench`.
@@ -31,7 +31,7 @@ pub struct Arguments {
     pub parts: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Most time in microseconds that a verdict may take on one core.
@@ -68,15 +68,15 @@ const C_CONTACT: f64 = 53.0;
 const C_FREE: f64 = 42.0;
 
 /// Ticks of each run in the emulator.
-const TICKS: usize = 5000;
+const DEFAULT_TICKS: usize = 5000;
 
 /// Measures and prints.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if arguments.parts {
         let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
         let scenes = inventories(&toolchain)?;
         arguments.answer.print(&scenes, |scenes| format!("{}\n", parts::table(scenes)))?;
-        return Ok(Answer::Yes);
+        return Ok(CommandStatus::Success);
     }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         figures.extend(scene.figures());
     }
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 /// What every program has.
@@ -195,11 +195,11 @@ fn on_target(
     for (format, elf) in builds {
         let spinner = progress::spinner(&format!("{name} in {format}"));
         let mut controller = program.controller(format, &program.transducers)?;
-        let outcome = play(
+        let outcome = run_with_backend(
             Input::Hand(Box::new(program.device())),
             controller.as_mut(),
-            Some(Beside::Emulator(elf)),
-            TICKS,
+            Some(Backend::Emulator(elf)),
+            DEFAULT_TICKS,
             || {},
         )?;
         spinner.finish_and_clear();
@@ -235,7 +235,7 @@ fn on_target(
 
 /// The servo's interrupt and its parts. The parts are measured by themselves, outside of the
 /// interrupt, where the compiler can share less between them.
-fn interrupt(name: &str, board: &Report, has_budget: bool, figures: &mut Vec<Figure>) {
+fn interrupt(name: &str, board: &EmulatorReport, has_budget: bool, figures: &mut Vec<Figure>) {
     let budget = has_budget.then_some(INTERRUPT_BUDGET);
     let whole = board.interrupt_instructions.max as f64;
     let mut add = |what: &str, value: f64, against: Option<f64>, source| {
@@ -292,7 +292,8 @@ fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), Co
 const LIVE_COUPLING: f64 = 44.0;
 
 fn table(figures: &[Figure]) -> Table {
-    let mut table = listing(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
+    let mut table =
+        markdown_table(["figure", "value", "unit", "against", "ratio", "which is"], [1, 3, 4]);
     for figure in figures {
         let number =
             |value: Option<f64>| value.map_or_else(String::new, |value| significant(value, 4));

@@ -4,12 +4,12 @@ use std::io;
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
-use super::common::{Arithmetic, ForWhom, SceneArgument};
+use super::shared_arguments::{CoefficientFormat, JsonOption, SceneArgument};
+use super::status::{CommandError, CommandStatus};
 use crate::batch;
 use crate::quantity::significant;
 use crate::terminal;
-use crate::verdict::{Enclosure, Report, Verdict};
+use crate::verdict::{Enclosure, Verdict, VerdictReport};
 
 /// Arguments of `haptic certify`.
 #[derive(Debug, Args)]
@@ -19,10 +19,10 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub arithmetic: Arithmetic,
+    pub arithmetic: CoefficientFormat,
     /// FILE has a scene as JSON on each line; print a result a line, in the same order. The exit status
     /// is 0 where all lines were answered, whatever the verdicts and errors in them
     #[arg(long)]
@@ -31,23 +31,27 @@ pub struct Arguments {
 
 /// Answers for a file or for a batch of scenes. A batch is answered with yes if it could be read:
 /// each of its lines has an answer of its own.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     if arguments.batch {
         let format = arguments.arithmetic.format;
         batch::certify(&arguments.scene.file, format, &mut io::stdout().lock())?;
-        return Ok(Answer::Yes);
+        return Ok(CommandStatus::Success);
     }
     let report = arguments.arithmetic.judge(&arguments.scene.load()?)?;
     let width = terminal::output_width();
     arguments.answer.print(&report, |report| terminal::wrapped(&text(report), width, VALUES))?;
-    Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
+    Ok(if report.verdict == Verdict::Certified {
+        CommandStatus::Success
+    } else {
+        CommandStatus::NegativeVerdict
+    })
 }
 
 /// Column at which values begin.
 const VALUES: usize = 19;
 
 /// The report for a person.
-pub fn text(report: &Report) -> String {
+pub fn text(report: &VerdictReport) -> String {
     let mut rows = vec![
         ("scene", report.name.clone()),
         ("verdict", format!("{:?}", report.verdict).to_uppercase()),

@@ -9,23 +9,23 @@ use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
 
-use super::answer::{Answer, CommandError};
-use super::common::{FormatArgument, MOST_TICKS, TICKS};
 use super::outcome::section;
+use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};
+use super::status::{CommandError, CommandStatus};
 use crate::chain::Chain;
 use crate::chart::growth::growth;
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::trace;
 use crate::chart::{ChartError, Output, Picture, Window};
+use crate::compare_run::{self, Backend, Input, RunOutcome, run_with_backend};
 use crate::device::Motion;
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{self, Beside, Input, Outcome, play};
-use crate::simulation::{Experiment, Stride, simulate};
-use crate::toolchain::{self, Tools};
+use crate::simulation::{Experiment, Integration, simulate};
+use crate::toolchain::{self, NumberFormat, Tools};
 use crate::verdict::{self, Verdict};
-use crate::worst_hand::{self, Held};
+use crate::worst_hand::{self, HandCase};
 
 /// Arguments of `haptic demo`.
 #[derive(Debug, Args)]
@@ -34,11 +34,11 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
     /// Number format of the servo
-    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
-    pub format: FormatArgument,
+    #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
+    pub format: NumberFormat,
     /// Ticks of each run; a picture needs two
-    #[arg(long, value_name = "N", default_value_t = TICKS,
-          value_parser = RangedU64ValueParser::<usize>::new().range(2..=MOST_TICKS))]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_TICKS,
+          value_parser = RangedU64ValueParser::<usize>::new().range(2..=MAX_TICKS))]
     pub ticks: usize,
 }
 
@@ -82,7 +82,7 @@ const PAST_THE_LINE: Scene = Scene {
 
 /// Sets up, builds, certifies, runs and draws. The answer is no where a scene is not certified or
 /// a code of the emulated board differs from the host's.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let mut out = io::stdout().lock();
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         .map_err(|source| CommandError::Unwritable { path: folder.clone(), source })?;
     let mut all_well = true;
     let spinner = progress::spinner(&format!("building {}", program::NAMES.join(", ")));
-    let built = toolchain.build_scenes(program::NAMES, arguments.format.into())?;
+    let built = toolchain.build_scenes(program::NAMES, arguments.format)?;
     spinner.finish_and_clear();
     for (program, elf) in program::ALL.iter().zip(&built) {
         let report = verdict::judge(program.name, &program.scene);
@@ -118,18 +118,22 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     }
     writeln!(out, "pictures: {}", folder.display())?;
     out.flush()?;
-    Ok(if all_well { Answer::Yes } else { Answer::No })
+    Ok(if all_well { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
-fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outcome, CommandError> {
-    let mut controller = program.controller(arguments.format.into(), &program.transducers)?;
+fn emulate(
+    program: &Program,
+    elf: &Path,
+    arguments: &Arguments,
+) -> Result<RunOutcome, CommandError> {
+    let mut controller = program.controller(arguments.format, &program.transducers)?;
     let ticks = arguments.ticks;
     let bar = progress::bar(ticks as u64, program.name);
     let stepper = progress::stepper(&bar);
-    let outcome = play(
+    let outcome = run_with_backend(
         Input::Hand(Box::new(program.device())),
         controller.as_mut(),
-        Some(Beside::Emulator(elf)),
+        Some(Backend::Emulator(elf)),
         ticks,
         stepper,
     )?;
@@ -137,10 +141,11 @@ fn emulate(program: &Program, elf: &Path, arguments: &Arguments) -> Result<Outco
     Ok(outcome)
 }
 
-fn draw_run(folder: &Path, program: &Program, outcome: &Outcome) -> Result<(), CommandError> {
-    let script = (program.script)();
-    let title = format!("{}: {}", program.name, script.story);
-    let mut picture = scenario::trace(title, program.scene.timing.period, &outcome.run, &script);
+fn draw_run(folder: &Path, program: &Program, outcome: &RunOutcome) -> Result<(), CommandError> {
+    let trajectory = (program.trajectory)();
+    let title = format!("{}: {}", program.name, trajectory.description);
+    let mut picture =
+        compare_run::trace(title, program.scene.timing.period, &outcome.run, &trajectory);
     picture.face = face(&program.scene.environment);
     picture.torque_limit = program.scene.torque_limit;
     Ok(write(folder, &format!("{}.svg", program.name), &trace(&picture, &Window::default())?)?)
@@ -157,12 +162,12 @@ fn face(environment: &Environment) -> Option<f64> {
 }
 
 /// Ticks in which the motion grows by a factor.
-fn ticks_to(factor: f64, held: &Held) -> f64 {
+fn ticks_to(factor: f64, held: &HandCase) -> f64 {
     factor.ln() / held.spectral_radius.ln()
 }
 
 /// Angle in rad from a touch until the oscillation has grown a thousandfold.
-fn touched(device: &Chain, held: &Held) -> Result<Vec<f64>, CommandError> {
+fn touched(device: &Chain, held: &HandCase) -> Result<Vec<f64>, CommandError> {
     const TOUCH: f64 = 0.01;
     let experiment = Experiment {
         plant: worst_hand::plant(device, 1.0, &held.hand),
@@ -170,7 +175,7 @@ fn touched(device: &Chain, held: &Held) -> Result<Vec<f64>, CommandError> {
         samples: ticks_to(1e3, held) as usize,
         ..Experiment::still(&PAST_THE_LINE)
     };
-    Ok(simulate(&experiment, Stride::default())?.position)
+    Ok(simulate(&experiment, Integration::default())?.position)
 }
 
 fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError> {

@@ -7,8 +7,8 @@ use clap::{Args, Subcommand};
 use firmware::scene::Coupling;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, folder, json};
+use super::shared_arguments::{JsonOption, folder, json};
+use super::status::{CommandError, CommandStatus};
 use crate::design::{self, Choice, Quantity, SAMPLES, Terms};
 use crate::file::simulation::HandTorque;
 use crate::file::{self, SceneFile, write};
@@ -19,7 +19,7 @@ use crate::quantity::significant;
 pub struct Arguments {
     /// What is looked for.
     #[command(subcommand)]
-    pub question: Question,
+    pub question: DesignGoal,
     /// Part of the device's passivity to count on, above 0 and up to 1
     #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part,
           allow_negative_numbers = true)]
@@ -33,12 +33,12 @@ pub struct Arguments {
     pub output: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// The directions of a design.
 #[derive(Debug, Subcommand)]
-pub enum Question {
+pub enum DesignGoal {
     /// The most of one quantity that may be rendered on the scene's device
     Largest {
         /// Which quantity
@@ -98,7 +98,7 @@ struct Report {
 }
 
 /// What is asked for: which end of it, its name, its unit.
-struct Sought {
+struct SoughtQuantity {
     which: &'static str,
     name: &'static str,
     unit: &'static str,
@@ -106,11 +106,11 @@ struct Sought {
 }
 
 /// Answers: no where nothing passes.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let coupling = if arguments.keep_coupling { Choice::Kept } else { Choice::Standard };
     let terms = Terms { safety: arguments.safety, coupling };
     match &arguments.question {
-        Question::Border { first, second, file, points } => {
+        DesignGoal::Border { first, second, file, points } => {
             let file = file::load(file)?;
             let points = design::border(&file.scene, [*first, *second], *points as usize, &terms);
             let prepared =
@@ -120,10 +120,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             }
             border(arguments, [*first, *second], &points)
         }
-        Question::Largest { quantity, file } => {
+        DesignGoal::Largest { quantity, file } => {
             let file = arguments.load(file)?;
             let (name, unit) = quantity.name_and_unit();
-            let sought = Sought { which: "largest", name, unit, note: None };
+            let sought = SoughtQuantity { which: "largest", name, unit, note: None };
             let whole = |scene| vec![SceneFile { scene, ..file.clone() }];
             let found = match design::largest(&file.scene, *quantity, &terms) {
                 design::Answer::Limit(value, scene) => design::Answer::Limit(value, whole(scene)),
@@ -135,20 +135,20 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             };
             answer(arguments, &sought, &found, &[file])
         }
-        Question::Device { files } => {
+        DesignGoal::Device { files } => {
             let files = arguments.load_all(files)?;
             let unit = "N m s/rad";
             let sought = if files.iter().all(|file| file.chain.is_rigid()) {
-                Sought { which: "least", name: "device damping", unit, note: None }
+                SoughtQuantity { which: "least", name: "device damping", unit, note: None }
             } else {
                 let note = Some("of the chain, this damper alone was changed");
-                Sought { which: "least", name: "damping of the motor's mass", unit, note }
+                SoughtQuantity { which: "least", name: "damping of the motor's mass", unit, note }
             };
             answer(arguments, &sought, &design::device(&files, &terms), &files)
         }
-        Question::Period { files } => {
+        DesignGoal::Period { files } => {
             let files = arguments.load_all(files)?;
-            let sought = Sought { which: "longest", name: "period", unit: "s", note: None };
+            let sought = SoughtQuantity { which: "longest", name: "period", unit: "s", note: None };
             answer(arguments, &sought, &design::period(&files, &terms), &files)
         }
     }
@@ -176,7 +176,7 @@ fn border(
     arguments: &Arguments,
     quantities: [Quantity; 2],
     points: &[(f64, f64)],
-) -> Result<Answer, CommandError> {
+) -> Result<CommandStatus, CommandError> {
     let mut out = io::stdout().lock();
     let [first, second] = quantities.map(|quantity| quantity.name_and_unit().0);
     if arguments.answer.json {
@@ -189,10 +189,10 @@ fn border(
         }
     }
     out.flush()?;
-    Ok(if points.is_empty() { Answer::No } else { Answer::Yes })
+    Ok(if points.is_empty() { CommandStatus::NegativeVerdict } else { CommandStatus::Success })
 }
 
-impl Sought {
+impl SoughtQuantity {
     /// The answer as a comment of TOML.
     fn comment(&self, found: &design::Answer<Vec<SceneFile>>) -> String {
         let Self { which, name, unit, note } = self;
@@ -255,10 +255,10 @@ fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
 /// comment in them. Several scenes are no one file, and go into a folder.
 fn answer(
     arguments: &Arguments,
-    sought: &Sought,
+    sought: &SoughtQuantity,
     found: &design::Answer<Vec<SceneFile>>,
     asked: &[SceneFile],
-) -> Result<Answer, CommandError> {
+) -> Result<CommandStatus, CommandError> {
     let (value, files) = match found {
         design::Answer::Limit(value, files) => (Some(*value), files.as_slice()),
         design::Answer::Unlimited(files) => (None, files.as_slice()),
@@ -281,7 +281,7 @@ fn answer(
     }
     let mut out = io::stdout().lock();
     if arguments.answer.json {
-        let Sought { name: quantity, unit, .. } = *sought;
+        let SoughtQuantity { name: quantity, unit, .. } = *sought;
         let report =
             Report { quantity, unit, value, limited: value.is_some(), possible, notes, scenes };
         json(&mut out, &report)?;
@@ -294,7 +294,7 @@ fn answer(
         }
     }
     out.flush()?;
-    Ok(if possible { Answer::Yes } else { Answer::No })
+    Ok(if possible { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 /// Writes each scene as `design-1.toml` and so on.

@@ -3,11 +3,11 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
 use crate::chain::{Chain, ExcessPassivity, NoPassivity, Reached};
 use crate::file::{self, DeviceFile};
-use crate::mu::Check;
+use crate::mu_analysis::Check;
 use crate::quantity::significant;
 
 /// Arguments of `haptic device`.
@@ -18,7 +18,7 @@ pub struct Arguments {
     pub file: String,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// What is known of a device.
@@ -54,10 +54,10 @@ pub struct Report {
 }
 
 /// Answers for a device; no if it has no passivity.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let report = report(&file::load_device(&arguments.file)?);
     arguments.answer.print(&report, text)?;
-    Ok(if report.delta.is_some() { Answer::Yes } else { Answer::No })
+    Ok(if report.delta.is_some() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 /// What is known of the device of a file.

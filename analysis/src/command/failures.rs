@@ -7,9 +7,9 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
-use crate::emulator::Player;
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
+use crate::emulator::ServoClient;
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::failures::claim::{Claim, Failure};
@@ -32,7 +32,7 @@ pub struct Arguments {
     pub csv: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Name of the walls among the cases.
@@ -50,12 +50,12 @@ struct Found {
 }
 
 /// Asks and runs: the answer is no where something was not as it should be.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let wanted = |name: &str| arguments.case.as_deref().is_none_or(|case| case == name);
     let mut player = match arguments.emulate {
         true => {
             let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))?;
-            Some(Player::boot(&toolchain.build_player()?)?)
+            Some(ServoClient::boot(&toolchain.build_servo_server()?)?)
         }
         false => None,
     };
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     }
     let holds = found.cases.iter().all(CaseReport::holds);
     let stand = found.walls.iter().all(WallReport::holds);
-    Ok(if holds && stand { Answer::Yes } else { Answer::No })
+    Ok(if holds && stand { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 fn text(found: &Found) -> String {

@@ -3,10 +3,10 @@
 use firmware::encoder::CounterWidth;
 use firmware::servo::Transducers;
 
-use super::answer::CommandError;
-use super::own;
+use super::rebuild_with_scene;
+use super::status::CommandError;
 use crate::file::{self, SceneFile};
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
 
 /// Torque in N m at full scale for a scene file that has no limit of its own.
 const FULL_SCALE: f64 = 5.0;
@@ -17,7 +17,10 @@ const COUNTS_PER_TURN: f64 = 65_536.0;
 /// A scene file, or the sentence that there is neither such a file nor such a program.
 pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     if !name.contains(['.', '/', '\\']) && name != "-" && !std::path::Path::new(name).exists() {
-        return Err(CommandError::NoScene { name: name.to_owned(), programs: own::scenes() });
+        return Err(CommandError::NoScene {
+            name: name.to_owned(),
+            programs: rebuild_with_scene::scenes(),
+        });
     }
     Ok(file::load(name)?)
 }
@@ -41,8 +44,8 @@ pub fn transducers_of(
 }
 
 /// What a hand does to show a scene file: the file's own hand, if it has one.
-pub fn script_of(file: &SceneFile) -> Script {
-    let mut script = Script::push_and_let_go();
-    script.hand = file.hand.unwrap_or(script.hand);
-    script
+pub fn hand_trajectory(file: &SceneFile) -> HandTrajectory {
+    let mut trajectory = HandTrajectory::push_and_let_go();
+    trajectory.hand = file.hand.unwrap_or(trajectory.hand);
+    trajectory
 }

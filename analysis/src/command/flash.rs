@@ -5,10 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
-use super::common::FormatArgument;
+use super::status::{CommandError, CommandStatus};
 use crate::progress;
-use crate::toolchain::{self, Board, Memory, Tools, probe};
+use crate::toolchain::{self, Board, Memory, NumberFormat, Tools, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -20,8 +19,8 @@ pub struct Arguments {
     #[arg(long, value_parser = Board::find)]
     pub board: Board,
     /// Number format that it computes in
-    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
-    pub format: FormatArgument,
+    #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
+    pub format: NumberFormat,
     /// Build, print the sizes and the program's file, and stop
     #[arg(long)]
     pub build_only: bool,
@@ -34,11 +33,11 @@ pub struct Arguments {
 ///
 /// # Errors
 /// Where the program cannot be built, or probe-rs or the probe is missing or fails.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
     let (board, name) = (arguments.board, arguments.program.as_str());
     let spinner = progress::spinner(&format!("building {name} for {board}"));
-    let program = toolchain.build_for(board, &[name], arguments.format.into())?.swap_remove(0);
+    let program = toolchain.build_for(board, &[name], arguments.format)?.swap_remove(0);
     spinner.finish_and_clear();
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
@@ -52,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     if !arguments.build_only {
         probe::run(&program.path, &chip, arguments.probe.as_deref())?;
     }
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 /// What the linker's map leaves of a board's flash, since one map fits every board.

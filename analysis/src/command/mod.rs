@@ -1,38 +1,38 @@
 //! The program's commands, one module each.
 
 pub mod advise;
-pub mod answer;
 pub mod bench;
+pub mod board_sim;
 pub mod certify;
 pub mod chart;
-pub mod common;
 pub mod demo;
 pub mod design;
 pub mod device;
 pub mod failures;
 mod file_scene;
 pub mod flash;
-mod flashed;
 pub mod identify;
 pub mod new;
 mod outcome;
-mod own;
+mod rebuild_with_scene;
 pub mod report;
 pub mod run;
 pub mod schema;
 pub mod scope;
+pub mod shared_arguments;
 pub mod simulate;
 pub mod stability;
+pub mod status;
 pub mod tune;
-pub mod twin;
-mod values;
+mod value_parsers;
+mod virtual_board_build;
 pub mod worst_hand;
 
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
-use answer::{Answer, CommandError};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use status::{CommandError, CommandStatus};
 
 use crate::terminal;
 
@@ -74,7 +74,7 @@ fn refuse(error: &clap::Error) -> ! {
     };
     if !error.use_stderr() {
         let text = text(io::stdout().is_terminal());
-        let said = io::stdout().write_all(text.as_bytes()).map(|()| Answer::Yes);
+        let said = io::stdout().write_all(text.as_bytes()).map(|()| CommandStatus::Success);
         std::process::exit(status(said.map_err(CommandError::Output)).into());
     }
     let text = text(io::stderr().is_terminal());
@@ -123,7 +123,7 @@ pub enum Command {
     Scope(scope::Arguments),
     /// Simulate a board in a simulated hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
-    Twin(twin::Arguments),
+    BoardSim(board_sim::Arguments),
     /// Simulate a scene sample by sample, certified or not.
     Simulate(simulate::Arguments),
     /// Compute the spectral radius of the loop, and up to which stiffness it is stable.
@@ -145,7 +145,7 @@ impl Command {
     fn program(&self) -> Option<&str> {
         match self {
             Self::Run(arguments) => Some(&arguments.scene),
-            Self::Twin(arguments) => Some(&arguments.scene),
+            Self::BoardSim(arguments) => Some(&arguments.scene),
             Self::Advise(arguments) if arguments.format.is_some() => Some(&arguments.scene),
             _ => None,
         }
@@ -155,8 +155,11 @@ impl Command {
 /// Runs one command and turns its answer into the exit status.
 pub fn execute(arguments: Arguments) -> ExitCode {
     let answer = match arguments.command {
-        ref command if let Some(scene) = command.program().filter(|scene| own::is_new(scene)) => {
-            own::hand_over(scene)
+        ref command
+            if let Some(scene) =
+                command.program().filter(|scene| rebuild_with_scene::needs_rebuild(scene)) =>
+        {
+            rebuild_with_scene::rebuild_and_exec(scene)
         }
         Command::Certify(arguments) => certify::run(&arguments),
         Command::Device(arguments) => device::run(&arguments),
@@ -170,7 +173,7 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::Scope(arguments) => scope::run(&arguments),
-        Command::Twin(arguments) => twin::run(&arguments),
+        Command::BoardSim(arguments) => board_sim::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Design(arguments) => design::run(&arguments),
@@ -183,21 +186,21 @@ pub fn execute(arguments: Arguments) -> ExitCode {
 }
 
 /// The exit status of an answer, all of which must have been written.
-fn status(answer: Result<Answer, CommandError>) -> u8 {
+fn status(answer: Result<CommandStatus, CommandError>) -> u8 {
     let written = || io::stdout().flush().map_err(CommandError::Output);
     match answer.and_then(|answer| written().map(|()| answer)) {
-        Ok(Answer::Yes) => 0,
-        Ok(Answer::No) => 1,
+        Ok(CommandStatus::Success) => 0,
+        Ok(CommandStatus::NegativeVerdict) => 1,
         // Whoever reads the answer has seen enough of it: `haptic ... | head` is no error.
         Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(error) => {
-            complain(&error);
-            if error.is_a_no() { 1 } else { 2 }
+            print_error(&error);
+            if error.is_negative_verdict() { 1 } else { 2 }
         }
     }
 }
 
-fn complain(error: &CommandError) {
+fn print_error(error: &CommandError) {
     let stderr = io::stderr();
     let (colour, width) = (terminal::has_colour(stderr.is_terminal()), terminal::error_width());
     let text = match error {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
+use super::status::{CommandError, CommandStatus};
 use crate::toolchain::Sources;
 
 /// Arguments of `haptic new`.
@@ -22,7 +22,7 @@ pub struct Arguments {
 ///
 /// # Errors
 /// Where there can be no scene of that name, or there is one.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let Arguments { name, from } = arguments;
     let path = Sources::find()?.begin(name, from)?;
     writeln!(
@@ -34,5 +34,5 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
          cargo haptic flash {name} --board nucleo-g474re       on a board",
         path = path.display(),
     )?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }

@@ -2,13 +2,13 @@
 
 use firmware::dac::DacCode;
 
+use crate::compare_run::RunOutcome;
 use crate::program::Program;
 use crate::quantity::significant;
-use crate::scenario::Outcome;
-use crate::verdict::Report;
+use crate::verdict::VerdictReport;
 
 /// What a run gave, for a person.
-pub fn text(outcome: &Outcome) -> String {
+pub fn text(outcome: &RunOutcome) -> String {
     let run = &outcome.run;
     let mut rows = vec![
         ("ticks", run.ticks.len().to_string()),
@@ -37,7 +37,7 @@ pub fn text(outcome: &Outcome) -> String {
 }
 
 /// What is shown of a scene that ran on a board: its verdict, and what it did.
-pub fn section(program: &Program, report: &Report, outcome: &Outcome) -> String {
+pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) -> String {
     let damping = |value: Option<f64>| {
         value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
     };
@@ -63,10 +63,10 @@ const AT_REST: f64 = 1e-3;
 
 /// What keeps a device turning that the hand has let go of: nothing in the linear theory, but the
 /// converter rounds, and the simulated device has no friction at all.
-fn coasting(program: &Program, outcome: &Outcome) -> String {
+fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let speed = outcome.final_speed.unwrap_or(0.0);
     let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
-    if speed < AT_REST || ended < (program.script)().release {
+    if speed < AT_REST || ended < (program.trajectory)().release {
         return String::new();
     }
     let full_scale = program.transducers.full_scale_torque;

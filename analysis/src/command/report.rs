@@ -5,16 +5,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
 use super::chart::map;
-use super::common::{Arithmetic, SceneArgument};
+use super::shared_arguments::{CoefficientFormat, SceneArgument};
+use super::status::{CommandError, CommandStatus};
 use crate::chart::nyquist::nyquist;
 use crate::chart::trace::{drawable, trace};
 use crate::chart::{ChartError, Window};
 use crate::date;
-use crate::map::MapError;
 use crate::report::{Figure, Page};
 use crate::simulation::SimulationError;
+use crate::stability_map::MapError;
 use crate::terminal;
 use crate::trace::Trace;
 use crate::verdict::Verdict;
@@ -27,7 +27,7 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub arithmetic: Arithmetic,
+    pub arithmetic: CoefficientFormat,
     /// The page, .html
     #[arg(short, long, value_name = "PAGE")]
     pub output: PathBuf,
@@ -37,7 +37,7 @@ pub struct Arguments {
 const SIDE: usize = 400;
 
 /// Writes the page, and says the verdict, which is the answer as it is that of `haptic certify`.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let extension = arguments.output.extension().map(|e| e.to_string_lossy().to_lowercase());
     if !matches!(extension.as_deref(), Some("html" | "htm")) {
         return Err(CommandError::NoPage { path: arguments.output.clone() });
@@ -76,7 +76,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let said = format!("{}: {}\n", arguments.output.display(), report.message);
     let said = terminal::wrapped(&said, terminal::output_width(), 0);
     io::stdout().lock().write_all(said.as_bytes())?;
-    Ok(if report.verdict == Verdict::Certified { Answer::Yes } else { Answer::No })
+    Ok(if report.verdict == Verdict::Certified {
+        CommandStatus::Success
+    } else {
+        CommandStatus::NegativeVerdict
+    })
 }
 
 fn missing(why: &str) -> Figure {

@@ -11,22 +11,22 @@ use firmware::scene::Scene;
 use firmware::servo::Transducers;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, FormatArgument, MOST_TICKS, TICKS, json};
-use super::file_scene::{scene_file, script_of, transducers_of};
-use super::flashed::Flashed;
+use super::file_scene::{hand_trajectory, scene_file, transducers_of};
 use super::outcome::{section, text};
-use super::values::positive;
+use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
+use super::status::{CommandError, CommandStatus};
+use super::value_parsers::positive;
+use super::virtual_board_build::VirtualBoardBuild;
+use crate::compare_run::{Backend, Input, RunOutcome, run_with_backend};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::SceneFile;
-use crate::hand::Script;
+use crate::hand::HandTrajectory;
+use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
-use crate::rig::{Difference, SimulatedDevice};
-use crate::scenario::{Beside, Input, Outcome, play};
-use crate::toolchain::{self, Board, NoBoard, NumberFormat, Tools};
-use crate::{replay, rig, verdict};
+use crate::toolchain::{self, Board, NumberFormat, Tools, UnknownBoard};
+use crate::{counts_csv, lockstep, verdict};
 
 /// Where a scene runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,25 +44,25 @@ const BOARD: &str = "board:";
 
 /// There is no such target.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoTarget {
+pub enum UnknownTarget {
     /// Neither of the words.
     #[error("there is no target {0}; there are host, qemu and board:NAME, as board:nucleo-g474re")]
     Word(String),
     /// No such board.
     #[error(transparent)]
-    Board(#[from] NoBoard),
+    Board(#[from] UnknownBoard),
 }
 
 impl FromStr for Target {
-    type Err = NoTarget;
+    type Err = UnknownTarget;
 
-    fn from_str(text: &str) -> Result<Self, NoTarget> {
+    fn from_str(text: &str) -> Result<Self, UnknownTarget> {
         match text {
             "host" => Ok(Self::Host),
             "qemu" => Ok(Self::Qemu),
             _ => match text.strip_prefix(BOARD) {
                 Some(name) => Ok(Self::Board(Board::find(name)?)),
-                None => Err(NoTarget::Word(text.into())),
+                None => Err(UnknownTarget::Word(text.into())),
             },
         }
     }
@@ -101,11 +101,11 @@ pub struct Arguments {
           allow_negative_numbers = true)]
     pub full_scale: Option<f64>,
     /// Number format of the servo
-    #[arg(long, value_enum, default_value_t = FormatArgument::F32)]
-    pub format: FormatArgument,
+    #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
+    pub format: NumberFormat,
     /// Ticks to run; a recording ends with its last row
     #[arg(long, value_name = "N",
-          value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_TICKS))]
+          value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_TICKS))]
     pub ticks: Option<usize>,
     /// Print a row a tick: tick,count,angle,torque,code,limit; the torque is the coupling's, and the
     /// motor applies its negative
@@ -113,15 +113,15 @@ pub struct Arguments {
     pub csv: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
-/// What is to be run, whatever it came from.
-struct Question {
+/// Set-up of a run, from a program or from a scene file.
+struct RunSetup {
     name: String,
     scene: Scene,
     transducers: Transducers,
-    script: Script,
+    trajectory: HandTrajectory,
     controller: Box<dyn Controller>,
     /// The program for the board, where there is one.
     program: Option<&'static Program>,
@@ -152,45 +152,49 @@ struct Instructions {
 
 /// Runs a scene and prints what came of it. The answer is no where a code of the board differs from
 /// the host's.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
-    let counts = arguments.replay.as_deref().map(replay::load).transpose()?;
-    let mut question = question(arguments)?;
-    let built = build(&question, arguments)?;
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let counts = arguments.replay.as_deref().map(counts_csv::load).transpose()?;
+    let mut setup = setup(arguments)?;
+    let built = build(&setup, arguments)?;
     let ticks = match &counts {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
-        None => arguments.ticks.unwrap_or(TICKS),
+        None => arguments.ticks.unwrap_or(DEFAULT_TICKS),
     };
     let input = match &counts {
         Some(counts) => Input::Recording(counts),
         None => Input::Hand(Box::new(SimulatedDevice::new(
-            question.scene.device,
-            question.script.clone(),
-            question.scene.timing.period,
-            &question.transducers,
+            setup.scene.device,
+            setup.trajectory.clone(),
+            setup.scene.timing.period,
+            &setup.transducers,
         )?)),
     };
-    let bar = progress::bar(ticks as u64, &question.name);
+    let bar = progress::bar(ticks as u64, &setup.name);
     let stepper = progress::stepper(&bar);
-    let outcome = play(
+    let outcome = run_with_backend(
         input,
-        question.controller.as_mut(),
-        built.beside(question.scene.timing.period),
+        setup.controller.as_mut(),
+        built.backend(setup.scene.timing.period),
         ticks,
         stepper,
     )?;
     bar.finish_and_clear();
-    print(arguments, &question, &outcome)?;
-    Ok(if outcome.run.difference.is_none() { Answer::Yes } else { Answer::No })
+    print(arguments, &setup, &outcome)?;
+    Ok(if outcome.run.difference.is_none() {
+        CommandStatus::Success
+    } else {
+        CommandStatus::NegativeVerdict
+    })
 }
 
-fn question(arguments: &Arguments) -> Result<Question, CommandError> {
+fn setup(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     match Program::find(&arguments.scene) {
         Some(program) => of_program(program, arguments),
         None => of_file(arguments),
     }
 }
 
-fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Question, CommandError> {
+fn of_program(program: &'static Program, arguments: &Arguments) -> Result<RunSetup, CommandError> {
     let built_for = program.transducers;
     let transducers = Transducers {
         counts_per_turn: arguments.counts_per_rev.unwrap_or(built_for.counts_per_turn),
@@ -204,32 +208,32 @@ fn of_program(program: &'static Program, arguments: &Arguments) -> Result<Questi
             full_scale: built_for.full_scale_torque,
         });
     }
-    let format = arguments.format.into();
-    Ok(Question {
+    let format = arguments.format;
+    Ok(RunSetup {
         name: program.name.to_owned(),
         scene: program.scene,
         transducers,
-        script: (program.script)(),
+        trajectory: (program.trajectory)(),
         controller: program.controller(format, &transducers)?,
         program: Some(program),
     })
 }
 
-fn of_file(arguments: &Arguments) -> Result<Question, CommandError> {
+fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     let file = scene_file(&arguments.scene)?;
     let certified =
         file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
     let transducers = transducers_of(&file, arguments.counts_per_rev, arguments.full_scale);
     let controller = match arguments.format {
-        FormatArgument::F32 => controller::<_, f32>(&certified, &transducers)?,
-        FormatArgument::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
+        NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
+        NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
     };
     for note in unused(&file, arguments.replay.is_some()) {
         writeln!(io::stderr(), "note: {note}")?;
     }
-    let script = script_of(&file);
+    let trajectory = hand_trajectory(&file);
     let (name, scene) = (file.name, file.scene);
-    Ok(Question { name, scene, transducers, script, controller, program: None })
+    Ok(RunSetup { name, scene, transducers, trajectory, controller, program: None })
 }
 
 /// What a run does not use of a scene file, as sentences: the servo runs on a rigid device that a
@@ -248,7 +252,7 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
         let instead = if is_replay {
             "the counts are those of the recording".to_owned()
         } else {
-            format!("here {}", script_of(file).story)
+            format!("here {}", hand_trajectory(file).description)
         };
         notes.push(format!("[simulation] is not used: {instead}; `haptic simulate` uses it"));
     }
@@ -259,29 +263,29 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
 enum Built {
     Nothing,
     Emulated(PathBuf),
-    Virtual(Flashed),
+    Virtual(VirtualBoardBuild),
 }
 
 impl Built {
-    fn beside(&self, period: f64) -> Option<Beside<'_>> {
+    fn backend(&self, period: f64) -> Option<Backend<'_>> {
         match self {
             Self::Nothing => None,
-            Self::Emulated(elf) => Some(Beside::Emulator(elf)),
-            Self::Virtual(flashed) => Some(flashed.beside(period)),
+            Self::Emulated(elf) => Some(Backend::Emulator(elf)),
+            Self::Virtual(flashed) => Some(flashed.backend(period)),
         }
     }
 }
 
-fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandError> {
+fn build(setup: &RunSetup, arguments: &Arguments) -> Result<Built, CommandError> {
     if arguments.target == Target::Host {
         return Ok(Built::Nothing);
     }
-    let Some(program) = question.program else {
-        return Err(CommandError::FileOnBoard { scene: question.name.clone() });
+    let Some(program) = setup.program else {
+        return Err(CommandError::FileOnBoard { scene: setup.name.clone() });
     };
-    let format = arguments.format.into();
+    let format = arguments.format;
     if let Target::Board(board) = arguments.target {
-        return Ok(Built::Virtual(Flashed::build(board, program.name, format)?));
+        return Ok(Built::Virtual(VirtualBoardBuild::build(board, program.name, format)?));
     }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -293,16 +297,16 @@ fn build(question: &Question, arguments: &Arguments) -> Result<Built, CommandErr
 
 fn print(
     arguments: &Arguments,
-    question: &Question,
-    outcome: &Outcome,
+    setup: &RunSetup,
+    outcome: &RunOutcome,
 ) -> Result<(), CommandError> {
     let mut out = io::BufWriter::new(io::stdout().lock());
     if arguments.csv {
         csv(&mut out, &outcome.run)?;
     } else if arguments.answer.json {
-        json(&mut out, &summary(arguments, &question.name, outcome))?;
-    } else if let (Target::Board(_), Some(program)) = (arguments.target, question.program) {
-        let report = verdict::judge(program.name, &question.scene);
+        json(&mut out, &summary(arguments, &setup.name, outcome))?;
+    } else if let (Target::Board(_), Some(program)) = (arguments.target, setup.program) {
+        let report = verdict::judge(program.name, &setup.scene);
         write!(out, "{}", section(program, &report, outcome))?;
     } else {
         write!(out, "{}", text(outcome))?;
@@ -314,12 +318,12 @@ fn print(
     Ok(())
 }
 
-fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summary<'a> {
+fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &RunOutcome) -> Summary<'a> {
     let on_board = outcome.board.is_some();
     Summary {
         scene: name,
         target: arguments.target.to_string(),
-        format: NumberFormat::from(arguments.format).name(),
+        format: arguments.format.name(),
         ticks: outcome.run.ticks.len(),
         peak_torque: outcome.run.peak_torque(),
         energy: outcome.energy,
@@ -335,14 +339,14 @@ fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &Outcome) -> Summa
 }
 
 /// The rows of a run as CSV.
-pub fn csv(out: &mut impl Write, run: &rig::Run) -> Result<(), io::Error> {
+pub fn csv(out: &mut impl Write, run: &lockstep::Run) -> Result<(), io::Error> {
     rows(out, run).map_err(|error| match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),
     })
 }
 
-fn rows(out: &mut impl Write, run: &rig::Run) -> csv::Result<()> {
+fn rows(out: &mut impl Write, run: &lockstep::Run) -> csv::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(["tick", "count", "angle", "torque", "code", "limit"])?;
     for (number, tick) in run.ticks.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
+use super::status::{CommandError, CommandStatus};
 use crate::file::{example, reference, schema};
 
 /// Arguments of `haptic schema`.
@@ -20,7 +20,7 @@ pub struct Arguments {
 }
 
 /// Prints the JSON schema, or what is asked for instead.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let text = match &arguments.example {
         // The command line takes no other name.
         Some(name) => example::toml(name).unwrap_or_default(),
@@ -28,5 +28,5 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         None => format!("{:#}\n", schema::json()),
     };
     io::stdout().lock().write_all(text.as_bytes())?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }

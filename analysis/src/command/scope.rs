@@ -12,13 +12,13 @@ use clap::Args;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input};
 
-use super::answer::{Answer, CommandError};
-use super::values::seconds;
+use super::status::{CommandError, CommandStatus};
+use super::value_parsers::seconds;
 use crate::link::{Address, Link};
 use crate::scope::control::Action;
-use crate::scope::feed::Feed;
+use crate::scope::poller::BoardPoller;
 use crate::scope::record::Recorder;
-use crate::scope::{Scope, view};
+use crate::scope::{Scope, tui};
 use crate::terminal;
 
 /// Arguments of `haptic scope`.
@@ -49,7 +49,7 @@ const RATE: f64 = 1000.0;
 const PICTURE: Duration = Duration::from_millis(33);
 
 /// Shows or records what a board says, until the time is up or somebody has seen enough.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let to_output = match &arguments.csv {
         Some(path) => path == Path::new("-"),
         // Rows are what a pipe or a file can use.
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     let every = arguments.every.unwrap_or_else(|| every(link.board().period));
     let mut session = Session {
         scope: Scope::new(arguments.port.to_string(), arguments.window.as_secs_f64()),
-        feed: Feed::start(link, every),
+        poller: BoardPoller::start(link, every),
         end: arguments.duration.map(|duration| Instant::now() + duration),
     };
     if to_output || !io::stdout().is_terminal() || terminal::is_dumb() {
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         recorder.flush()?;
         writeln!(io::stderr(), "{} ticks recorded", recorder.count())?;
     }
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 fn ticks(text: &str) -> Result<NonZeroU32, String> {
@@ -97,7 +97,7 @@ fn every(period: f64) -> NonZeroU32 {
 
 struct Session {
     scope: Scope,
-    feed: Feed,
+    poller: BoardPoller,
     end: Option<Instant>,
 }
 
@@ -109,8 +109,8 @@ impl Session {
     /// Takes what the board says until then.
     fn listen(&mut self, until: Instant, mut recorder: Option<&mut Recorder>) -> io::Result<()> {
         loop {
-            let patience = until.saturating_duration_since(Instant::now());
-            let Some(event) = self.feed.next(patience) else { break };
+            let timeout = until.saturating_duration_since(Instant::now());
+            let Some(event) = self.poller.next(timeout) else { break };
             self.scope.take(event, |sample| match &mut recorder {
                 Some(recorder) => recorder.add(sample),
                 None => Ok(()),
@@ -146,16 +146,16 @@ impl Session {
         while !self.is_over() {
             self.listen(Instant::now() + PICTURE, recorder.as_deref_mut())?;
             screen.draw(|frame| {
-                view::draw(frame, &self.scope);
+                tui::draw(frame, &self.scope);
                 if !terminal::has_colour(true) {
-                    view::without_colour(frame);
+                    tui::without_colour(frame);
                 }
             })?;
             while event::poll(Duration::ZERO)? {
                 let Input::Key(key) = event::read()? else { continue };
                 match self.scope.control.press(key) {
                     Action::None => {}
-                    Action::Request(request) => self.feed.request(request),
+                    Action::Request(request) => self.poller.request(request),
                     Action::Quit => return Ok(()),
                 }
             }

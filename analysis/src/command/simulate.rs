@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, SceneArgument, Steps, json};
+use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument, json};
+use super::status::{CommandError, CommandStatus};
 use crate::quantity::{rounded, significant};
-use crate::simulation::served::Served;
-use crate::simulation::{Experiment, Simulator, Stride, Trajectory, simulate};
+use crate::simulation::tick_status::TickStatus;
+use crate::simulation::{Experiment, Integration, Simulator, Trajectory, simulate};
 
 /// Samples that are computed before they are written, where they are written one by one.
 const CHUNK: usize = 4096;
@@ -22,14 +22,14 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub steps: Steps,
+    pub steps: IntegrationArguments,
     /// Print a line for each sample: time (s), position (rad), velocity (rad/s), torque (N m), and
     /// what limited it
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// A sample as a line of CSV.
@@ -39,7 +39,7 @@ struct Row {
     position: f64,
     velocity: f64,
     torque: f64,
-    limit: Served,
+    limit: TickStatus,
 }
 
 /// Angle in rad from zero beyond which no device goes: 160 000 turns. What is there has run away.
@@ -47,15 +47,15 @@ const FARTHEST: f64 = 1e6;
 
 /// Simulates the scene, certified or not. Of a motion that grows beyond the range of numbers, what
 /// comes before is printed; the answer is no then, and where the device runs away.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let experiment = Experiment::of(&file, arguments.scene.folder())?;
-    let stride = arguments.steps.stride();
+    let integration = arguments.steps.integration();
     let mut out = io::BufWriter::new(io::stdout().lock());
     let (computed, far) = if arguments.csv {
-        rows(&experiment, stride, &mut out)?
+        rows(&experiment, integration, &mut out)?
     } else {
-        let trajectory = simulate(&experiment, stride)?;
+        let trajectory = simulate(&experiment, integration)?;
         if arguments.answer.json {
             json(&mut out, &trajectory)?;
         } else {
@@ -66,7 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     out.flush()?;
     experiment.completed(computed)?;
     match far {
-        None => Ok(Answer::Yes),
+        None => Ok(CommandStatus::Success),
         Some(sample) => {
             let time = sample as f64 * experiment.scene.timing.period;
             Err(CommandError::RanAway { farthest: FARTHEST, sample, time })
@@ -83,11 +83,11 @@ fn far(trajectory: &Trajectory) -> Option<usize> {
 /// has run away.
 fn rows(
     experiment: &Experiment,
-    stride: Stride,
+    integration: Integration,
     out: impl Write,
 ) -> Result<(usize, Option<usize>), CommandError> {
     let mut writer = csv::Writer::from_writer(out);
-    let mut simulator = Simulator::new(experiment, stride)?;
+    let mut simulator = Simulator::new(experiment, integration)?;
     let (mut done, mut ran_away) = (0, None);
     while done < experiment.samples {
         let wanted = CHUNK.min(experiment.samples - done);

@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, SceneArgument, Steps};
+use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument};
+use super::status::{CommandError, CommandStatus};
 use crate::quantity::significant;
 use crate::simulation::Experiment;
 use crate::stability::{Stability, Verdict, judge};
@@ -17,18 +17,22 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub steps: Steps,
+    pub steps: IntegrationArguments,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Judges the linear loop: the answer is no where it is unstable.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
-    let stability = judge(&Experiment::at_rest(&file), arguments.steps.stride())?;
+    let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
     arguments.answer.print(&stability, |stability| text(&file.name, stability))?;
-    Ok(if stability.verdict == Verdict::Unstable { Answer::No } else { Answer::Yes })
+    Ok(if stability.verdict == Verdict::Unstable {
+        CommandStatus::NegativeVerdict
+    } else {
+        CommandStatus::Success
+    })
 }
 
 fn text(name: &str, stability: &Stability) -> String {

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::wire::message::{Changes, Running, Status};
+use firmware::wire::message::{ActiveParameters, Changes, Status};
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, json};
+use super::shared_arguments::{JsonOption, json};
+use super::status::{CommandError, CommandStatus};
 use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
-use crate::scope::words;
+use crate::scope::formatting;
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
@@ -35,7 +35,7 @@ pub struct Arguments {
     pub disarm: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// The answer as JSON.
@@ -65,25 +65,25 @@ struct Report<'a> {
 }
 
 /// Does what is asked for and prints what runs then. The answer is no where the board refuses.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let changes = collect(&arguments.changes)?;
     let mut link = Link::open(&arguments.port)?;
     let swaps = !changes.is_empty() && !arguments.disarm && link.status()?.state.is_armed();
     let outcome = request(&mut link, arguments, changes)?;
     let refused = match &outcome {
-        link::Answer::Done => None,
-        link::Answer::Refused(sentence) => Some(sentence.as_str()),
+        link::RequestResult::Done => None,
+        link::RequestResult::Refused(sentence) => Some(sentence.as_str()),
     };
-    let (running, status) = (link.running()?, link.status()?);
+    let (running, status) = (link.parameters()?, link.status()?);
     if arguments.answer.json {
         json(io::stdout(), &report(&link, refused, &running, &status))?;
     } else {
         print(&link, refused, &running, &status)?;
         if refused.is_none() && swaps {
-            writeln!(io::stdout(), "{}", words::gap(link.board()))?;
+            writeln!(io::stdout(), "{}", formatting::gap(link.board()))?;
         }
     }
-    Ok(if refused.is_none() { Answer::Yes } else { Answer::No })
+    Ok(if refused.is_none() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 /// Each step only if the one before it was done.
@@ -91,15 +91,15 @@ fn request(
     link: &mut Link,
     arguments: &Arguments,
     changes: Changes,
-) -> Result<link::Answer, CommandError> {
-    let mut outcome = link::Answer::Done;
+) -> Result<link::RequestResult, CommandError> {
+    let mut outcome = link::RequestResult::Done;
     if arguments.disarm {
         outcome = link.disarm()?;
     }
-    if outcome == link::Answer::Done && !changes.is_empty() {
+    if outcome == link::RequestResult::Done && !changes.is_empty() {
         outcome = link.set(changes)?;
     }
-    if outcome == link::Answer::Done && arguments.arm {
+    if outcome == link::RequestResult::Done && arguments.arm {
         outcome = link.arm()?;
     }
     Ok(outcome)
@@ -108,7 +108,7 @@ fn request(
 fn print(
     link: &Link,
     refused: Option<&str>,
-    running: &Running,
+    running: &ActiveParameters,
     status: &Status,
 ) -> Result<(), CommandError> {
     let (board, mut out) = (link.board(), io::stdout().lock());
@@ -119,26 +119,26 @@ fn print(
     if let Some(fault) = status.fault {
         writeln!(out, "stopped: {fault}")?;
     }
-    if let Some(remembered) = link.remembered() {
-        writeln!(out, "{}", words::remembered(&remembered))?;
+    if let Some(remembered) = link.previous_fault() {
+        writeln!(out, "{}", formatting::previous_fault(&remembered))?;
     }
-    writeln!(out, "{}", words::reset(status))?;
-    writeln!(out, "{}", words::numbers(running))?;
-    writeln!(out, "{}", words::reserves(running, status, board, None))?;
-    writeln!(out, "{}", words::energy(status, board))?;
-    writeln!(out, "{}", words::losses(status, link.discarded()))?;
+    writeln!(out, "{}", formatting::reset(status))?;
+    writeln!(out, "{}", formatting::numbers(running))?;
+    writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
+    writeln!(out, "{}", formatting::energy(status, board))?;
+    writeln!(out, "{}", formatting::losses(status, link.discarded()))?;
     Ok(())
 }
 
 fn report<'a>(
     link: &'a Link,
     refused: Option<&'a str>,
-    running: &Running,
+    running: &ActiveParameters,
     status: &Status,
 ) -> Report<'a> {
     let board = link.board();
     let named = |(parameter, value): &(Parameter, f64)| {
-        (words::name(*parameter).to_owned(), (*value).into())
+        (formatting::name(*parameter).to_owned(), (*value).into())
     };
     Report {
         program: link.program(),
@@ -149,10 +149,10 @@ fn report<'a>(
         parameters: running.values.iter().map(named).collect(),
         state: status.state.as_str(),
         fault: status.fault.map(|fault| fault.to_string()),
-        remembered: link.remembered().as_ref().map(words::remembered),
+        remembered: link.previous_fault().as_ref().map(formatting::previous_fault),
         reset: status.reset.as_str(),
         missed: status.missed,
-        worst_slack: words::worst_slack(status, board),
+        worst_slack: formatting::worst_slack(status, board),
         energy: status.energy as f64 * board.energy_step,
         worst_deficit: status.worst_deficit as f64 * board.energy_step,
         dropped: status.dropped,

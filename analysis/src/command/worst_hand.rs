@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
-use super::common::{ForWhom, SceneArgument};
+use super::shared_arguments::{JsonOption, SceneArgument};
+use super::status::{CommandError, CommandStatus};
 use crate::quantity::significant;
-use crate::worst_hand::{Search, search};
+use crate::worst_hand::{SearchResult, search};
 
 /// Arguments of `haptic worst-hand`.
 #[derive(Debug, Args)]
@@ -15,16 +15,16 @@ pub struct Arguments {
     pub scene: SceneArgument,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Searches: the answer is no where a hand was found.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let search = search(&file.scene, &file.chain)?;
     let period = file.scene.timing.period;
     arguments.answer.print(&search, |search| text(&file.name, period, search))?;
-    Ok(if search.oscillates { Answer::No } else { Answer::Yes })
+    Ok(if search.oscillates { CommandStatus::NegativeVerdict } else { CommandStatus::Success })
 }
 
 /// How a motion grows, over the time in which that is a number to read.
@@ -36,8 +36,8 @@ fn growth(spectral_radius: f64, period: f64) -> String {
     }
 }
 
-fn text(name: &str, period: f64, search: &Search) -> String {
-    let Search { worst, oscillates, lighter, tried } = search;
+fn text(name: &str, period: f64, search: &SearchResult) -> String {
+    let SearchResult { worst, oscillates, lighter, tried } = search;
     let number = |value: f64| significant(value, 6);
     let mut text = format!("scene    {name}\nsearched {tried} passive hands\n");
     if !oscillates {

@@ -2,16 +2,16 @@
 //!
 //! For each tick the board takes one count and gives one DAC code, through two pipes in a folder of
 //! the emulator's own; the board's log comes by the emulator's standard output. A guest that does
-//! not answer within [`PATIENCE`] is an error, and an emulator is never left behind.
+//! not answer within [`TIMEOUT`] is an error, and an emulator is never left behind.
 
-mod judge;
+mod bench_client;
+mod certify_client;
 pub mod log;
 mod pipes;
-mod player;
+pub mod plant_thread;
 mod report;
+mod servo_client;
 mod transport;
-mod trials;
-pub mod world;
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -20,17 +20,17 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use firmware::board::shown::{Moved, Shown};
+use firmware::board::lockstep_protocol::{TickInput, TickOutput};
 use firmware::servo_loop::State;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{encode, largest_frame};
 use tempfile::TempDir;
 
-pub use judge::Judge;
-pub use player::Player;
-pub use report::{Calibration, CertificateBits, Report, ReportError, Stats};
+pub use bench_client::BenchClient;
+pub use certify_client::CertifyClient;
+pub use report::{Calibration, CertificateBits, EmulatorReport, InstructionStats, ReportError};
+pub use servo_client::ServoClient;
 pub use transport::Transport;
-pub use trials::Trials;
 
 use log::{LogDecoder, LogReader};
 use pipes::Pipes;
@@ -57,7 +57,7 @@ const BOARD: [&str; 12] = [
 
 /// How long the board may take for one answer, unless it is told otherwise. Its start takes a second
 /// at most; the rest is for a host that is busy with other things.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Ticks within which a servo must have opened its clamp: more than any scene's fading takes.
 const LONGEST_FADING: usize = 100_000;
@@ -126,10 +126,10 @@ pub enum EmulatorError {
          damper wall at zero and a one-sided damper wall anywhere, each one sample late, and for \
          free mode one sample late"
     )]
-    NoTrial,
+    NoBenchProgram,
     /// The log does not say what a report needs.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    EmulatorReport(#[from] ReportError),
 }
 
 impl Emulator {
@@ -151,10 +151,10 @@ impl Emulator {
         Ok(Self { guest: Guest::boot(elf, &socket)?, number: 0 })
     }
 
-    /// The same with another patience.
+    /// The same with another timeout.
     #[must_use]
-    pub fn with_patience(mut self, patience: Duration) -> Self {
-        self.guest.patience = patience;
+    pub fn with_timeout(mut self, timeout: Duration) -> Self {
+        self.guest.timeout = timeout;
         self
     }
 
@@ -163,24 +163,24 @@ impl Emulator {
     /// # Errors
     /// Where the board has ended or does not answer.
     pub fn exchange(&mut self, raw_count: i32) -> Result<u16, EmulatorError> {
-        Ok(self.tick(Moved { count: raw_count.cast_unsigned(), missed: 0 })?.code)
+        Ok(self.tick(TickInput { count: raw_count.cast_unsigned(), missed: 0 })?.code)
     }
 
-    /// One tick: what the board does about what has become of its world.
+    /// One tick: the board gets its input and gives its output.
     ///
     /// # Errors
     /// Where the board has ended or does not answer.
-    pub fn tick(&mut self, moved: Moved) -> Result<Shown, EmulatorError> {
-        // Never 0, which is what a board has heard before the first.
+    pub fn tick(&mut self, input: TickInput) -> Result<TickOutput, EmulatorError> {
+        // Never 0, which a board has before the first input.
         self.number = self.number.checked_add(1).unwrap_or(1);
-        let mut question = &moved.to_bytes(self.number)[..];
+        let mut request = &input.to_bytes(self.number)[..];
         loop {
-            let mut answer = [0; Shown::BYTES];
-            self.guest.exchange(question, &mut answer)?;
-            match Shown::from_bytes(answer) {
-                Some((shown, number)) if number == self.number => return Ok(shown),
+            let mut answer = [0; TickOutput::BYTES];
+            self.guest.exchange(request, &mut answer)?;
+            match TickOutput::from_bytes(answer) {
+                Some((output, number)) if number == self.number => return Ok(output),
                 // A board that faulted shows it again.
-                Some(_) => question = &[],
+                Some(_) => request = &[],
                 None => return Err(EmulatorError::NoReply),
             }
         }
@@ -195,24 +195,27 @@ impl Emulator {
     ///
     /// # Errors
     /// Where the board has ended or does not answer, or is not armed.
-    pub fn engage(&mut self) -> Result<(), EmulatorError> {
-        self.engage_seen(|_| ())
+    pub fn arm_and_wait(&mut self) -> Result<(), EmulatorError> {
+        self.arm_and_observe(|_| ())
     }
 
-    /// The same; `see` is told what the board shows in each tick.
+    /// The same; `see` is called with the output of each tick.
     ///
     /// # Errors
-    /// As of [`engage`](Self::engage).
-    pub fn engage_seen(&mut self, mut see: impl FnMut(Shown)) -> Result<(), EmulatorError> {
-        const AT_REST: Moved = Moved { count: 0, missed: 0 };
+    /// As of [`arm_and_wait`](Self::arm_and_wait).
+    pub fn arm_and_observe(
+        &mut self,
+        mut see: impl FnMut(TickOutput),
+    ) -> Result<(), EmulatorError> {
+        const AT_REST: TickInput = TickInput { count: 0, missed: 0 };
         // With the first tick the port is open.
         see(self.tick(AT_REST)?);
         // Kept until the board has answered, so that nothing of the answer waits for the next client.
         let _port = self.arm().map_err(EmulatorError::Serial)?;
         for _ in 0..LONGEST_FADING {
-            let shown = self.tick(AT_REST)?;
-            see(shown);
-            if shown.state == State::Running {
+            let output = self.tick(AT_REST)?;
+            see(output);
+            if output.state == State::Running {
                 return Ok(());
             }
         }
@@ -231,8 +234,8 @@ impl Emulator {
     ///
     /// # Errors
     /// Where the board does not end, ends with a failure, or its log is not understood.
-    pub fn finish(self) -> Result<Report, EmulatorError> {
-        Ok(Report::read(self.guest.finish()?)?)
+    pub fn finish(self) -> Result<EmulatorReport, EmulatorError> {
+        Ok(EmulatorReport::read(self.guest.finish()?)?)
     }
 
     /// Ends a program that has no scene to report of, and gives its log.
@@ -250,7 +253,7 @@ struct Guest {
     pipes: Option<Pipes>,
     log: Option<LogReader>,
     folder: TempDir,
-    patience: Duration,
+    timeout: Duration,
 }
 
 impl Guest {
@@ -273,16 +276,16 @@ impl Guest {
             .spawn()
             .map_err(EmulatorError::Start)?;
         let log = process.stdout.take().map(|output| decoder.follow(output));
-        Ok(Self { process, pipes: Some(pipes), log, folder, patience: PATIENCE })
+        Ok(Self { process, pipes: Some(pipes), log, folder, timeout: TIMEOUT })
     }
 
     /// Gives bytes to the board and waits until it has filled `answer`.
-    fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
+    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
         const WHAT: &str = "in the middle of a run";
         let pipes = self.pipes.as_mut().expect("the pipes are open until the run is finished");
         let process = &mut self.process;
         let mut ended = || process.try_wait().map(|status| status.is_some());
-        match pipes.exchange(question, answer, self.patience, &mut ended) {
+        match pipes.exchange(request, answer, self.timeout, &mut ended) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::TimedOut => Err(self.silent(WHAT)),
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Err(self.ended(WHAT)),
@@ -303,7 +306,7 @@ impl Guest {
 
     /// Waits for the process, but not for ever.
     fn wait(&mut self) -> io::Result<Option<ExitStatus>> {
-        let deadline = Instant::now() + self.patience;
+        let deadline = Instant::now() + self.timeout;
         loop {
             match self.process.try_wait()? {
                 None if Instant::now() < deadline => std::thread::sleep(Duration::from_millis(1)),
@@ -317,7 +320,7 @@ impl Guest {
         // Its log is complete only once it has ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
-        EmulatorError::Silent { what, after: self.patience, log: self.last_words() }
+        EmulatorError::Silent { what, after: self.timeout, log: self.last_words() }
     }
 
     /// The error of an emulator that has closed its end of a pipe.

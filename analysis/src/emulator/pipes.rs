@@ -44,13 +44,13 @@ impl Pipes {
     /// `TimedOut` after the patience, `UnexpectedEof` where the guest has ended.
     pub fn exchange(
         &mut self,
-        question: &[u8],
+        request: &[u8],
         mut answer: &mut [u8],
-        patience: Duration,
+        timeout: Duration,
         ended: &mut dyn FnMut() -> io::Result<bool>,
     ) -> io::Result<()> {
-        self.counts.write_all(question)?;
-        let deadline = Instant::now() + patience;
+        self.counts.write_all(request)?;
+        let deadline = Instant::now() + timeout;
         while !answer.is_empty() {
             while !self.has_something()? {
                 if ended()? {

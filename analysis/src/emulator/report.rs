@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 /// What a run on the emulated board measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct EmulatorReport {
     /// Ticks that the servo ran, those apart in which it was armed or swapped its set.
     pub ticks: u64,
     /// Frames that the log missed because its queue was full.
@@ -16,23 +16,23 @@ pub struct Report {
     pub calibration: Calibration,
     /// Instructions of a tick from raw count to DAC code, over all ticks; the measurement's own
     /// are subtracted.
-    pub compute_instructions: Stats,
+    pub compute_instructions: InstructionStats,
     /// The same over the ticks that gave torque, then or in the next tick (what is found in a
     /// delayed wall is felt a tick later); `None` where there were none.
-    pub contact_instructions: Option<Stats>,
+    pub contact_instructions: Option<InstructionStats>,
     /// The same over the other ticks.
-    pub free_instructions: Option<Stats>,
+    pub free_instructions: Option<InstructionStats>,
     /// Instructions of the servo's whole interrupt, from its first to its last.
-    pub interrupt_instructions: Stats,
+    pub interrupt_instructions: InstructionStats,
     /// Instructions of what is done at a time below the interrupt; a set of parameters is judged
     /// in one piece.
-    pub below_instructions: Stats,
+    pub below_instructions: InstructionStats,
     /// Instructions of the energy monitor in it.
-    pub energy_instructions: Stats,
+    pub energy_instructions: InstructionStats,
     /// Instructions that its frame takes into the queue.
-    pub frame_instructions: Stats,
+    pub frame_instructions: InstructionStats,
     /// Instructions of the lockstep around it, with the exchange of count and code.
-    pub lockstep_instructions: Stats,
+    pub lockstep_instructions: InstructionStats,
     /// Instructions that judging the scene took on the board.
     pub certify_instructions: u64,
     /// Bytes of stack used from reset until the scene was judged, which needs the most of it.
@@ -67,7 +67,7 @@ pub struct CertificateBits {
 
 /// Numbers of instructions over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stats {
+pub struct InstructionStats {
     /// How many there were.
     pub count: u64,
     /// The smallest.
@@ -90,7 +90,7 @@ pub struct ReportError {
     pub log: String,
 }
 
-impl Report {
+impl EmulatorReport {
     /// Reads the log of a run.
     pub(super) fn read(log: Vec<String>) -> Result<Self, ReportError> {
         let lines = Lines::of(&log);
@@ -105,14 +105,14 @@ impl Report {
             ticks: lines.number("ticks", "ticks")?,
             dropped: lines.number("ticks", "dropped")?,
             overruns: lines.number("ticks", "overruns")?,
-            compute_instructions: Stats::joined(contact, free),
+            compute_instructions: InstructionStats::joined(contact, free),
             contact_instructions: contact,
             free_instructions: free,
-            interrupt_instructions: Stats::joined(interrupt, None),
-            below_instructions: Stats::joined(lines.stats("spread=below"), None),
-            energy_instructions: Stats::joined(lines.stats("spread=energy"), None),
-            frame_instructions: Stats::joined(lines.stats("spread=frame"), None),
-            lockstep_instructions: Stats::joined(lockstep, None),
+            interrupt_instructions: InstructionStats::joined(interrupt, None),
+            below_instructions: InstructionStats::joined(lines.stats("spread=below"), None),
+            energy_instructions: InstructionStats::joined(lines.stats("spread=energy"), None),
+            frame_instructions: InstructionStats::joined(lines.stats("spread=frame"), None),
+            lockstep_instructions: InstructionStats::joined(lockstep, None),
             certify_instructions: lines.number("certify_time", "certify_time")?
                 / calibration.per_instruction.max(1),
             stack_used: lines.number("certify_time", "stack_used")?,
@@ -125,7 +125,7 @@ impl Report {
     }
 }
 
-impl Stats {
+impl InstructionStats {
     /// The numbers of two groups together; of none, all is zero.
     fn joined(a: Option<Self>, b: Option<Self>) -> Self {
         match (a, b) {
@@ -173,11 +173,11 @@ impl<'a> Lines<'a> {
         })
     }
 
-    fn stats(&self, line: &str) -> Option<Stats> {
+    fn stats(&self, line: &str) -> Option<InstructionStats> {
         let number = |key| self.optional::<u64>(line, key);
         let count = number("count").filter(|count| *count > 0)?;
         let mean = number("sum")? as f64 / count as f64;
-        Some(Stats { count, min: number("min")?, max: number("max")?, mean })
+        Some(InstructionStats { count, min: number("min")?, max: number("max")?, mean })
     }
 
     fn certificate(&self, by: &str) -> CertificateBits {
@@ -211,11 +211,11 @@ info spread=interrupt count=2 min=100 max=102 sum=202";
 
     #[test]
     fn a_log_becomes_a_report() {
-        let report = Report::read(log()).unwrap();
+        let report = EmulatorReport::read(log()).unwrap();
         assert_eq!(report.calibration, Calibration { per_instruction: 32, overhead: 7 });
         assert_eq!((report.ticks, report.dropped, report.overruns), (4, 1, 2));
         assert_eq!(report.certify_instructions, 100);
-        let compute = Stats { count: 4, min: 40, max: 50, mean: 43.0 };
+        let compute = InstructionStats { count: 4, min: 40, max: 50, mean: 43.0 };
         assert_eq!(report.compute_instructions, compute);
         assert_eq!(report.interrupt_instructions.mean, 101.0);
         assert_eq!(report.compiler.alpha, Some((1, 2)));
@@ -226,13 +226,13 @@ info spread=interrupt count=2 min=100 max=102 sum=202";
     #[test]
     fn a_log_that_lacks_a_line_says_which() {
         let log: Vec<_> = log().into_iter().filter(|line| !line.contains("ticks=")).collect();
-        let error = Report::read(log).unwrap_err();
+        let error = EmulatorReport::read(log).unwrap_err();
         assert_eq!((error.line.as_str(), error.key.as_str()), ("ticks", "ticks"));
     }
 
     #[test]
     fn a_calibration_of_zero_is_no_calibration() {
         let log = vec!["info per_instruction=0 overhead=0".to_owned()];
-        assert!(Report::read(log).is_err());
+        assert!(EmulatorReport::read(log).is_err());
     }
 }

@@ -8,14 +8,14 @@ pub trait Transport {
     ///
     /// # Errors
     /// Where it does not.
-    fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
+    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError>;
 
     /// The same with a question of words.
     ///
     /// # Errors
     /// As of [`exchange`](Self::exchange).
-    fn ask(&mut self, question: &[u64], answer: &mut [u8]) -> Result<(), EmulatorError> {
-        let bytes: Vec<u8> = question.iter().flat_map(|word| word.to_le_bytes()).collect();
+    fn ask(&mut self, request: &[u64], answer: &mut [u8]) -> Result<(), EmulatorError> {
+        let bytes: Vec<u8> = request.iter().flat_map(|word| word.to_le_bytes()).collect();
         self.exchange(&bytes, answer)
     }
 
@@ -28,8 +28,8 @@ pub trait Transport {
 
 /// Through pipes to QEMU.
 impl Transport for Guest {
-    fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
-        Self::exchange(self, question, answer)
+    fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
+        Self::exchange(self, request, answer)
     }
 
     fn finish(self: Box<Self>) -> Result<(), EmulatorError> {

@@ -8,9 +8,9 @@ use firmware::excitation::{Exciter, Sweep};
 
 use super::record::Record;
 use super::rig::MeasuredDevice;
+use crate::compare_run::{EmulatedBoard, RunError};
+use crate::lockstep::{Difference, RemoteServo};
 use crate::quantity::significant;
-use crate::rig::{Difference, Twin};
-use crate::scenario::{Board, ScenarioError};
 
 /// A record, and whether the board played what this process would have.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +33,8 @@ pub fn measure<const N: usize>(
     device: &mut MeasuredDevice,
     elf: Option<&Path>,
     mut progress: impl FnMut(),
-) -> Result<Measurement, ScenarioError> {
-    let mut board = elf.map(Board::boot).transpose()?;
+) -> Result<Measurement, RunError> {
+    let mut board = elf.map(EmulatedBoard::boot).transpose()?;
     let mut exciter = Exciter::new(sweep);
     let torque_per_code = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
     let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);

@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// How long a board has to say what it is, and how long no row may come.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 /// Time between two bytes that say that somebody listens; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board that was still at it falls silent.
@@ -55,7 +55,7 @@ pub enum PortError {
     #[error(
         "no board that plays a sweep answers on {address} within {} s: flash `identify` \
          (cargo haptic flash --board BOARD identify), and check the port and its speed",
-        PATIENCE.as_secs()
+        TIMEOUT.as_secs()
     )]
     Silent {
         /// The address.
@@ -76,7 +76,7 @@ pub enum PortError {
     #[error(
         "the board on {address} has sent nothing for {} s after {rows} of {ticks} rows: check its \
          cable and its power; its watchdog or its own limit of {SILENCE} s has stopped the motor",
-        PATIENCE.as_secs()
+        TIMEOUT.as_secs()
     )]
     Lost {
         /// The address.
@@ -149,7 +149,7 @@ impl Recording {
     ///
     /// # Errors
     /// With what ended the sweep before its end.
-    pub fn whole(&self) -> Result<(), PortError> {
+    pub fn check_complete(&self) -> Result<(), PortError> {
         let Description { ticks, travel, speed, .. } = self.description;
         let (end, rows) = (self.end, self.rows);
         match end {
@@ -163,7 +163,7 @@ impl Recording {
 }
 
 /// A board whose sweep has not begun.
-pub struct Player {
+pub struct SweepPort {
     address: Address,
     transport: Box<dyn Transport>,
     /// Bytes that are no whole line yet.
@@ -173,7 +173,7 @@ pub struct Player {
     description: Description,
 }
 
-impl Player {
+impl SweepPort {
     /// Connects, ends what the board may still be playing, and asks what it would play.
     ///
     /// # Errors
@@ -185,7 +185,7 @@ impl Player {
             Description { period: 0.0, counts_per_turn: 0.0, ticks: 0, travel: 0.0, speed: 0.0 };
         let (address, rest) = (address.clone(), Vec::new());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
-        player.say(byte::STOP)?;
+        player.send_byte(byte::STOP)?;
         let settled = Instant::now() + SETTLE;
         while player.line(settled)?.is_some() {}
         player.rest.clear();
@@ -199,10 +199,10 @@ impl Player {
     }
 
     fn ask(&mut self) -> Result<(), PortError> {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIMEOUT;
         while Instant::now() < end {
-            self.say(byte::DESCRIBE)?;
-            let again = Instant::now() + PATIENCE / 8;
+            self.send_byte(byte::DESCRIBE)?;
+            let again = Instant::now() + TIMEOUT / 8;
             while let Some(line) = self.line(again)? {
                 if let Some(fields) = line.strip_prefix("identify,") {
                     self.description = describe(fields).ok_or_else(|| PortError::Protocol {
@@ -223,11 +223,11 @@ impl Player {
     /// # Errors
     /// Where the link is lost, or the board ends with an unknown word.
     pub fn record(mut self, mut progress: impl FnMut()) -> Result<Recording, PortError> {
-        self.say(byte::BEGIN)?;
+        self.send_byte(byte::BEGIN)?;
         let (mut text, mut rows) = (String::new(), 0);
         let ticks = self.description.ticks;
         loop {
-            let Some(line) = self.line(Instant::now() + PATIENCE)? else {
+            let Some(line) = self.line(Instant::now() + TIMEOUT)? else {
                 return Err(PortError::Lost { address: self.address, rows, ticks });
             };
             if let Some(fields) = line.strip_prefix("end,") {
@@ -250,7 +250,7 @@ impl Player {
         }
     }
 
-    fn say(&mut self, byte: u8) -> Result<(), PortError> {
+    fn send_byte(&mut self, byte: u8) -> Result<(), PortError> {
         self.told = Instant::now();
         let sent = self.transport.write_all(&[byte]).and_then(|()| self.transport.flush());
         sent.map_err(|source| self.lost(source))
@@ -264,7 +264,7 @@ impl Player {
                 return Ok(Some(String::from_utf8_lossy(&line).trim_end().to_owned()));
             }
             if self.told.elapsed() >= LISTENING {
-                self.say(byte::LISTENING)?;
+                self.send_byte(byte::LISTENING)?;
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::table::{Column, Place, Row, Table, TableError};
+use crate::table::{Column, FoundColumn, Row, Table, TableError};
 
 /// How far a row's time may be from its tick, as a part of the period: a slip of a whole tick is
 /// found, the rounding of printed decimals is not taken for one.
@@ -95,7 +95,7 @@ impl Times {
         (self.latest - self.first) / (self.rows.max(2) - 1) as f64
     }
 
-    fn add(&mut self, row: &Row<'_>, column: Place) -> Result<(), TableError> {
+    fn add(&mut self, row: &Row<'_>, column: FoundColumn) -> Result<(), TableError> {
         let value = row.number(column, |time: &f64| time.is_finite())?;
         match self.rows {
             0 => self.first = value,

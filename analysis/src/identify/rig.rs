@@ -7,8 +7,8 @@ use nalgebra::DVector;
 use super::record::Record;
 use crate::device::SimulatedEncoder;
 use crate::simulation::SimulationError;
+use crate::simulation::discrete_plant::{DiscretePlant, Discretization};
 use crate::simulation::plant::{POSITION, Plant};
-use crate::simulation::tick::{Stepping, Tick};
 
 /// One sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +40,9 @@ pub struct Sensing {
 #[derive(Clone, Debug)]
 pub struct MeasuredDevice {
     /// From a tick to the time at which the next row's counts are taken.
-    until: Tick,
+    until: DiscretePlant,
     /// From there to the next tick; none without skew.
-    after: Option<Tick>,
+    after: Option<DiscretePlant>,
     state: DVector<f64>,
     /// Angle in rad that the encoder sees.
     seen: f64,
@@ -58,11 +58,11 @@ impl MeasuredDevice {
     /// Where the device is too fast for its motion over a period to be computed.
     pub fn new(plant: &Plant, sensing: &Sensing) -> Result<Self, SimulationError> {
         let Sensing { period, counts_per_turn, torque_noise, skew, seed } = *sensing;
-        let over = |time| Tick::checked(plant, &Stepping::exact(time), 0.0);
+        let over = |time| DiscretePlant::checked(plant, &Discretization::exact(time), 0.0);
         Ok(Self {
             until: over(period - skew)?,
             after: (skew > 0.0).then(|| over(skew)).transpose()?,
-            state: plant.moving(0.0, 0.0),
+            state: plant.state_at(0.0, 0.0),
             seen: 0.0,
             encoder: SimulatedEncoder::new(counts_per_turn),
             torque_noise,

@@ -8,7 +8,7 @@ use thiserror::Error;
 /// A parameter was given two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{name} is given twice")]
-pub struct Twice {
+pub struct DuplicateParameter {
     /// Its name.
     pub name: &'static str,
 }
@@ -34,11 +34,11 @@ pub fn change(text: &str) -> Result<(Parameter, f64), String> {
 ///
 /// # Errors
 /// Where a parameter is given twice.
-pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, Twice> {
+pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, DuplicateParameter> {
     for (i, (parameter, _)) in changes.iter().enumerate() {
         if changes[..i].iter().any(|(earlier, _)| earlier == parameter) {
             let name = tuning::name(*parameter).unwrap_or(parameter.name_and_unit().0);
-            return Err(Twice { name });
+            return Err(DuplicateParameter { name });
         }
     }
     // More than there are parameters would have one of them twice.
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn a_parameter_given_twice_is_refused() {
         let twice = [(Parameter::Damping, 0.1), (Parameter::Damping, 0.1)];
-        assert_eq!(collect(&twice), Err(Twice { name: "damping" }));
+        assert_eq!(collect(&twice), Err(DuplicateParameter { name: "damping" }));
     }
 
     #[test]

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use firmware::tuning::Parameters;
 use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Refusal, Remembered, Running,
-    Status, ToBoard, ToHost,
+    ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
+    PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
@@ -19,7 +19,7 @@ pub type Message = ToHost<String>;
 
 /// What became of a request, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum RequestResult {
     /// It is done: what was asked for runs.
     Done,
     /// It is refused, and nothing has changed. The sentence says why.
@@ -28,7 +28,7 @@ pub enum Answer {
 
 /// How long an answer is waited for.
 #[derive(Clone, Copy)]
-pub(crate) struct Patience {
+pub(crate) struct RetryTiming {
     /// Until it is asked again: bytes get lost.
     pub(crate) again: Duration,
     /// In all.
@@ -36,11 +36,11 @@ pub(crate) struct Patience {
 }
 
 /// With what a board knows.
-const QUESTION: Patience =
-    Patience { again: Duration::from_millis(250), end: Duration::from_secs(3) };
+const QUERY_TIMING: RetryTiming =
+    RetryTiming { again: Duration::from_millis(250), end: Duration::from_secs(3) };
 /// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
-pub(crate) const REQUEST: Patience =
-    Patience { again: Duration::from_secs(2), end: Duration::from_secs(10) };
+pub(crate) const REQUEST_TIMING: RetryTiming =
+    RetryTiming { again: Duration::from_secs(2), end: Duration::from_secs(10) };
 
 /// A connection to a board that has said who it is.
 pub struct Link {
@@ -48,7 +48,7 @@ pub struct Link {
     wire: Wire,
     program: String,
     board: Board,
-    remembered: Option<Remembered>,
+    previous_fault: Option<PreviousFault>,
     /// Drawn at first, so that an answer to somebody before us is not taken for ours.
     last_id: Id,
 }
@@ -100,13 +100,13 @@ impl Wire {
     fn ask<T>(
         &mut self,
         question: &ToBoard,
-        patience: Patience,
+        timing: RetryTiming,
         mut wanted: impl FnMut(Message) -> Option<T>,
     ) -> io::Result<Option<T>> {
-        let end = Instant::now() + patience.end;
+        let end = Instant::now() + timing.end;
         while Instant::now() < end {
             self.send(question)?;
-            let again = (Instant::now() + patience.again).min(end);
+            let again = (Instant::now() + timing.again).min(end);
             while let Some(message) = self.receive(again)? {
                 if let Some(answer) = wanted(message) {
                     return Ok(Some(answer));
@@ -123,7 +123,7 @@ fn is_closed(error: &io::Error) -> bool {
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }
 
-impl From<Outcome> for Answer {
+impl From<Outcome> for RequestResult {
     fn from(outcome: Outcome) -> Self {
         match outcome {
             Outcome::Done => Self::Done,
@@ -142,15 +142,15 @@ impl Link {
             .map_err(|source| LinkError::Open { address: address.clone(), source })?;
         let (decoder, bytes) = (Decoder::new(), Box::new([0; 4096]));
         let mut wire = Wire { transport, decoder, bytes, filled: 0, used: 0 };
-        let (mut welcome, mut remembered) = (None, None);
-        let greeted = wire.ask(&ToBoard::Hello, QUESTION, |message| match message {
+        let (mut welcome, mut previous_fault) = (None, None);
+        let greeted = wire.ask(&ToBoard::Hello, QUERY_TIMING, |message| match message {
             ToHost::Welcome { protocol, program } if protocol == PROTOCOL => {
                 welcome = Some(program);
                 None
             }
             ToHost::Welcome { protocol, program } => Some(Err((protocol, program))),
-            ToHost::Remembered(fault) => {
-                remembered = Some(fault);
+            ToHost::PreviousFault(fault) => {
+                previous_fault = Some(fault);
                 None
             }
             // The last part of the greeting.
@@ -159,13 +159,18 @@ impl Link {
         });
         let address = address.clone();
         match greeted {
-            Ok(Some(Ok((program, board)))) => {
-                Ok(Self { address, wire, program, board, remembered, last_id: fastrand::u16(..) })
-            }
+            Ok(Some(Ok((program, board)))) => Ok(Self {
+                address,
+                wire,
+                program,
+                board,
+                previous_fault,
+                last_id: fastrand::u16(..),
+            }),
             Ok(Some(Err((theirs, program)))) => {
                 Err(LinkError::Protocol { address, program, theirs })
             }
-            Ok(None) => Err(LinkError::Silent { address, after: QUESTION.end }),
+            Ok(None) => Err(LinkError::Silent { address, after: QUERY_TIMING.end }),
             // A socket says so; a serial line is only silent.
             Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
                 Err(LinkError::InUse { address })
@@ -190,8 +195,8 @@ impl Link {
     }
 
     /// What stopped the board before it was last started.
-    pub fn remembered(&self) -> Option<Remembered> {
-        self.remembered
+    pub fn previous_fault(&self) -> Option<PreviousFault> {
+        self.previous_fault
     }
 
     /// Frames from the board that were none.
@@ -203,7 +208,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn set(&mut self, changes: Changes) -> Result<Answer, LinkError> {
+    pub fn set(&mut self, changes: Changes) -> Result<RequestResult, LinkError> {
         let set = |id| ToBoard::Set { id, changes: changes.clone() };
         let outcome = self.request("a change of its parameters", set)?;
         self.in_words(outcome, &changes)
@@ -214,14 +219,18 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn in_words(&mut self, outcome: Outcome, changes: &Changes) -> Result<Answer, LinkError> {
+    pub fn in_words(
+        &mut self,
+        outcome: Outcome,
+        changes: &Changes,
+    ) -> Result<RequestResult, LinkError> {
         if let Outcome::Refused(Refusal::Set(step)) = outcome {
-            let (description, running) = (self.description()?, self.running()?);
-            let has = Parameters::of(running.values.iter().map(|(parameter, _)| *parameter));
+            let (description, parameters) = (self.description()?, self.parameters()?);
+            let has = Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter));
             if let Err(reason) = description.explain(has, changes)
                 && reason.step() == step
             {
-                return Ok(Answer::Refused(reason.to_string()));
+                return Ok(RequestResult::Refused(reason.to_string()));
             }
         }
         Ok(outcome.into())
@@ -231,7 +240,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn arm(&mut self) -> Result<Answer, LinkError> {
+    pub fn arm(&mut self) -> Result<RequestResult, LinkError> {
         Ok(self.request("to arm", |id| ToBoard::Arm { id })?.into())
     }
 
@@ -239,7 +248,7 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn disarm(&mut self) -> Result<Answer, LinkError> {
+    pub fn disarm(&mut self) -> Result<RequestResult, LinkError> {
         Ok(self.request("to disarm", |id| ToBoard::Disarm { id })?.into())
     }
 
@@ -248,7 +257,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
-        self.ask("what exactly runs", &ToBoard::Describe, QUESTION, |message| match message {
+        self.ask("what exactly runs", &ToBoard::Describe, QUERY_TIMING, |message| match message {
             ToHost::Described(description) => Some(description),
             _ => None,
         })
@@ -258,9 +267,9 @@ impl Link {
     ///
     /// # Errors
     /// Where the board does not answer.
-    pub fn running(&mut self) -> Result<Running, LinkError> {
-        self.ask("which parameters run", &ToBoard::Get, QUESTION, |message| match message {
-            ToHost::Running(running) => Some(running),
+    pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
+        self.ask("which parameters run", &ToBoard::Get, QUERY_TIMING, |message| match message {
+            ToHost::ActiveParameters(parameters) => Some(parameters),
             _ => None,
         })
     }
@@ -270,7 +279,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
-        self.ask("how it is going", &ToBoard::Status, QUESTION, |message| match message {
+        self.ask("how it is going", &ToBoard::Status, QUERY_TIMING, |message| match message {
             ToHost::Status(status) => Some(status),
             _ => None,
         })
@@ -304,7 +313,7 @@ impl Link {
         message: impl Fn(Id) -> ToBoard,
     ) -> Result<Outcome, LinkError> {
         let sent = self.next_id();
-        self.ask(what, &message(sent), REQUEST, |message| match message {
+        self.ask(what, &message(sent), REQUEST_TIMING, |message| match message {
             ToHost::Answer { id, outcome } if id == sent => Some(outcome),
             _ => None,
         })
@@ -314,12 +323,12 @@ impl Link {
         &mut self,
         what: &'static str,
         question: &ToBoard,
-        patience: Patience,
+        timing: RetryTiming,
         wanted: impl FnMut(Message) -> Option<T>,
     ) -> Result<T, LinkError> {
-        match self.wire.ask(question, patience, wanted) {
+        match self.wire.ask(question, timing, wanted) {
             Ok(Some(answer)) => Ok(answer),
-            Ok(None) => Err(self.silent(what, patience.end)),
+            Ok(None) => Err(self.silent(what, timing.end)),
             Err(source) => Err(self.lost(source)),
         }
     }

@@ -8,7 +8,7 @@ mod holder;
 mod transport;
 
 pub use address::{Address, AddressError};
-pub(crate) use connection::REQUEST;
-pub use connection::{Answer, Link, Message};
+pub(crate) use connection::REQUEST_TIMING;
+pub use connection::{Link, Message, RequestResult};
 pub use error::LinkError;
 pub(crate) use transport::{Transport, is_timeout, open};

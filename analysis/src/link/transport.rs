@@ -11,7 +11,7 @@ use serialport::SerialPort;
 use super::Address;
 
 /// Longest wait for a connection, and for the wire to take bytes.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A two-way stream of bytes whose reads end after a while, with or without bytes.
 pub trait Transport: Read + Write + Send {
@@ -42,7 +42,7 @@ impl Transport for UnixStream {
 pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
     Ok(match address {
         Address::Serial { port, baud } => {
-            let port = serialport::new(port, *baud).timeout(PATIENCE).open()?;
+            let port = serialport::new(port, *baud).timeout(TIMEOUT).open()?;
             // What a probe has kept from before is not for us.
             port.clear(serialport::ClearBuffer::All)?;
             Box::new(port)
@@ -51,7 +51,7 @@ pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
         #[cfg(unix)]
         Address::Unix(path) => {
             let stream = UnixStream::connect(path)?;
-            stream.set_write_timeout(Some(PATIENCE))?;
+            stream.set_write_timeout(Some(TIMEOUT))?;
             Box::new(stream)
         }
         #[cfg(not(unix))]
@@ -63,11 +63,11 @@ pub fn open(address: &Address) -> io::Result<Box<dyn Transport>> {
 fn connect(address: &str) -> io::Result<TcpStream> {
     let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
     for address in address.to_socket_addrs()? {
-        match TcpStream::connect_timeout(&address, PATIENCE) {
+        match TcpStream::connect_timeout(&address, TIMEOUT) {
             Ok(stream) => {
                 // Messages are small, and each waits for the answer to the one before.
                 stream.set_nodelay(true)?;
-                stream.set_write_timeout(Some(PATIENCE))?;
+                stream.set_write_timeout(Some(TIMEOUT))?;
                 return Ok(stream);
             }
             Err(error) => last = error,

@@ -3,7 +3,7 @@
 use firmware::wire::message::{Changes, Id, ToBoard};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use crate::link::{Answer, change};
+use crate::link::{RequestResult, change};
 
 /// What is asked of a board.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Request {
     /// What is asked for, in words.
     pub fn words(&self) -> String {
         match self {
-            Self::Set(changes) => super::words::changes(changes),
+            Self::Set(changes) => super::formatting::changes(changes),
             Self::Arm => "arm".to_owned(),
             Self::Disarm => "disarm".to_owned(),
         }
@@ -50,7 +50,7 @@ pub enum Reply {
     /// It was asked for.
     Asked,
     /// The board has answered.
-    Answered(Answer),
+    Answered(RequestResult),
     /// There was no answer.
     Unanswered,
     /// It was not asked for, since the board has yet to answer what was asked before.
@@ -65,8 +65,8 @@ impl Reply {
         let what = request.words();
         match self {
             Self::Asked => format!("{what} ..."),
-            Self::Answered(Answer::Done) => format!("{what}: done"),
-            Self::Answered(Answer::Refused(sentence)) => format!("{what}: {sentence}"),
+            Self::Answered(RequestResult::Done) => format!("{what}: done"),
+            Self::Answered(RequestResult::Refused(sentence)) => format!("{what}: {sentence}"),
             Self::Unanswered => format!("{what}: the board has not answered; it may have done it"),
             Self::Busy => {
                 format!("{what}: not sent; the board has not answered the last request yet")
@@ -98,7 +98,7 @@ pub struct Control {
     /// The line so far, where one is typed.
     pub prompt: Option<String>,
     /// What came of the last request, or what is wrong with the line.
-    pub said: Option<String>,
+    pub message: Option<String>,
 }
 
 impl Control {
@@ -136,7 +136,7 @@ impl Control {
             KeyCode::Esc => return Action::None,
             KeyCode::Enter => match change::line(&line) {
                 Ok(changes) => return Action::Request(Request::Set(changes)),
-                Err(why) => self.said = Some(why),
+                Err(why) => self.message = Some(why),
             },
             KeyCode::Backspace => drop(line.pop()),
             KeyCode::Char(letter) => line.push(letter),
@@ -166,8 +166,8 @@ mod tests {
     fn a_line_is_typed_mended_and_sent() {
         let mut control = Control::default();
         assert_eq!(typed(&mut control, "tstifness = 20\n"), Action::None);
-        let said = control.said.clone().unwrap();
-        assert!(said.contains("no parameter `stifness`"), "{said}");
+        let message = control.message.clone().unwrap();
+        assert!(message.contains("no parameter `stifness`"), "{message}");
         let mended = "\u{8}".repeat(10) + "ffness = 20\n";
         let wanted = Changes::from_slice(&[(Parameter::Stiffness, 20.0)]).unwrap();
         assert_eq!(control.prompt.as_deref(), Some("stifness = 20"));

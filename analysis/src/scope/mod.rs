@@ -1,21 +1,21 @@
 //! A live view of a board: what it says, what of it is kept, and how it is drawn.
 
 pub mod control;
-pub mod feed;
+pub mod formatting;
 pub mod history;
+pub mod poller;
 pub mod record;
 pub mod sample;
 #[cfg(test)]
 mod tests;
-pub mod view;
-pub mod words;
+pub mod tui;
 
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Remembered, Running, Status};
+use firmware::wire::message::{ActiveParameters, Board, PreviousFault, Status};
 
 use self::control::Control;
-use self::feed::Event;
 use self::history::History;
+use self::poller::Event;
 use self::sample::{Sample, Scale};
 
 /// What is known of a board.
@@ -24,28 +24,28 @@ pub struct Scope {
     /// Where it is.
     pub address: String,
     /// What it has said about itself.
-    pub known: Option<Known>,
+    pub connected: Option<ConnectedBoard>,
     /// Why there is no link now.
     pub lost: Option<String>,
     /// How it was going when it was last asked, and the frames that could not be read here.
     pub status: Option<(Status, Discarded)>,
     /// The numbers that run.
-    pub running: Option<Running>,
+    pub parameters: Option<ActiveParameters>,
     /// The last seconds.
     pub history: History,
     /// What is asked of the board.
     pub control: Control,
 }
 
-/// What a board has said about itself.
+/// The board that is connected.
 #[derive(Clone, Debug)]
-pub struct Known {
+pub struct ConnectedBoard {
     /// Name of its program.
     pub program: String,
     /// What its numbers mean.
     pub board: Board,
     /// What stopped it before it was last started.
-    pub remembered: Option<Remembered>,
+    pub previous_fault: Option<PreviousFault>,
     scale: Scale,
 }
 
@@ -54,7 +54,15 @@ impl Scope {
     pub fn new(address: String, window: f64) -> Self {
         let history = History::new(window);
         let control = Control::default();
-        Self { address, known: None, lost: None, status: None, running: None, history, control }
+        Self {
+            address,
+            connected: None,
+            lost: None,
+            status: None,
+            parameters: None,
+            history,
+            control,
+        }
     }
 
     /// Takes in what the board says, and gives its ticks to `each`.
@@ -64,23 +72,23 @@ impl Scope {
         mut each: impl FnMut(&Sample) -> Result<(), E>,
     ) -> Result<(), E> {
         match event {
-            Event::Connected { program, board, remembered } => {
+            Event::Connected { program, board, previous_fault } => {
                 let scale = Scale::new(board);
-                self.known = Some(Known { program, board, remembered, scale });
+                self.connected = Some(ConnectedBoard { program, board, previous_fault, scale });
                 self.lost = None;
                 self.history.clear();
             }
             Event::Ticks(frames) => {
-                let Some(known) = &mut self.known else { return Ok(()) };
+                let Some(connected) = &mut self.connected else { return Ok(()) };
                 for frame in &frames {
-                    let sample = known.scale.sample(frame);
+                    let sample = connected.scale.sample(frame);
                     each(&sample)?;
                     self.history.push(sample);
                 }
             }
             Event::Status(status, discarded) => self.status = Some((status, discarded)),
-            Event::Running(running) => self.running = Some(running),
-            Event::Reply(request, reply) => self.control.said = Some(reply.line(&request)),
+            Event::ActiveParameters(parameters) => self.parameters = Some(parameters),
+            Event::Reply(request, reply) => self.control.message = Some(reply.line(&request)),
             Event::Lost(why) => self.lost = Some(why),
         }
         Ok(())

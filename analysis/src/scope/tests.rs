@@ -5,14 +5,14 @@ use firmware::reset::ResetCause;
 use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::Discarded;
-use firmware::wire::message::{Board, Changes, Remembered, Running, Status};
+use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
-use super::feed::Event;
 use super::history::History;
+use super::poller::Event;
 use super::sample::Sample;
-use super::{Scope, view};
+use super::{Scope, tui};
 
 const BOARD: Board = Board {
     period: 0.001,
@@ -53,11 +53,14 @@ fn take(scope: &mut Scope, event: Event) {
 fn connected() -> Scope {
     let mut scope = Scope::new("COM3".to_owned(), 5.0);
     let fault = Fault::EncoderJump { counts: 900, largest: 100 }.into();
-    let remembered = Some(Remembered { fault, tick: 77, count: 0 });
+    let previous_fault = Some(PreviousFault { fault, tick: 77, count: 0 });
     let program = "damper_wall".to_owned();
-    take(&mut scope, Event::Connected { program, board: BOARD, remembered });
+    take(&mut scope, Event::Connected { program, board: BOARD, previous_fault });
     let values = Changes::from_slice(&[(Parameter::Stiffness, 22.0)]).unwrap();
-    take(&mut scope, Event::Running(Running { sets: 3, margin: Some(0.0015), values }));
+    take(
+        &mut scope,
+        Event::ActiveParameters(ActiveParameters { sets: 3, margin: Some(0.0015), values }),
+    );
     take(&mut scope, Event::Status(STATUS, Discarded::default()));
     let limit = |i| if i % 4 == 0 { LimitReason::Torque } else { LimitReason::None };
     take(&mut scope, Event::Ticks((0..12).map(|i| frame(i, 250, limit(i))).collect()));
@@ -67,7 +70,7 @@ fn connected() -> Scope {
 /// What is on a terminal of that size, line by line.
 fn screen(scope: &Scope, width: u16, height: u16) -> String {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| view::draw(frame, scope)).unwrap();
+    terminal.draw(|frame| tui::draw(frame, scope)).unwrap();
     terminal.backend().to_string()
 }
 
@@ -121,7 +124,7 @@ fn shows_the_line_that_is_typed_and_all_of_the_answer() {
     scope.control.prompt = Some("stiffness = 2".to_owned());
     let sentence = "rejected: the environment needs alpha = 0.5 N m s/rad of damping, not below the \
                     delta = 0.022 N m s/rad that the device has; it would pass with stiffness <= 16";
-    scope.control.said = Some(sentence.to_owned());
+    scope.control.message = Some(sentence.to_owned());
     let shown = screen(&scope, 60, 40);
     let words = |text: &str| {
         text.replace(['"', '\n'], " ").split_whitespace().collect::<Vec<_>>().join(" ")
@@ -138,12 +141,12 @@ fn colours_can_be_left_out() {
         let cells = &terminal.backend().buffer().content;
         cells.iter().filter(|cell| cell.fg != ratatui::style::Color::Reset).count()
     };
-    terminal.draw(|frame| view::draw(frame, &scope)).unwrap();
+    terminal.draw(|frame| tui::draw(frame, &scope)).unwrap();
     assert!(coloured(&terminal) > 0);
     terminal
         .draw(|frame| {
-            view::draw(frame, &scope);
-            view::without_colour(frame);
+            tui::draw(frame, &scope);
+            tui::without_colour(frame);
         })
         .unwrap();
     assert_eq!(coloured(&terminal), 0);

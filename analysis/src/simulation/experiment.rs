@@ -1,19 +1,19 @@
-//! What is simulated, and how it is taken through a tick.
+//! The set-up of a simulation: scene, plant, inputs, and the integration over a tick.
 
 use std::path::Path;
 
 use firmware::scene::Scene;
 
-use super::drive::Drive;
+use super::discrete_plant::{DiscretePlant, Discretization};
 use super::error::SimulationError;
 use super::method::Method;
 use super::plant::Plant;
-use super::tick::{Stepping, Tick};
+use super::torque_signal::TorqueSignal;
 use crate::device::Motion;
 use crate::file::SceneFile;
 use crate::missed::Missed;
 
-/// Everything that decides what will happen.
+/// Everything that determines the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
     /// The scene; its device is where the canceller's damping comes from.
@@ -25,10 +25,10 @@ pub struct Experiment {
     /// Number of samples.
     pub samples: usize,
     /// Torque of the hand.
-    pub drive: Drive,
+    pub hand_torque: TorqueSignal,
     /// Angle of an encoder count in rad, if the angle is floored to whole counts.
     pub encoder_step: Option<f64>,
-    /// Dry friction of the motor's mass in N m.
+    /// Coulomb friction of the motor's mass in N m.
     pub friction: f64,
     /// Time in s from a sample to its torque, less than the period.
     pub latency: f64,
@@ -48,7 +48,7 @@ impl Experiment {
         Ok(Self {
             samples: simulation.samples,
             start: Motion { position: simulation.position, velocity: simulation.velocity },
-            drive: Drive::load(
+            hand_torque: TorqueSignal::load(
                 &simulation.torque,
                 folder,
                 simulation.samples,
@@ -65,7 +65,7 @@ impl Experiment {
     /// The scene and the machine of a file, at rest, with nothing to disturb them but latency.
     pub fn at_rest(file: &SceneFile) -> Self {
         Self {
-            plant: Plant::of(&file.chain).held(file.hand.unwrap_or_default()),
+            plant: Plant::of(&file.chain).with_hand(file.hand.unwrap_or_default()),
             latency: file.simulation.as_ref().map_or(0.0, |simulation| simulation.latency),
             ..Self::still(&file.scene)
         }
@@ -78,7 +78,7 @@ impl Experiment {
             plant: Plant::rigid(scene.device),
             start: Motion::default(),
             samples: 0,
-            drive: Drive::Free,
+            hand_torque: TorqueSignal::Free,
             encoder_step: None,
             friction: 0.0,
             latency: 0.0,
@@ -110,31 +110,35 @@ impl Experiment {
     ///
     /// # Errors
     /// Where the machine is too fast for its motion over a period to be computed.
-    pub fn tick(&self, stride: Stride) -> Result<Tick, SimulationError> {
-        Tick::checked(&self.plant, &self.stepping(stride), self.drive.omega())
+    pub fn tick(&self, integration: Integration) -> Result<DiscretePlant, SimulationError> {
+        DiscretePlant::checked(
+            &self.plant,
+            &self.discretization(integration),
+            self.hand_torque.omega(),
+        )
     }
 
     /// How the plant is taken through a tick.
-    pub fn stepping(&self, stride: Stride) -> Stepping {
-        Stepping {
-            method: stride.method,
-            substeps: stride.substeps.max(1),
+    pub fn discretization(&self, integration: Integration) -> Discretization {
+        Discretization {
+            method: integration.method,
+            substeps: integration.substeps.max(1),
             period: self.scene.timing.period,
             latency: self.latency,
         }
     }
 }
 
-/// Method and steps a tick.
+/// Integration method and substeps per tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stride {
+pub struct Integration {
     /// The method.
     pub method: Method,
     /// Steps a tick, at least one; the exact method takes the tick in one whatever this is.
     pub substeps: u32,
 }
 
-impl Default for Stride {
+impl Default for Integration {
     fn default() -> Self {
         Self { method: Method::Exact, substeps: 1 }
     }

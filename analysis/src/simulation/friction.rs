@@ -1,4 +1,4 @@
-//! Dry friction on the motor's mass: it slides against a constant torque, or it is stuck.
+//! Coulomb friction on the motor's mass: it slides against a constant torque, or it sticks.
 //!
 //! In each of the two the plant is linear, so it goes by the method's matrices; what has to be
 //! found is when it changes. A step at whose end the mode no longer holds is halved until the
@@ -6,10 +6,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::drive::Drive;
+use super::discrete_plant::Discretization;
 use super::method::step;
 use super::plant::{INPUTS, Input, Plant};
-use super::tick::Stepping;
+use super::torque_signal::TorqueSignal;
 
 /// Halvings of a step: a change is placed to a millionth of it.
 const HALVINGS: usize = 20;
@@ -28,9 +28,9 @@ enum Mode {
     Slides(f64),
 }
 
-/// A plant with dry friction, one tick at a time.
+/// A plant with Coulomb friction, one tick at a time.
 #[derive(Clone, Debug)]
-pub struct Rubbing {
+pub struct FrictionPlant {
     plant: Plant,
     friction: f64,
     period: f64,
@@ -51,19 +51,19 @@ struct Part {
     early: bool,
 }
 
-impl Rubbing {
+impl FrictionPlant {
     /// The plant at `state` with a friction of up to `friction` N m.
     pub fn new(
         plant: &Plant,
         friction: f64,
-        stepping: &Stepping,
+        discretization: &Discretization,
         omega: f64,
         state: &DVector<f64>,
     ) -> Self {
-        let stuck = plant.clone().stuck();
+        let stuck = plant.clone().with_motor_stuck();
         let halves = |plant: &Plant, h: f64| -> Vec<DMatrix<f64>> {
             let length = |halving: usize| h * 0.5_f64.powi(halving as i32);
-            let one = |halving| step(plant, stepping.method, omega, length(halving));
+            let one = |halving| step(plant, discretization.method, omega, length(halving));
             (0..=HALVINGS).map(one).collect()
         };
         let part = |(early, (length, steps)): (bool, (f64, u32))| {
@@ -71,7 +71,7 @@ impl Rubbing {
             let h = length / f64::from(steps);
             Part { steps, slides: halves(plant, h), stuck: halves(&stuck, h), early }
         };
-        let parts = [true, false].into_iter().zip(stepping.parts());
+        let parts = [true, false].into_iter().zip(discretization.parts());
         let parts = parts.filter(|(_, (length, _))| *length > 0.0).map(part).collect();
         let n = plant.order();
         let mut all = DVector::zeros(n + INPUTS + 2);
@@ -80,7 +80,14 @@ impl Rubbing {
             0.0 => Mode::Stuck,
             velocity => Mode::Slides(velocity.signum()),
         };
-        Self { plant: plant.clone(), friction, period: stepping.period, parts, state: all, mode }
+        Self {
+            plant: plant.clone(),
+            friction,
+            period: discretization.period,
+            parts,
+            state: all,
+            mode,
+        }
     }
 
     /// The plant's states.
@@ -89,10 +96,10 @@ impl Rubbing {
     }
 
     /// One tick with the motor torques before and after the latency, in N m.
-    pub fn tick(&mut self, k: usize, drive: &Drive, [before, after]: [f64; 2]) {
+    pub fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, [before, after]: [f64; 2]) {
         let n = self.plant.order();
-        let [sine, cosine] = drive.sine(k, self.period);
-        self.state[n + Input::Hand as usize] = drive.held(k);
+        let [sine, cosine] = hand_torque.sine(k, self.period);
+        self.state[n + Input::Hand as usize] = hand_torque.held(k);
         self.state[n + INPUTS] = sine;
         self.state[n + INPUTS + 1] = cosine;
         for part in std::mem::take(&mut self.parts) {
@@ -168,17 +175,18 @@ mod tests {
     use crate::simulation::method::Method;
     use firmware::scene::Device;
 
-    fn rubbing(friction: f64, velocity: f64) -> Rubbing {
+    fn friction_plant(friction: f64, velocity: f64) -> FrictionPlant {
         let plant = Plant::rigid(Device { inertia: 0.5, damping: 0.0, passivity: None });
-        let stepping = Stepping { method: Method::Exact, substeps: 1, period: 0.25, latency: 0.0 };
-        Rubbing::new(&plant, friction, &stepping, 0.0, &plant.moving(0.0, velocity))
+        let discretization =
+            Discretization { method: Method::Exact, substeps: 1, period: 0.25, latency: 0.0 };
+        FrictionPlant::new(&plant, friction, &discretization, 0.0, &plant.state_at(0.0, velocity))
     }
 
     #[test]
     fn a_sliding_mass_comes_to_rest_where_its_energy_is_used_up() {
-        let mut mass = rubbing(0.3, 2.0);
+        let mut mass = friction_plant(0.3, 2.0);
         for k in 0..40 {
-            mass.tick(k, &Drive::Free, [0.0; 2]);
+            mass.tick(k, &TorqueSignal::Free, [0.0; 2]);
         }
         let way = 0.5 * 0.5 * 4.0 / 0.3;
         assert!((mass.state()[0] - way).abs() < 1e-9, "{}", mass.state()[0]);
@@ -187,10 +195,10 @@ mod tests {
 
     #[test]
     fn a_stuck_mass_gives_way_only_to_more_than_its_friction() {
-        let mut mass = rubbing(0.3, 0.0);
-        mass.tick(0, &Drive::Free, [0.0, 0.3]);
+        let mut mass = friction_plant(0.3, 0.0);
+        mass.tick(0, &TorqueSignal::Free, [0.0, 0.3]);
         assert_eq!(mass.state()[1], 0.0);
-        mass.tick(1, &Drive::Free, [0.3, -0.4]);
+        mass.tick(1, &TorqueSignal::Free, [0.3, -0.4]);
         assert!((mass.state()[1] + 0.1 / 0.5 * 0.25).abs() < 1e-12);
     }
 }

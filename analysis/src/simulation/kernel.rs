@@ -2,10 +2,10 @@
 
 use nalgebra::DVector;
 
-use super::closed::ClosedLoop;
-use super::drive::Drive;
+use super::closed_loop::ClosedLoop;
+use super::discrete_plant::DiscretePlant;
 use super::plant::{POSITION, VELOCITY};
-use super::tick::Tick;
+use super::torque_signal::TorqueSignal;
 use super::trajectory::Columns;
 
 /// Samples between two looks at whether the motion has died away.
@@ -18,13 +18,13 @@ pub(super) const DEAD: f64 = 1e-200;
 /// A linear loop in motion.
 pub trait Linear: std::fmt::Debug {
     /// The next samples.
-    fn fill(&mut self, drive: &Drive, columns: Columns<'_>);
+    fn fill(&mut self, hand_torque: &TorqueSignal, columns: Columns<'_>);
 }
 
 /// The loop with as many states as it needs, or none where it has too many.
 pub fn kernel(
     closed: &ClosedLoop,
-    tick: &Tick,
+    tick: &DiscretePlant,
     period: f64,
     start: &DVector<f64>,
 ) -> Option<Box<dyn Linear>> {
@@ -52,7 +52,7 @@ struct Kernel<const N: usize> {
 }
 
 impl<const N: usize> Kernel<N> {
-    fn new(closed: &ClosedLoop, tick: &Tick, period: f64, start: &DVector<f64>) -> Self {
+    fn new(closed: &ClosedLoop, tick: &DiscretePlant, period: f64, start: &DVector<f64>) -> Self {
         let states = |plant: &DVector<f64>| -> [f64; N] {
             let all = closed.extended(plant);
             std::array::from_fn(|i| all[i])
@@ -101,14 +101,13 @@ impl<const N: usize> Kernel<N> {
 }
 
 impl<const N: usize> Linear for Kernel<N> {
-    fn fill(&mut self, drive: &Drive, columns: Columns<'_>) {
-        match drive {
-            Drive::Free => self.run(columns, |_, _| None),
-            Drive::Held(_) => {
-                self.run(columns, |kernel, k| Some(sum(&[0.0; N], &kernel.hand, drive.held(k))))
-            }
-            Drive::Sine { .. } => self.run(columns, |kernel, k| {
-                let [s, c] = drive.sine(k, kernel.period);
+    fn fill(&mut self, hand_torque: &TorqueSignal, columns: Columns<'_>) {
+        match hand_torque {
+            TorqueSignal::Free => self.run(columns, |_, _| None),
+            TorqueSignal::Held(_) => self
+                .run(columns, |kernel, k| Some(sum(&[0.0; N], &kernel.hand, hand_torque.held(k)))),
+            TorqueSignal::Sine { .. } => self.run(columns, |kernel, k| {
+                let [s, c] = hand_torque.sine(k, kernel.period);
                 let from_sine = sum(&[0.0; N], &kernel.sine[0], s);
                 Some(sum(&from_sine, &kernel.sine[1], c))
             }),

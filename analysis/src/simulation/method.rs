@@ -215,7 +215,7 @@ mod tests {
         let masses = [Mass { inertia: 1e-3, damping: 0.02 }, Mass { inertia: 2e-3, damping: 0.01 }];
         let hand = Hand { inertia: 1e-3, damping: 0.05, stiffness: 3.0 };
         let links = [Link { stiffness: 700.0, damping: 0.01 }];
-        Plant::chain(&masses, &links).held(hand).lagging(2e-3)
+        Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(2e-3)
     }
 
     #[test]

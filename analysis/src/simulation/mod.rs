@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use analysis::file::{Format, parse};
-//! use analysis::simulation::{Experiment, Stride, simulate};
+//! use analysis::simulation::{Experiment, Integration, simulate};
 //!
 //! let file = parse("bounce.toml", Format::Toml, r#"
 //!     name = "bounce"
@@ -17,51 +17,51 @@
 //!     environment = { type = "damper-wall", stiffness = 22.0, damping = 0.01, delay = 1 }
 //!     simulation = { samples = 1000, position = 0.001 }
 //! "#)?;
-//! let motion = simulate(&Experiment::of(&file, ".".as_ref())?, Stride::default())?;
+//! let motion = simulate(&Experiment::of(&file, ".".as_ref())?, Integration::default())?;
 //! assert_eq!(motion.position[0], 0.001);
 //! assert!(motion.position[999].abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod closed;
-pub mod drive;
+pub mod closed_loop;
+pub mod discrete_plant;
 mod error;
 mod experiment;
 pub mod friction;
-pub mod held;
+pub mod held_device;
 pub mod kernel;
 pub mod method;
 pub mod plant;
-pub mod rendering;
-pub mod served;
-pub mod tick;
+pub mod tick_status;
+pub mod torque_signal;
 mod trajectory;
+pub mod unquantized_servo;
 
-mod general;
+mod nonlinear_loop;
 
 pub use error::SimulationError;
-pub use experiment::{Experiment, Stride};
-pub(crate) use general::Machine;
+pub use experiment::{Experiment, Integration};
+pub(crate) use nonlinear_loop::Machine;
 pub use trajectory::{Columns, Trajectory};
 
-use closed::ClosedLoop;
-use drive::Drive;
-use general::General;
+use closed_loop::ClosedLoop;
+use discrete_plant::DiscretePlant;
 use kernel::Linear;
-use served::Served;
-use tick::Tick;
+use nonlinear_loop::NonlinearLoop;
+use tick_status::TickStatus;
+use torque_signal::TorqueSignal;
 
 /// An experiment in motion.
 #[derive(Debug)]
 pub struct Simulator {
-    drive: Drive,
+    hand_torque: TorqueSignal,
     engine: Engine,
 }
 
 #[derive(Debug)]
 enum Engine {
     Linear(Box<dyn Linear>),
-    General(Box<General>),
+    NonlinearLoop(Box<NonlinearLoop>),
 }
 
 impl Simulator {
@@ -69,17 +69,17 @@ impl Simulator {
     ///
     /// # Errors
     /// Where the scene has no law that could run.
-    pub fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
-        let drive = experiment.drive.clone();
+    pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
+        let hand_torque = experiment.hand_torque.clone();
         // Refuses what has no law or no motion, whichever way it would be run.
-        let general = General::new(experiment, stride)?;
-        let tick = experiment.tick(stride)?;
+        let nonlinear = NonlinearLoop::new(experiment, integration)?;
+        let tick = experiment.tick(integration)?;
         if experiment.is_linear()
             && let Some(linear) = linear(experiment, &tick)
         {
-            return Ok(Self { drive, engine: Engine::Linear(linear) });
+            return Ok(Self { hand_torque, engine: Engine::Linear(linear) });
         }
-        Ok(Self { drive, engine: Engine::General(Box::new(general)) })
+        Ok(Self { hand_torque, engine: Engine::NonlinearLoop(Box::new(nonlinear)) })
     }
 
     /// The next samples, as many as `trajectory` has room for; it is cut off where the motion
@@ -89,18 +89,18 @@ impl Simulator {
         match &mut self.engine {
             Engine::Linear(linear) => {
                 // Nothing limits a linear loop.
-                limit.fill(Served::IN_FULL);
-                linear.fill(&self.drive, columns);
+                limit.fill(TickStatus::UNLIMITED);
+                linear.fill(&self.hand_torque, columns);
             }
-            Engine::General(general) => general.fill(&self.drive, columns, limit),
+            Engine::NonlinearLoop(nonlinear) => nonlinear.fill(&self.hand_torque, columns, limit),
         }
         trajectory.end_in_range();
     }
 }
 
-fn linear(experiment: &Experiment, tick: &Tick) -> Option<Box<dyn Linear>> {
+fn linear(experiment: &Experiment, tick: &DiscretePlant) -> Option<Box<dyn Linear>> {
     let closed = ClosedLoop::new(tick, &experiment.scene).ok()?;
-    let start = experiment.plant.moving(experiment.start.position, experiment.start.velocity);
+    let start = experiment.plant.state_at(experiment.start.position, experiment.start.velocity);
     kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 
@@ -108,9 +108,12 @@ fn linear(experiment: &Experiment, tick: &Tick) -> Option<Box<dyn Linear>> {
 ///
 /// # Errors
 /// Where the scene has no law that could run.
-pub fn simulate(experiment: &Experiment, stride: Stride) -> Result<Trajectory, SimulationError> {
+pub fn simulate(
+    experiment: &Experiment,
+    integration: Integration,
+) -> Result<Trajectory, SimulationError> {
     let mut trajectory = Trajectory::of_length(experiment.samples);
-    Simulator::new(experiment, stride)?.fill(&mut trajectory);
+    Simulator::new(experiment, integration)?.fill(&mut trajectory);
     Ok(trajectory)
 }
 

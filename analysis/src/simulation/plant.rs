@@ -60,9 +60,9 @@ impl Plant {
             EncoderPlace::Motor => 0,
             EncoderPlace::Hand => chain.masses().len() - 1,
         };
-        let plant = Self::seen_at(encoder, chain.masses(), chain.links());
+        let plant = Self::with_encoder_at(encoder, chain.masses(), chain.links());
         let lag = chain.actuator_lag();
-        if lag > 0.0 { plant.lagging(lag) } else { plant }
+        if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
     }
 
     /// Masses in a row from the motor to the hand, with a link between each and the next, the
@@ -71,14 +71,14 @@ impl Plant {
     /// # Panics
     /// Without a mass, or with a mass whose inertia is not positive: there is no such machine.
     pub fn chain(masses: &[Mass], links: &[Link]) -> Self {
-        Self::seen_at(0, masses, links)
+        Self::with_encoder_at(0, masses, links)
     }
 
     /// The same with the encoder on any of the masses, counted from the motor's.
     ///
     /// # Panics
     /// As [`Plant::chain`], and where there is no such mass.
-    pub fn seen_at(encoder: usize, masses: &[Mass], links: &[Link]) -> Self {
+    pub fn with_encoder_at(encoder: usize, masses: &[Mass], links: &[Link]) -> Self {
         assert!(encoder < masses.len() && masses.iter().all(|mass| mass.inertia > 0.0));
         // The encoder's mass and the motor's change places.
         let place = |mass: usize| match mass {
@@ -116,7 +116,7 @@ impl Plant {
 
     /// The same with a hand: its inertia moves with the mass that it holds, its spring and damper
     /// go to the ground.
-    pub fn held(mut self, hand: Hand) -> Self {
+    pub fn with_hand(mut self, hand: Hand) -> Self {
         let (position, velocity) = (2 * self.hand, 2 * self.hand + 1);
         let before = self.masses[self.hand].inertia;
         let inertia = before + hand.inertia;
@@ -130,9 +130,9 @@ impl Plant {
 
     /// The same in a hand whose grip moves: its spring and damper go to a point of its own, whose
     /// angle is one more state and whose velocity in rad/s takes the place of the hand's torque.
-    pub fn led(self, hand: Hand) -> Self {
+    pub fn with_moving_hand(self, hand: Hand) -> Self {
         let (n, input) = (self.order(), Input::Hand as usize);
-        let held = self.held(hand);
+        let held = self.with_hand(hand);
         let (velocity, inertia) = (2 * held.hand + 1, held.masses[held.hand].inertia);
         let mut rates = held.rates.resize(n + 1, n + 1, 0.0);
         let mut inputs = held.inputs.resize(n + 1, INPUTS, 0.0);
@@ -145,7 +145,7 @@ impl Plant {
 
     /// The same with an amplifier whose torque follows the command with the time constant `lag`
     /// in s, greater than zero.
-    pub fn lagging(self, lag: f64) -> Self {
+    pub fn with_actuator_lag(self, lag: f64) -> Self {
         let n = self.order();
         let motor = Input::Motor as usize;
         let mut rates = self.rates.resize(n + 1, n + 1, 0.0);
@@ -158,7 +158,7 @@ impl Plant {
     }
 
     /// The same with the motor's mass held in place by its friction.
-    pub fn stuck(mut self) -> Self {
+    pub fn with_motor_stuck(mut self) -> Self {
         for row in [2 * self.motor, self.motor_velocity()] {
             self.rates.row_mut(row).fill(0.0);
             self.inputs.row_mut(row).fill(0.0);
@@ -198,7 +198,7 @@ impl Plant {
 
     /// The state with all masses at `position` (rad) and `velocity` (rad/s): the device moves as
     /// one, so that no link is stretched. The amplifier gives no torque, a grip that moves is at 0.
-    pub fn moving(&self, position: f64, velocity: f64) -> DVector<f64> {
+    pub fn state_at(&self, position: f64, velocity: f64) -> DVector<f64> {
         DVector::from_fn(self.order(), |row, _| match (row < 2 * self.masses.len(), row % 2) {
             (true, 0) => position,
             (true, _) => velocity,
@@ -216,7 +216,7 @@ mod tests {
         let masses = [Mass { inertia: 2.0, damping: 3.0 }, Mass { inertia: 4.0, damping: 5.0 }];
         let links = [Link { stiffness: 7.0, damping: 11.0 }];
         let hand = Hand { inertia: 1.0, damping: 13.0, stiffness: 17.0 };
-        let plant = Plant::chain(&masses, &links).held(hand).lagging(0.5);
+        let plant = Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(0.5);
         let state = DVector::from_vec(vec![0.1, 0.2, 0.3, 0.4, 0.6]);
         let inputs = DVector::from_vec(vec![1.5, 0.7, -0.9]);
         let rate = plant.rates() * &state + plant.inputs() * inputs;
@@ -232,7 +232,8 @@ mod tests {
             assert!((is - should).abs() < 1e-14, "{is} {should}");
         }
         // The same machine from its other end.
-        let seen = Plant::seen_at(1, &masses, &links).held(hand).lagging(0.5);
+        let seen =
+            Plant::with_encoder_at(1, &masses, &links).with_hand(hand).with_actuator_lag(0.5);
         let state = DVector::from_vec(vec![0.3, 0.4, 0.1, 0.2, 0.6]);
         let rate = seen.rates() * &state + seen.inputs() * DVector::from_vec(vec![1.5, 0.7, -0.9]);
         for (is, should) in rate.iter().zip([2, 3, 0, 1, 4].map(|row| should[row])) {

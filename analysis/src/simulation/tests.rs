@@ -53,22 +53,25 @@ fn both_ways_of_running_a_linear_loop_agree() {
         Environment::Rational(Rational { numerator, denominator, delay: 1, unit_zeros: 1 }),
     ];
     for environment in environments {
-        for drive in [
-            Drive::Free,
-            Drive::Held(vec![0.01, -0.02, 0.03]),
-            Drive::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 },
+        for hand_torque in [
+            TorqueSignal::Free,
+            TorqueSignal::Held(vec![0.01, -0.02, 0.03]),
+            TorqueSignal::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 },
         ] {
-            let mut experiment = Experiment { drive, ..moving(&paper(environment), 500, 0.01) };
+            let mut experiment =
+                Experiment { hand_torque, ..moving(&paper(environment), 500, 0.01) };
             let hand = Hand { inertia: 1e-5, damping: 0.001, stiffness: 0.3 };
-            experiment.plant = experiment.plant.held(hand);
+            experiment.plant = experiment.plant.with_hand(hand);
             experiment.latency = 2e-4;
             assert!(experiment.is_linear());
-            let fast = simulate(&experiment, Stride::default()).unwrap();
+            let fast = simulate(&experiment, Integration::default()).unwrap();
             let mut slow = Trajectory::of_length(500);
-            let mut general = General::new(&experiment, Stride::default()).unwrap();
+            let mut nonlinear = NonlinearLoop::new(&experiment, Integration::default()).unwrap();
             let (columns, limit) = slow.columns();
-            general.fill(&experiment.drive, columns, limit);
-            assert!(linear(&experiment, &experiment.tick(Stride::default()).unwrap()).is_some());
+            nonlinear.fill(&experiment.hand_torque, columns, limit);
+            assert!(
+                linear(&experiment, &experiment.tick(Integration::default()).unwrap()).is_some()
+            );
             assert!(furthest(&fast.position, &slow.position) < 1e-12, "{environment:?}");
             assert!(furthest(&fast.velocity, &slow.velocity) < 1e-12, "{environment:?}");
             assert!(furthest(&fast.torque, &slow.torque) < 1e-12, "{environment:?}");
@@ -78,13 +81,14 @@ fn both_ways_of_running_a_linear_loop_agree() {
 
 #[test]
 fn chunks_are_one_motion() {
-    let drive = Drive::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 };
+    let hand_torque = TorqueSignal::Sine { amplitude: 0.01, omega: 300.0, phase: 0.4 };
     for limit in [None, Some(0.05)] {
         let mut scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));
         scene.torque_limit = limit;
-        let experiment = Experiment { drive: drive.clone(), ..moving(&scene, 30, 0.01) };
-        let whole = simulate(&experiment, Stride::default()).unwrap();
-        let mut simulator = Simulator::new(&experiment, Stride::default()).unwrap();
+        let experiment =
+            Experiment { hand_torque: hand_torque.clone(), ..moving(&scene, 30, 0.01) };
+        let whole = simulate(&experiment, Integration::default()).unwrap();
+        let mut simulator = Simulator::new(&experiment, Integration::default()).unwrap();
         let (mut parts, mut reasons) = (Vec::new(), Vec::new());
         for length in [1, 9, 20] {
             let mut part = Trajectory::of_length(length);
@@ -98,7 +102,7 @@ fn chunks_are_one_motion() {
 
 /// Mean square over the last quarter, over that of the first.
 fn decay(experiment: &Experiment) -> f64 {
-    let motion = simulate(experiment, Stride::default()).unwrap();
+    let motion = simulate(experiment, Integration::default()).unwrap();
     let quarter = experiment.samples / 4;
     let power = |part: &[f64]| part.iter().map(|v| v * v).sum::<f64>();
     power(&motion.velocity[3 * quarter..]) / power(&motion.velocity[..quarter])
@@ -128,7 +132,7 @@ fn latency_moves_the_limit() {
     let scene = scene(device, None, Environment::DelayedSpring(wall(1.0, 0.0, 0)));
     for latency in [1e-4, 3.3e-4, 9e-4] {
         let experiment = Experiment { latency, ..Experiment::still(&scene) };
-        let found = crate::stability::critical_stiffness(&experiment, Stride::default());
+        let found = crate::stability::critical_stiffness(&experiment, Integration::default());
         let should = 0.5 / (0.5e-3 + latency);
         assert!((found.unwrap().unwrap() / should - 1.0).abs() < 3e-3);
     }
@@ -144,7 +148,7 @@ fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
     let end = |friction: f64| {
         let encoder_step = Some(step);
         let experiment = Experiment { friction, encoder_step, ..moving(&scene, 20_000, 0.02) };
-        let motion = simulate(&experiment, Stride::default()).unwrap();
+        let motion = simulate(&experiment, Integration::default()).unwrap();
         motion.velocity[19_000..].iter().fold(0.0_f64, |most, v| most.max(v.abs()))
     };
     assert!(end(0.0) > step);
@@ -161,7 +165,7 @@ fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
     let run = |friction: f64| {
         let experiment =
             Experiment { friction, encoder_step: Some(step), ..moving(&scene, 3000, 0.02) };
-        simulate(&experiment, Stride::default()).unwrap()
+        simulate(&experiment, Integration::default()).unwrap()
     };
     let steps = Resolution { encoder: Some(step), ..Resolution::default() };
     let hum = QuantizationBound::of(&scene, Format::F64, &steps).unwrap().hum();
@@ -204,7 +208,7 @@ fn friction_alone_quiets_what_is_slower_than_the_certificate_says() {
         let later = |start: f64| {
             let start = Motion { position: 0.0, velocity: start };
             let experiment = Experiment { friction, start, ..moving(&scene, 400, 0.0) };
-            let motion = simulate(&experiment, Stride::default()).unwrap();
+            let motion = simulate(&experiment, Integration::default()).unwrap();
             motion.velocity[300..].iter().fold(0.0_f64, |most, v| most.max(v.abs()))
         };
         assert!(later(0.95 * speed) < 0.95 * speed && later(1.05 * speed) > 1.05 * speed);
@@ -215,12 +219,12 @@ fn friction_alone_quiets_what_is_slower_than_the_certificate_says() {
 fn torque_is_limited_before_the_coupling_is_solved() {
     let mut scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
     scene.torque_limit = Some(0.1);
-    let motion = simulate(&moving(&scene, 50, 0.05), Stride::default()).unwrap();
+    let motion = simulate(&moving(&scene, 50, 0.05), Integration::default()).unwrap();
     // K x / (1 + K / K_vc) would be 0.73.
     assert_eq!(motion.torque[0], 0.1);
-    for (torque, served) in motion.torque.iter().zip(&motion.limit) {
-        let limited = *served == Served::Ran(LimitReason::Torque);
-        assert!(torque.abs() < 0.1 || limited && torque.abs() == 0.1, "{torque} {served:?}");
+    for (torque, status) in motion.torque.iter().zip(&motion.limit) {
+        let limited = *status == TickStatus::Ran(LimitReason::Torque);
+        assert!(torque.abs() < 0.1 || limited && torque.abs() == 0.1, "{torque} {status:?}");
     }
 }
 
@@ -228,15 +232,15 @@ fn torque_is_limited_before_the_coupling_is_solved() {
 fn the_record_says_which_ticks_were_missed_and_where_counts_ended() {
     let scene = paper(Environment::DamperWall(wall(22.0, 0.0, 0)));
     let missed = Experiment { missed: Missed::Every(3), ..moving(&scene, 6, 0.01) };
-    let motion = simulate(&missed, Stride::default()).unwrap();
-    let (ran, not) = (Served::IN_FULL, Served::Missed);
+    let motion = simulate(&missed, Integration::default()).unwrap();
+    let (ran, not) = (TickStatus::UNLIMITED, TickStatus::Missed);
     assert_eq!(motion.limit, [ran, ran, not, ran, ran, not]);
     assert_eq!(motion.torque[2], motion.torque[1]);
 
     // 0.01 rad are more of these steps than 32 bits hold.
     let fine = Experiment { encoder_step: Some(1e-12), ..moving(&scene, 1, 0.01) };
-    let motion = simulate(&fine, Stride::default()).unwrap();
-    assert_eq!(motion.limit, [Served::Ran(LimitReason::Angle)]);
+    let motion = simulate(&fine, Integration::default()).unwrap();
+    assert_eq!(motion.limit, [TickStatus::Ran(LimitReason::Angle)]);
     let behind = f64::from(i32::MAX) * 1e-12 * 22.0 / (1.0 + 22.0 / 44.0);
     assert!((motion.torque[0] - behind).abs() < 1e-12, "{}", motion.torque[0]);
 }
@@ -247,6 +251,6 @@ fn a_scene_without_a_law_is_refused() {
     let denominator = Coefficients::new(&[1.0]).unwrap();
     let rational = Rational { numerator, denominator, delay: 0, unit_zeros: 0 };
     let scene = paper(Environment::Rational(rational));
-    let error = simulate(&moving(&scene, 10, 0.0), Stride::default()).unwrap_err();
+    let error = simulate(&moving(&scene, 10, 0.0), Integration::default()).unwrap_err();
     assert!(error.to_string().contains("samples from the future"), "{error}");
 }

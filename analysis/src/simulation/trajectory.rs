@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::served::Served;
+use super::tick_status::TickStatus;
 
 /// Samples at the instants of the ticks, all of them finite: a motion that grows beyond the range
 /// of numbers ends before it does ([`Experiment::completed`](super::Experiment::completed)).
@@ -15,14 +15,14 @@ pub struct Trajectory {
     /// Coupling torque `F` in N m; the motor applies `-F`.
     pub torque: Vec<f64>,
     /// Why that torque is not what the scene asked for, where it is not.
-    pub limit: Vec<Served>,
+    pub limit: Vec<TickStatus>,
 }
 
 impl Trajectory {
     /// Room for so many samples.
     pub fn of_length(samples: usize) -> Self {
         let zeros = || vec![0.0; samples];
-        let limit = vec![Served::IN_FULL; samples];
+        let limit = vec![TickStatus::UNLIMITED; samples];
         Self { position: zeros(), velocity: zeros(), torque: zeros(), limit }
     }
 
@@ -50,7 +50,7 @@ impl Trajectory {
     }
 
     /// Where its samples are written.
-    pub(super) fn columns(&mut self) -> (Columns<'_>, &mut [Served]) {
+    pub(super) fn columns(&mut self) -> (Columns<'_>, &mut [TickStatus]) {
         let Self { position, velocity, torque, limit } = self;
         (Columns { position, velocity, torque }, limit)
     }

@@ -8,14 +8,14 @@ use nalgebra::Complex;
 
 use super::eigenvalues::eigenvalues;
 use crate::response::Response;
-use crate::simulation::closed::transfers;
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::discrete_plant::DiscretePlant;
 use crate::simulation::plant::POSITION;
-use crate::simulation::tick::Tick;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// The stiffnesses at which some eigenvalue is on the unit circle.
 pub(super) struct Borders {
-    tick: Tick,
+    tick: DiscretePlant,
     compliance: f64,
     /// The environment without stiffness, and with `unit`.
     environments: [Response; 2],
@@ -23,7 +23,10 @@ pub(super) struct Borders {
 }
 
 impl Borders {
-    pub(super) fn new(experiment: &Experiment, stride: Stride) -> Result<Self, SimulationError> {
+    pub(super) fn new(
+        experiment: &Experiment,
+        integration: Integration,
+    ) -> Result<Self, SimulationError> {
         let scene = &experiment.scene;
         let device = scene.device;
         let period = scene.timing.period;
@@ -34,7 +37,7 @@ impl Borders {
             Ok(Response::new(transfers(&changed)?.environment))
         };
         Ok(Self {
-            tick: experiment.tick(stride)?,
+            tick: experiment.tick(integration)?,
             compliance: match scene.coupling {
                 Coupling::Rigid => 0.0,
                 Coupling::Spring { stiffness } => 1.0 / stiffness,

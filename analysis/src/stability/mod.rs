@@ -14,8 +14,8 @@ use std::fmt;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
-use crate::simulation::closed::ClosedLoop;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::closed_loop::ClosedLoop;
+use crate::simulation::{Experiment, Integration, SimulationError};
 
 pub use eigenvalues::{eigenvalues, radius};
 
@@ -60,17 +60,20 @@ pub struct Stability {
     pub critical_stiffness: Option<f64>,
 }
 
-/// Judges the loop of an experiment, taken through each tick by `stride`.
+/// Judges the loop of an experiment, taken through each tick by `integration`.
 ///
 /// # Errors
 /// Where the scene has no closed loop, or its eigenvalues are not found.
-pub fn judge(experiment: &Experiment, stride: Stride) -> Result<Stability, SimulationError> {
-    let closed = closed_loop(experiment, stride)?;
+pub fn judge(
+    experiment: &Experiment,
+    integration: Integration,
+) -> Result<Stability, SimulationError> {
+    let closed = closed_loop(experiment, integration)?;
     let eigenvalues = eigenvalues(&closed.matrix)?;
     Ok(Stability {
         spectral_radius: radius(&eigenvalues),
         verdict: verdict(&closed.matrix, &eigenvalues),
-        critical_stiffness: critical_stiffness(experiment, stride)?,
+        critical_stiffness: critical_stiffness(experiment, integration)?,
     })
 }
 
@@ -78,8 +81,11 @@ pub fn judge(experiment: &Experiment, stride: Stride) -> Result<Stability, Simul
 ///
 /// # Errors
 /// Where the scene has none.
-pub fn closed_loop(experiment: &Experiment, stride: Stride) -> Result<ClosedLoop, SimulationError> {
-    Ok(ClosedLoop::new(&experiment.tick(stride)?, &experiment.scene)?)
+pub fn closed_loop(
+    experiment: &Experiment,
+    integration: Integration,
+) -> Result<ClosedLoop, SimulationError> {
+    Ok(ClosedLoop::new(&experiment.tick(integration)?, &experiment.scene)?)
 }
 
 fn verdict(matrix: &DMatrix<f64>, eigenvalues: &[Complex<f64>]) -> Verdict {
@@ -127,20 +133,20 @@ fn is_simple<'e>(
 /// Where the scene has no closed loop, or its eigenvalues are not found.
 pub fn critical_stiffness(
     experiment: &Experiment,
-    stride: Stride,
+    integration: Integration,
 ) -> Result<Option<f64>, SimulationError> {
     /// What eigenvalues are off by, when the slowest of a heavy machine is next to 1.
     const ROUNDING: f64 = 1e-12;
     if experiment.scene.get(Parameter::Stiffness).is_none() {
         return Ok(None);
     }
-    let borders = Borders::new(experiment, stride)?.all();
+    let borders = Borders::new(experiment, integration)?.all();
     let is_stable = |stiffness: f64| -> Result<bool, SimulationError> {
         let Some(scene) = experiment.scene.with(Parameter::Stiffness, stiffness) else {
             return Ok(false);
         };
         let changed = Experiment { scene, ..experiment.clone() };
-        let closed = closed_loop(&changed, stride)?;
+        let closed = closed_loop(&changed, integration)?;
         Ok(radius(&eigenvalues(&closed.matrix)?) <= 1.0 + ROUNDING)
     };
     let mut below = 0.0;

@@ -4,9 +4,9 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 use super::*;
 use crate::device::{Hand, Motion};
 use crate::missed::Missed;
-use crate::simulation::drive::Drive;
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
+use crate::simulation::torque_signal::TorqueSignal;
 
 /// The mass and damper of theory, section 5.
 const DEVICE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
@@ -24,7 +24,7 @@ pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
         plant: Plant::rigid(DEVICE),
         start: Motion::default(),
         samples: 0,
-        drive: Drive::Free,
+        hand_torque: TorqueSignal::Free,
         encoder_step: None,
         friction: 0.0,
         latency: 0.0,
@@ -33,7 +33,7 @@ pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
 }
 
 fn critical(experiment: &Experiment, method: Method, substeps: u32) -> f64 {
-    critical_stiffness(experiment, Stride { method, substeps }).unwrap().unwrap()
+    critical_stiffness(experiment, Integration { method, substeps }).unwrap().unwrap()
 }
 
 fn near(is: f64, should: f64, within: f64) {
@@ -88,15 +88,15 @@ fn the_radius_is_one_at_the_critical_stiffness_and_the_loop_differs_on_its_sides
     let hand = Hand { inertia: 0.02, damping: 0.1, stiffness: 300.0 };
     for delay in 0..5 {
         let mut experiment = spring(1.0, delay, standard);
-        experiment.plant = experiment.plant.clone().held(hand);
+        experiment.plant = experiment.plant.clone().with_hand(hand);
         experiment.latency = if delay == 2 { 3e-4 } else { 0.0 };
-        let Some(limit) = critical_stiffness(&experiment, Stride::default()).unwrap() else {
+        let Some(limit) = critical_stiffness(&experiment, Integration::default()).unwrap() else {
             assert_eq!(delay, 0);
             continue;
         };
         let at = |stiffness: f64| {
             let scene = experiment.scene.with(Parameter::Stiffness, stiffness).unwrap();
-            judge(&Experiment { scene, ..experiment.clone() }, Stride::default()).unwrap()
+            judge(&Experiment { scene, ..experiment.clone() }, Integration::default()).unwrap()
         };
         near(at(limit).spectral_radius, 1.0, 1e-11);
         assert_eq!(at(limit).verdict, Verdict::Marginal);
@@ -111,7 +111,7 @@ fn a_device_that_stays_where_it_is_left_is_marginal_and_one_that_drifts_is_not()
         let device = Device { damping, ..DEVICE };
         let mut experiment = spring(0.0, 1, Coupling::Rigid);
         experiment.plant = Plant::rigid(device);
-        judge(&experiment, Stride::default()).unwrap()
+        judge(&experiment, Integration::default()).unwrap()
     };
     assert_eq!(free(0.5).verdict, Verdict::Marginal);
     near(free(0.5).spectral_radius, 1.0, 1e-14);
@@ -126,11 +126,11 @@ fn a_scene_without_passivity_has_a_loop() {
     for passivity in [None, Some(0.0), Some(f64::NAN)] {
         experiment.scene.device.passivity = passivity;
         experiment.plant = Plant::rigid(experiment.scene.device);
-        let stability = judge(&experiment, Stride::default()).unwrap();
+        let stability = judge(&experiment, Integration::default()).unwrap();
         assert_eq!(stability.verdict, Verdict::Unstable);
         let held = Hand { inertia: 0.0, damping: 0.5, stiffness: 0.0 };
-        experiment.plant = experiment.plant.clone().held(held);
-        assert_eq!(judge(&experiment, Stride::default()).unwrap().verdict, Verdict::Stable);
+        experiment.plant = experiment.plant.clone().with_hand(held);
+        assert_eq!(judge(&experiment, Integration::default()).unwrap().verdict, Verdict::Stable);
     }
 }
 
@@ -151,13 +151,13 @@ fn the_crossing_is_the_first_that_a_scan_sees() {
         let stable = |stiffness: f64| {
             let scene = experiment.scene.with(Parameter::Stiffness, stiffness).unwrap();
             let experiment = Experiment { scene, ..experiment.clone() };
-            let closed = closed_loop(&experiment, Stride::default()).unwrap();
+            let closed = closed_loop(&experiment, Integration::default()).unwrap();
             radius(&eigenvalues(&closed.matrix).unwrap()) <= 1.0
         };
         const STEP: f64 = 1.003;
         let steps: Vec<f64> = (0..4000).map(|i| 0.01 * STEP.powi(i)).collect();
         let crossing = steps.windows(2).find(|pair| stable(pair[0]) && !stable(pair[1]));
-        let found = critical_stiffness(&experiment, Stride::default()).unwrap();
+        let found = critical_stiffness(&experiment, Integration::default()).unwrap();
         match (crossing, found) {
             (None, None) => {}
             (Some(pair), Some(found)) => assert!((pair[0]..=pair[1]).contains(&found), "{found}"),

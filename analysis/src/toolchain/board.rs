@@ -16,7 +16,7 @@ pub enum Board {
 /// There is no such board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
-pub struct NoBoard {
+pub struct UnknownBoard {
     /// What was asked for.
     pub name: String,
 }
@@ -48,9 +48,9 @@ impl Board {
     ///
     /// # Errors
     /// Where there is none; the error names those that there are.
-    pub fn find(name: &str) -> Result<Self, NoBoard> {
+    pub fn find(name: &str) -> Result<Self, UnknownBoard> {
         let found = Self::ALL.into_iter().find(|board| board.name() == name);
-        found.ok_or_else(|| NoBoard { name: name.into() })
+        found.ok_or_else(|| UnknownBoard { name: name.into() })
     }
 }
 

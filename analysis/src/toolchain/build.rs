@@ -14,11 +14,11 @@ use super::sources::{Sources, SourcesError, workspace_root};
 use super::{Board, TARGET};
 
 /// The format that a scene's program computes in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum NumberFormat {
     /// Single-precision floating point.
     F32,
-    /// The scene's fixed-point format.
+    /// The scene's fixed-point format; a scene file's is I8F24.
     Fixed,
 }
 
@@ -201,7 +201,7 @@ impl Toolchain {
     /// Where it does not.
     pub fn try_release(&self, board: Board, name: &str) -> Result<(), BuildError> {
         let build = ["--release", "--features", board.name(), "--bin", name, "--target", TARGET];
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         self.compile(name, &build)
     }
 
@@ -213,7 +213,7 @@ impl Toolchain {
     pub fn try_tests(&self, board: Board) -> Result<(), BuildError> {
         let (name, features) = ("on_target", format!("{board},on-target"));
         let build = ["--release", "--package", "firmware", "--target", TARGET];
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
     }
 
@@ -223,7 +223,7 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         let profile = self.workspace.root.join(FLASH);
         let mut cargo = self.cargo();
         cargo.current_dir(folder).args(["--release", "--bin", name, "--target", TARGET]);
@@ -244,36 +244,36 @@ impl Toolchain {
         }
     }
 
-    /// Builds the program that judges scenes for [`Judge`](crate::emulator::Judge).
+    /// Builds the server that certifies scenes for [`CertifyClient`](crate::emulator::CertifyClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_judge(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("judge")
+    pub fn build_certify_server(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("certify_server")
     }
 
-    /// Builds the program that plays scenes for [`Player`](crate::emulator::Player).
+    /// Builds the server that runs scenes for [`ServoClient`](crate::emulator::ServoClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_player(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("player")
+    pub fn build_servo_server(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("servo_server")
     }
 
-    /// Builds the program that computes for [`Trials`](crate::emulator::Trials).
+    /// Builds the benchmark server for [`BenchClient`](crate::emulator::BenchClient).
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_trial(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("trial")
+    pub fn build_bench_programs(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("bench_programs")
     }
 
-    /// Builds the program that does the same for any scene.
+    /// Builds the benchmark server that has every type of scene.
     ///
     /// # Errors
     /// Where it does not compile.
-    pub fn build_survey(&self) -> Result<PathBuf, BuildError> {
-        self.measuring("survey")
+    pub fn build_bench_all(&self) -> Result<PathBuf, BuildError> {
+        self.build_harness("bench_all")
     }
 
     /// Builds the program of an environment that is not in the firmware, for the emulated board with its
@@ -304,7 +304,7 @@ impl Toolchain {
     }
 
     /// Builds a program without a scene for the emulated board.
-    fn measuring(&self, name: &str) -> Result<PathBuf, BuildError> {
+    fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
         let (package, features) = ("firmware-harness", "emulated".into());
         let variant = Variant { package, features, suffix: String::new() };
         Ok(self.build(&[name], &variant)?.swap_remove(0))
@@ -326,7 +326,7 @@ impl Toolchain {
     fn build(&self, names: &[&str], variant: &Variant) -> Result<Vec<PathBuf>, BuildError> {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
-        let _alone = self.workspace.lock("build")?;
+        let _lock = self.workspace.lock("build")?;
         let flash = ["--release", "--config", FLASH, "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
         let with = ["--package", variant.package, "--features", &variant.features];
@@ -390,7 +390,7 @@ const FLASH: &str = "firmware/flash.toml";
 pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     const NAME: &str = "haptic-scene";
     let workspace = Workspace::find()?;
-    let _alone = workspace.lock("scene")?;
+    let _lock = workspace.lock("scene")?;
     let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
     let profile = if cfg!(debug_assertions) { "debug" } else { "release" };

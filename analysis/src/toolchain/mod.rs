@@ -6,7 +6,7 @@
 mod apt;
 mod board;
 mod build;
-pub mod facts;
+pub mod host_environment;
 mod memory;
 pub mod observe;
 mod output;
@@ -18,7 +18,7 @@ mod sources;
 mod version;
 
 pub use apt::AptError;
-pub use board::{Board, NoBoard};
+pub use board::{Board, UnknownBoard};
 pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;

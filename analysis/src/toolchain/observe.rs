@@ -5,22 +5,24 @@ use std::fs::DirEntry;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::facts::{Debian, Facts, Native, Package, PackageState, Rust};
+use super::host_environment::{
+    Debian, HostEnvironment, NativeBuildTools, Package, PackageState, Rust,
+};
 use super::{TARGET, Version};
 use crate::emulator::QEMU;
 
 /// Looks at the machine. `lists_are_fresh`: the lists of packages have just been fetched.
-pub fn observe(lists_are_fresh: bool) -> Facts {
-    Facts {
+pub fn observe(lists_are_fresh: bool) -> HostEnvironment {
+    HostEnvironment {
         rust: rust(),
-        rustup: says("rustup", &["--version"]).is_some(),
+        rustup: output_of("rustup", &["--version"]).is_some(),
         fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
-        qemu: says(QEMU, &["--version"]).as_deref().and_then(Version::find),
-        native: Native {
-            cmake: says("cmake", &["--version"]).is_some(),
-            make: says("make", &["--version"]).is_some(),
-            cxx: says("c++", &["--version"]).is_some(),
-            pkg_config: says("pkg-config", &["--version"]).is_some(),
+        qemu: output_of(QEMU, &["--version"]).as_deref().and_then(Version::find),
+        native: NativeBuildTools {
+            cmake: output_of("cmake", &["--version"]).is_some(),
+            make: output_of("make", &["--version"]).is_some(),
+            cxx: output_of("c++", &["--version"]).is_some(),
+            pkg_config: output_of("pkg-config", &["--version"]).is_some(),
             libclang: has_libclang(),
         },
         debian: debian(lists_are_fresh),
@@ -30,8 +32,8 @@ pub fn observe(lists_are_fresh: bool) -> Facts {
 
 fn rust() -> Option<Rust> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let version = Version::find(&says(&rustc, &["--version"])?)?;
-    let folder = says(&rustc, &["--print", "target-libdir", "--target", TARGET]);
+    let version = Version::find(&output_of(&rustc, &["--version"])?)?;
+    let folder = output_of(&rustc, &["--print", "target-libdir", "--target", TARGET]);
     let has_target = folder.is_some_and(|folder| has_core(Path::new(folder.trim())));
     Some(Rust { version, has_target })
 }
@@ -43,7 +45,7 @@ fn has_libclang() -> bool {
         libraries.lines().filter_map(|line| line.split_whitespace().next()).any(is_libclang)
     };
     std::env::var_os("LIBCLANG_PATH").is_some()
-        || says("ldconfig", &["-p"]).is_some_and(listed)
+        || output_of("ldconfig", &["-p"]).is_some_and(listed)
         || llvm_has_libclang()
 }
 
@@ -76,18 +78,18 @@ fn has_core(folder: &Path) -> bool {
 }
 
 fn debian(lists_are_fresh: bool) -> Option<Debian> {
-    says("apt-get", &["--version"])?;
+    output_of("apt-get", &["--version"])?;
     Some(Debian { lists_are_fresh, packages: Package::ALL.map(package) })
 }
 
 fn package(package: Package) -> PackageState {
     let name = package.name();
-    let installed = says("dpkg-query", &["-W", "-f=${db:Status-Status} ${Version}", name])
+    let installed = output_of("dpkg-query", &["-W", "-f=${db:Status-Status} ${Version}", name])
         .and_then(|state| Version::find(state.strip_prefix("installed ")?));
     if let Some(version) = installed {
         return PackageState::Installed(version);
     }
-    let candidate = says("apt-cache", &["policy", name]).and_then(|policy| {
+    let candidate = output_of("apt-cache", &["policy", name]).and_then(|policy| {
         let line = policy.lines().find_map(|line| line.trim().strip_prefix("Candidate:"))?;
         Version::find(line)
     });
@@ -95,7 +97,7 @@ fn package(package: Package) -> PackageState {
 }
 
 /// What a program prints, if it is there and content.
-fn says(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
+fn output_of(program: impl AsRef<OsStr>, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program)
         .args(arguments)
         // What is read here is not to depend on the person's language.

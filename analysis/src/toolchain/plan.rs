@@ -9,7 +9,7 @@
 use std::fmt;
 
 use super::build::Compiler;
-use super::facts::{Facts, Native, Package, PackageState, Rust};
+use super::host_environment::{HostEnvironment, NativeBuildTools, Package, PackageState, Rust};
 use super::{TARGET, Version, apt};
 use crate::emulator::QEMU;
 
@@ -32,7 +32,7 @@ pub enum Plan {
     /// One step, and then to look again.
     Do(Step),
     /// The person has to install something.
-    Ask(Vec<Request>),
+    Ask(Vec<ManualStep>),
 }
 
 /// A step that this program may take by itself.
@@ -46,9 +46,9 @@ pub enum Step {
     Install(Vec<Package>),
 }
 
-/// Something that the person has to do.
+/// A step that the person has to take.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Request {
+pub enum ManualStep {
     /// Install packages as root.
     Packages(Vec<Package>),
     /// Get a compiler with the target.
@@ -64,7 +64,7 @@ pub enum Request {
         found: Option<Version>,
     },
     /// Get what builds the virtual board's processor.
-    Native(Native),
+    NativeBuildTools(NativeBuildTools),
 }
 
 /// How one of the two tools is to be had.
@@ -72,30 +72,30 @@ enum Need {
     Nothing,
     AddTarget,
     Packages(Vec<Package>),
-    Person(Request),
+    Person(ManualStep),
 }
 
 /// Chooses the route.
-pub fn plan(facts: &Facts, tools: Tools) -> Plan {
-    let (compiler, compiler_need) = compiler(facts);
+pub fn plan(host: &HostEnvironment, tools: Tools) -> Plan {
+    let (compiler, compiler_need) = compiler(host);
     let emulator = match tools {
         Tools::Compiler | Tools::CompilerAndVirtualBoard => Need::Nothing,
-        Tools::CompilerAndEmulator => emulator(facts),
+        Tools::CompilerAndEmulator => emulator(host),
     };
     let native = match tools {
         Tools::Compiler | Tools::CompilerAndEmulator => Need::Nothing,
-        Tools::CompilerAndVirtualBoard => native(facts),
+        Tools::CompilerAndVirtualBoard => native(host),
     };
     let needs = [compiler_need, emulator, native];
     let requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
     let packages: Vec<_> = needs.iter().flat_map(Need::packages).copied().collect();
     let lists_may_help =
-        facts.root && facts.debian.as_ref().is_some_and(|debian| !debian.lists_are_fresh);
+        host.root && host.debian.as_ref().is_some_and(|debian| !debian.lists_are_fresh);
     if !requests.is_empty() && lists_may_help {
         return Plan::Do(Step::FetchLists);
     }
-    if !requests.is_empty() || (!packages.is_empty() && !facts.root) {
-        let packages = (!packages.is_empty()).then_some(Request::Packages(packages));
+    if !requests.is_empty() || (!packages.is_empty() && !host.root) {
+        let packages = (!packages.is_empty()).then_some(ManualStep::Packages(packages));
         return Plan::Ask(packages.into_iter().chain(requests).collect());
     }
     if !packages.is_empty() {
@@ -107,29 +107,29 @@ pub fn plan(facts: &Facts, tools: Tools) -> Plan {
     Plan::Ready(compiler)
 }
 
-fn compiler(facts: &Facts) -> (Compiler, Need) {
-    let own = facts.rust.filter(|rust| rust.version >= Version::RUST);
-    let may_fetch = facts.rustup && !facts.fetching_forbidden;
+fn compiler(host: &HostEnvironment) -> (Compiler, Need) {
+    let own = host.rust.filter(|rust| rust.version >= Version::RUST);
+    let may_fetch = host.rustup && !host.fetching_forbidden;
     match own {
         Some(Rust { has_target: true, .. }) => (Compiler::Own, Need::Nothing),
         Some(_) if may_fetch => (Compiler::Own, Need::AddTarget),
         _ => {
-            let found = facts.rust.map(|rust| rust.version);
-            let otherwise = Request::Compiler { found, rustup: may_fetch };
-            (Compiler::Debian, facts.packages(&Package::COMPILER, otherwise))
+            let found = host.rust.map(|rust| rust.version);
+            let otherwise = ManualStep::Compiler { found, rustup: may_fetch };
+            (Compiler::Debian, host.packages(&Package::COMPILER, otherwise))
         }
     }
 }
 
-fn emulator(facts: &Facts) -> Need {
-    match facts.qemu {
+fn emulator(host: &HostEnvironment) -> Need {
+    match host.qemu {
         Some(version) if version >= Version::QEMU => Need::Nothing,
-        found => facts.packages(&[Package::Qemu], Request::Emulator { found }),
+        found => host.packages(&[Package::Qemu], ManualStep::Emulator { found }),
     }
 }
 
-fn native(facts: &Facts) -> Need {
-    let Native { cmake, make, cxx, pkg_config, libclang } = facts.native;
+fn native(host: &HostEnvironment) -> Need {
+    let NativeBuildTools { cmake, make, cxx, pkg_config, libclang } = host.native;
     let missing = [
         (cmake, Package::Cmake),
         (make, Package::Make),
@@ -141,14 +141,14 @@ fn native(facts: &Facts) -> Need {
         missing.into_iter().filter(|(there, _)| !there).map(|(_, package)| package).collect();
     match packages.is_empty() {
         true => Need::Nothing,
-        false => facts.packages(&packages, Request::Native(facts.native)),
+        false => host.packages(&packages, ManualStep::NativeBuildTools(host.native)),
     }
 }
 
-impl Facts {
+impl HostEnvironment {
     /// Packages that serve: those of them that are missing, or the request that stands in for them
     /// where they are not to be had.
-    fn packages(&self, wanted: &[Package], otherwise: Request) -> Need {
+    fn packages(&self, wanted: &[Package], otherwise: ManualStep) -> Need {
         let Some(debian) = &self.debian else { return Need::Person(otherwise) };
         let mut missing = Vec::new();
         for package in wanted {
@@ -165,7 +165,7 @@ impl Facts {
 }
 
 impl Need {
-    fn request(&self) -> Option<Request> {
+    fn request(&self) -> Option<ManualStep> {
         match self {
             Self::Person(request) => Some(request.clone()),
             _ => None,
@@ -193,7 +193,7 @@ impl fmt::Display for Step {
     }
 }
 
-impl fmt::Display for Request {
+impl fmt::Display for ManualStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Packages(packages) => {
@@ -223,7 +223,7 @@ impl fmt::Display for Request {
                      qemu (macOS)",
                 )
             }
-            Self::Native(native) => {
+            Self::NativeBuildTools(native) => {
                 let tools = [
                     (native.cmake, "cmake"),
                     (native.make, "make"),

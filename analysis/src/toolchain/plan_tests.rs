@@ -1,6 +1,6 @@
 //! The routes, machine by machine.
 
-use super::super::facts::Debian;
+use super::super::host_environment::Debian;
 use super::*;
 
 const OLD: Version = Version { major: 1, minor: 85 };
@@ -21,13 +21,19 @@ fn rust(version: Version, has_target: bool) -> Option<Rust> {
 }
 
 /// A machine with everything: rustup's toolchain with the target, and the emulator.
-fn complete() -> Facts {
-    Facts {
+fn complete() -> HostEnvironment {
+    HostEnvironment {
         rust: rust(NEW, true),
         rustup: true,
         fetching_forbidden: false,
         qemu: Some(QEMU_7),
-        native: Native { cmake: true, make: true, cxx: true, pkg_config: true, libclang: true },
+        native: NativeBuildTools {
+            cmake: true,
+            make: true,
+            cxx: true,
+            pkg_config: true,
+            libclang: true,
+        },
         debian: None,
         root: false,
     }
@@ -44,8 +50,8 @@ fn installed() -> Debian {
 }
 
 /// A Debian container without rustup's target and without the emulator, as root.
-fn bare_container() -> Facts {
-    Facts {
+fn bare_container() -> HostEnvironment {
+    HostEnvironment {
         rust: rust(NEW, false),
         fetching_forbidden: true,
         qemu: None,
@@ -55,32 +61,35 @@ fn bare_container() -> Facts {
     }
 }
 
-fn check(facts: &Facts, expected: Plan) {
-    assert_eq!(plan(facts, Tools::CompilerAndEmulator), expected, "{facts:?}");
+fn check(host: &HostEnvironment, expected: Plan) {
+    assert_eq!(plan(host, Tools::CompilerAndEmulator), expected, "{host:?}");
 }
 
 #[test]
 fn a_complete_machine_is_ready() {
     check(&complete(), Plan::Ready(Compiler::Own));
     // Also where fetching is forbidden, and without rustup: what is there serves.
-    check(&Facts { fetching_forbidden: true, ..complete() }, Plan::Ready(Compiler::Own));
-    check(&Facts { rustup: false, ..complete() }, Plan::Ready(Compiler::Own));
+    check(&HostEnvironment { fetching_forbidden: true, ..complete() }, Plan::Ready(Compiler::Own));
+    check(&HostEnvironment { rustup: false, ..complete() }, Plan::Ready(Compiler::Own));
 }
 
 #[test]
 fn rustup_adds_the_target_where_it_may() {
-    let facts = Facts { rust: rust(NEW, false), ..complete() };
-    check(&facts, Plan::Do(Step::AddTarget));
+    let host = HostEnvironment { rust: rust(NEW, false), ..complete() };
+    check(&host, Plan::Do(Step::AddTarget));
     // Before Debian's packages, which would be a second compiler.
-    check(&Facts { debian: Some(debian()), root: true, ..facts }, Plan::Do(Step::AddTarget));
+    check(
+        &HostEnvironment { debian: Some(debian()), root: true, ..host },
+        Plan::Do(Step::AddTarget),
+    );
 }
 
 #[test]
 fn rustup_fetches_nothing_where_it_is_forbidden() {
     let compiler = Package::COMPILER.to_vec();
-    let facts = Facts { qemu: Some(QEMU_7), ..bare_container() };
-    check(&facts, Plan::Do(Step::Install(compiler)));
-    check(&Facts { debian: Some(installed()), ..facts }, Plan::Ready(Compiler::Debian));
+    let host = HostEnvironment { qemu: Some(QEMU_7), ..bare_container() };
+    check(&host, Plan::Do(Step::Install(compiler)));
+    check(&HostEnvironment { debian: Some(installed()), ..host }, Plan::Ready(Compiler::Debian));
 }
 
 #[test]
@@ -89,23 +98,23 @@ fn root_on_debian_installs_all_that_is_missing_at_once() {
     let mut debian = debian();
     debian.packages[0] = PackageState::Installed(NEW);
     let rest = FOR_EMULATOR[1..].to_vec();
-    let facts = Facts { debian: Some(debian), ..bare_container() };
-    check(&facts, Plan::Do(Step::Install(rest)));
+    let host = HostEnvironment { debian: Some(debian), ..bare_container() };
+    check(&host, Plan::Do(Step::Install(rest)));
 }
 
 #[test]
 fn the_emulator_alone_is_installed_where_it_alone_is_missing() {
-    let facts = Facts { qemu: None, debian: Some(debian()), root: true, ..complete() };
-    check(&facts, Plan::Do(Step::Install(vec![Package::Qemu])));
-    let facts = Facts { rust: rust(NEW, false), ..facts };
+    let host = HostEnvironment { qemu: None, debian: Some(debian()), root: true, ..complete() };
+    check(&host, Plan::Do(Step::Install(vec![Package::Qemu])));
+    let host = HostEnvironment { rust: rust(NEW, false), ..host };
     // One step at a time: the target is added after that.
-    check(&facts, Plan::Do(Step::Install(vec![Package::Qemu])));
+    check(&host, Plan::Do(Step::Install(vec![Package::Qemu])));
 }
 
 #[test]
 fn a_person_who_is_not_root_is_told_the_packages() {
-    let facts = Facts { root: false, ..bare_container() };
-    check(&facts, Plan::Ask(vec![Request::Packages(FOR_EMULATOR.to_vec())]));
+    let host = HostEnvironment { root: false, ..bare_container() };
+    check(&host, Plan::Ask(vec![ManualStep::Packages(FOR_EMULATOR.to_vec())]));
 }
 
 #[test]
@@ -113,13 +122,13 @@ fn lists_are_fetched_before_a_package_is_given_up() {
     let unknown = [PackageState::Unknown; Package::ALL.len()];
     let stale = Debian { lists_are_fresh: false, packages: unknown };
     let fresh = Debian { lists_are_fresh: true, packages: unknown };
-    let facts = Facts { debian: Some(stale.clone()), ..bare_container() };
-    check(&facts, Plan::Do(Step::FetchLists));
-    let compiler = Request::Compiler { found: Some(NEW), rustup: false };
-    let both = vec![compiler, Request::Emulator { found: None }];
-    check(&Facts { debian: Some(fresh), ..facts.clone() }, Plan::Ask(both.clone()));
+    let host = HostEnvironment { debian: Some(stale.clone()), ..bare_container() };
+    check(&host, Plan::Do(Step::FetchLists));
+    let compiler = ManualStep::Compiler { found: Some(NEW), rustup: false };
+    let both = vec![compiler, ManualStep::Emulator { found: None }];
+    check(&HostEnvironment { debian: Some(fresh), ..host.clone() }, Plan::Ask(both.clone()));
     // Only root can fetch them.
-    check(&Facts { root: false, ..facts }, Plan::Ask(both));
+    check(&HostEnvironment { root: false, ..host }, Plan::Ask(both));
 }
 
 #[test]
@@ -127,43 +136,48 @@ fn packages_that_are_too_old_do_not_serve() {
     let mut old = debian();
     old.lists_are_fresh = true;
     old.packages[0] = PackageState::Available(OLD);
-    let facts = Facts { qemu: Some(QEMU_7), debian: Some(old.clone()), ..bare_container() };
-    let request = Request::Compiler { found: Some(NEW), rustup: false };
-    check(&facts, Plan::Ask(vec![request.clone()]));
+    let host =
+        HostEnvironment { qemu: Some(QEMU_7), debian: Some(old.clone()), ..bare_container() };
+    let request = ManualStep::Compiler { found: Some(NEW), rustup: false };
+    check(&host, Plan::Ask(vec![request.clone()]));
     old.packages[0] = PackageState::Installed(OLD);
-    check(&Facts { debian: Some(old), ..facts }, Plan::Ask(vec![request]));
+    check(&HostEnvironment { debian: Some(old), ..host }, Plan::Ask(vec![request]));
 }
 
 #[test]
 fn elsewhere_the_person_is_told_what_to_get() {
-    let facts = Facts { rust: None, rustup: false, qemu: None, ..complete() };
-    let requests =
-        vec![Request::Compiler { found: None, rustup: false }, Request::Emulator { found: None }];
-    check(&facts, Plan::Ask(requests));
-    let facts = Facts { rust: rust(OLD, true), ..complete() };
-    check(&facts, Plan::Ask(vec![Request::Compiler { found: Some(OLD), rustup: true }]));
-    let facts = Facts { qemu: Some(QEMU_5), ..complete() };
-    check(&facts, Plan::Ask(vec![Request::Emulator { found: Some(QEMU_5) }]));
+    let host = HostEnvironment { rust: None, rustup: false, qemu: None, ..complete() };
+    let requests = vec![
+        ManualStep::Compiler { found: None, rustup: false },
+        ManualStep::Emulator { found: None },
+    ];
+    check(&host, Plan::Ask(requests));
+    let host = HostEnvironment { rust: rust(OLD, true), ..complete() };
+    check(&host, Plan::Ask(vec![ManualStep::Compiler { found: Some(OLD), rustup: true }]));
+    let host = HostEnvironment { qemu: Some(QEMU_5), ..complete() };
+    check(&host, Plan::Ask(vec![ManualStep::Emulator { found: Some(QEMU_5) }]));
 }
 
 #[test]
 fn both_kinds_of_request_are_made_together() {
     let mut packages = debian();
     packages.packages[4] = PackageState::Unknown;
-    let facts = Facts { root: false, debian: Some(packages), ..bare_container() };
-    let requests =
-        vec![Request::Packages(Package::COMPILER.to_vec()), Request::Emulator { found: None }];
-    check(&facts, Plan::Ask(requests));
+    let host = HostEnvironment { root: false, debian: Some(packages), ..bare_container() };
+    let requests = vec![
+        ManualStep::Packages(Package::COMPILER.to_vec()),
+        ManualStep::Emulator { found: None },
+    ];
+    check(&host, Plan::Ask(requests));
 }
 
 #[test]
 fn requests_are_commands() {
     assert_eq!(
-        Request::Packages(vec![Package::Lld, Package::Qemu]).to_string(),
+        ManualStep::Packages(vec![Package::Lld, Package::Qemu]).to_string(),
         "install packages: sudo apt-get install --no-install-recommends lld qemu-system-arm"
     );
     assert_eq!(
-        Request::Compiler { found: Some(OLD), rustup: true }.to_string(),
+        ManualStep::Compiler { found: Some(OLD), rustup: true }.to_string(),
         "install Rust 1.95 or later with the target thumbv7em-none-eabihf: this is Rust 1.85; \
          rustup update stable, then rustup target add thumbv7em-none-eabihf"
     );
@@ -174,14 +188,14 @@ fn requests_are_commands() {
 fn following_the_plan_ends() {
     for bits in 0..8192_u32 {
         let bit = |n: u32| bits >> n & 1 == 1;
-        let mut facts = Facts {
+        let mut host = HostEnvironment {
             rust: bit(0).then_some(Rust { version: NEW, has_target: bit(1) }),
             rustup: bit(2),
             fetching_forbidden: bit(3),
             qemu: bit(4).then_some(QEMU_7),
             debian: bit(5).then(debian),
             root: bit(6),
-            native: Native {
+            native: NativeBuildTools {
                 cmake: bit(8),
                 make: bit(10),
                 cxx: bit(11),
@@ -190,39 +204,39 @@ fn following_the_plan_ends() {
             },
         };
         if bit(7) {
-            facts.debian = facts
+            host.debian = host
                 .debian
                 .map(|d| Debian { packages: [PackageState::Unknown; Package::ALL.len()], ..d });
         }
         for tools in [Tools::CompilerAndEmulator, Tools::CompilerAndVirtualBoard] {
-            let mut facts = facts.clone();
+            let mut host = host.clone();
             let mut steps = 0;
-            while let Plan::Do(step) = plan(&facts, tools) {
-                assert!(step != Step::AddTarget || !facts.fetching_forbidden);
-                take(&mut facts, step);
+            while let Plan::Do(step) = plan(&host, tools) {
+                assert!(step != Step::AddTarget || !host.fetching_forbidden);
+                take(&mut host, step);
                 steps += 1;
-                assert!(steps <= 3, "{facts:?}");
+                assert!(steps <= 3, "{host:?}");
             }
         }
     }
 }
 
 /// What a step does to the machine.
-fn take(facts: &mut Facts, step: Step) {
-    match (step, &mut facts.debian) {
-        (Step::AddTarget, _) => facts.rust = rust(NEW, true),
+fn take(host: &mut HostEnvironment, step: Step) {
+    match (step, &mut host.debian) {
+        (Step::AddTarget, _) => host.rust = rust(NEW, true),
         (Step::FetchLists, Some(debian)) => debian.lists_are_fresh = true,
         (Step::Install(packages), Some(debian)) => {
             for package in packages {
                 let index = Package::ALL.iter().position(|p| *p == package).unwrap();
                 debian.packages[index] = PackageState::Installed(NEW);
                 match package {
-                    Package::Qemu => facts.qemu = Some(QEMU_7),
-                    Package::Cmake => facts.native.cmake = true,
-                    Package::Make => facts.native.make = true,
-                    Package::Cxx => facts.native.cxx = true,
-                    Package::PkgConfig => facts.native.pkg_config = true,
-                    Package::Libclang => facts.native.libclang = true,
+                    Package::Qemu => host.qemu = Some(QEMU_7),
+                    Package::Cmake => host.native.cmake = true,
+                    Package::Make => host.native.make = true,
+                    Package::Cxx => host.native.cxx = true,
+                    Package::PkgConfig => host.native.pkg_config = true,
+                    Package::Libclang => host.native.libclang = true,
                     _ => {}
                 }
             }
@@ -233,25 +247,41 @@ fn take(facts: &mut Facts, step: Step) {
 
 #[test]
 fn whoever_only_flashes_needs_no_emulator() {
-    let facts = Facts { qemu: None, ..complete() };
-    assert_eq!(plan(&facts, Tools::Compiler), Plan::Ready(Compiler::Own));
-    assert!(matches!(plan(&facts, Tools::CompilerAndEmulator), Plan::Ask(_)));
+    let host = HostEnvironment { qemu: None, ..complete() };
+    assert_eq!(plan(&host, Tools::Compiler), Plan::Ready(Compiler::Own));
+    assert!(matches!(plan(&host, Tools::CompilerAndEmulator), Plan::Ask(_)));
 }
 
 #[test]
 fn a_virtual_board_is_built_with_cmake_and_libclang_and_needs_no_emulator() {
     let tools = Tools::CompilerAndVirtualBoard;
-    let none = Native { cmake: false, make: false, cxx: false, pkg_config: false, libclang: false };
-    let facts =
-        Facts { native: none, qemu: None, debian: Some(debian()), root: true, ..complete() };
+    let none = NativeBuildTools {
+        cmake: false,
+        make: false,
+        cxx: false,
+        pkg_config: false,
+        libclang: false,
+    };
+    let host = HostEnvironment {
+        native: none,
+        qemu: None,
+        debian: Some(debian()),
+        root: true,
+        ..complete()
+    };
     let all =
         vec![Package::Cmake, Package::Make, Package::Cxx, Package::PkgConfig, Package::Libclang];
-    assert_eq!(plan(&facts, tools), Plan::Do(Step::Install(all)));
-    let half = Facts { native: Native { libclang: false, ..complete().native }, ..facts.clone() };
+    assert_eq!(plan(&host, tools), Plan::Do(Step::Install(all)));
+    let half = HostEnvironment {
+        native: NativeBuildTools { libclang: false, ..complete().native },
+        ..host.clone()
+    };
     assert_eq!(plan(&half, tools), Plan::Do(Step::Install(vec![Package::Libclang])));
-    let person = Facts { debian: None, root: false, ..facts };
-    assert_eq!(plan(&person, tools), Plan::Ask(vec![Request::Native(none)]));
+    let person = HostEnvironment { debian: None, root: false, ..host };
+    assert_eq!(plan(&person, tools), Plan::Ask(vec![ManualStep::NativeBuildTools(none)]));
     assert_eq!(plan(&person, Tools::Compiler), Plan::Ready(Compiler::Own));
-    let sentence = Request::Native(Native { cmake: false, ..complete().native }).to_string();
+    let sentence =
+        ManualStep::NativeBuildTools(NativeBuildTools { cmake: false, ..complete().native })
+            .to_string();
     assert!(sentence.starts_with("install cmake, with which"), "{sentence}");
 }

@@ -7,7 +7,7 @@ use super::apt::{Apt, AptError, person_agrees};
 use super::build::{Toolchain, Workspace};
 use super::observe::observe;
 use super::output::last_lines;
-use super::plan::{Plan, Request, Step, Tools, plan};
+use super::plan::{ManualStep, Plan, Step, Tools, plan};
 use super::{BuildError, TARGET};
 
 /// Why programs for the board cannot be built here.
@@ -15,7 +15,7 @@ use super::{BuildError, TARGET};
 pub enum SetupError {
     /// The person has to do something first.
     #[error("building and running the board's programs needs more than this machine has:{}", bullets(.0))]
-    Missing(Vec<Request>),
+    Missing(Vec<ManualStep>),
     /// A step could not be begun.
     #[error("`{step}` could not be run: {source}")]
     Unrunnable {
@@ -45,7 +45,7 @@ pub enum SetupError {
     Workspace(#[from] BuildError),
 }
 
-fn bullets(requests: &[Request]) -> String {
+fn bullets(requests: &[ManualStep]) -> String {
     requests.iter().map(|request| format!("\n  - {request}")).collect()
 }
 
@@ -61,7 +61,7 @@ fn bullets(requests: &[Request]) -> String {
 pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, SetupError> {
     let workspace = Workspace::find()?;
     // Two programs that install at the same time would find each other's half-done work.
-    let _alone = workspace.lock("setup")?;
+    let _lock = workspace.lock("setup")?;
     let mut taken = Vec::new();
     loop {
         let step = match plan(&observe(taken.contains(&Step::FetchLists)), tools) {

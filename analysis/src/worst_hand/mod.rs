@@ -6,7 +6,7 @@
 //! starts from masses and springs that resonate near there, then climbs in all their numbers. A
 //! hand on this device cannot take away from its inertia, and so not every rejected scene has one.
 
-mod grip;
+mod impedance;
 
 use std::f64::consts::PI;
 
@@ -16,29 +16,29 @@ use nalgebra::Complex;
 use serde::Serialize;
 
 use crate::chain::Chain;
-use crate::minimum::least;
+use crate::line_search::minimizing_angle;
 use crate::response::Response;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues};
 
-pub use grip::{Compliance, Grip, plant};
+pub use impedance::{Compliance, HandImpedance, plant};
 
 /// What makes a loop count as growing: so much a tick above 1.
-pub const GROWS: f64 = 1e-9;
+pub const GROWTH_THRESHOLD: f64 = 1e-9;
 
 /// Angle in rad a tick below which a motion creeps rather than resonates.
-const CREEPS: f64 = 1e-2;
+const SLOWEST_RESONANCE: f64 = 1e-2;
 
 /// Heaviest hand, over the device: far beyond, two eigenvalues near 1 can no longer be told apart.
 const HEAVIEST: f64 = 1e4;
 
 /// A hand, and what the loop does in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Held {
+pub struct HandCase {
     /// Inertia in kg m^2 of the device.
     pub device_inertia: f64,
     /// The hand.
-    pub hand: Grip,
+    pub hand: HandImpedance,
     /// Factor by which the motion that resonates grows a tick; below 1 it dies away.
     pub spectral_radius: f64,
     /// Frequency in Hz of that motion.
@@ -47,14 +47,14 @@ pub struct Held {
 
 /// What the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Search {
+pub struct SearchResult {
     /// The worst hand of all that were tried.
-    pub worst: Held,
+    pub worst: HandCase,
     /// Whether the loop grows in it.
     pub oscillates: bool,
     /// Where it does not: a hand on a lighter device of the same damping in which it would. The
     /// certificate counts on the damping alone.
-    pub lighter: Option<Held>,
+    pub lighter: Option<HandCase>,
     /// Number of hands that were tried.
     pub tried: usize,
 }
@@ -67,7 +67,7 @@ pub struct Search {
 ///
 /// # Errors
 /// Where the scene has no closed loop.
-pub fn search(scene: &Scene, device: &Chain) -> Result<Search, SimulationError> {
+pub fn search(scene: &Scene, device: &Chain) -> Result<SearchResult, SimulationError> {
     /// Factors of the device's inertia.
     const LIGHTER: [f64; 3] = [0.1, 0.01, 0.001];
     let mut tried = 0;
@@ -78,15 +78,15 @@ pub fn search(scene: &Scene, device: &Chain) -> Result<Search, SimulationError> 
         if oscillates || lighter.is_some() {
             break;
         }
-        lighter = Some(self::worst(scene, device, factor, &mut tried)?).filter(Held::grows);
+        lighter = Some(self::worst(scene, device, factor, &mut tried)?).filter(HandCase::grows);
     }
-    Ok(Search { worst, oscillates, lighter, tried })
+    Ok(SearchResult { worst, oscillates, lighter, tried })
 }
 
-impl Held {
+impl HandCase {
     /// Whether the loop grows.
     pub fn grows(&self) -> bool {
-        self.spectral_radius > 1.0 + GROWS
+        self.spectral_radius > 1.0 + GROWTH_THRESHOLD
     }
 }
 
@@ -96,34 +96,34 @@ fn worst(
     device: &Chain,
     lighter: f64,
     tried: &mut usize,
-) -> Result<Held, SimulationError> {
-    let mut trial = Trial::new(scene, device, lighter)?;
-    let hands = trial.family(trial.angle());
-    let found = hands.into_iter().map(|hand| trial.of(hand));
-    let mut found = found.collect::<Result<Vec<Held>, _>>()?;
+) -> Result<HandCase, SimulationError> {
+    let mut search = HandSearch::new(scene, device, lighter)?;
+    let hands = search.impedance_grid(search.angle());
+    let found = hands.into_iter().map(|hand| search.of(hand));
+    let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
     found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
     let mut worst = found[0];
     for start in starts(&found) {
-        let climbed = trial.climb(start)?;
+        let climbed = search.climb(start)?;
         if climbed.spectral_radius > worst.spectral_radius {
             worst = climbed;
         }
     }
-    *tried += trial.tried;
+    *tried += search.tried;
     Ok(worst)
 }
 
 /// Where to climb from: the worst of each kind of hand.
-fn starts(sorted: &[Held]) -> Vec<Held> {
+fn starts(sorted: &[HandCase]) -> Vec<HandCase> {
     const EACH: usize = 3;
     let kind = |linked: bool| {
-        sorted.iter().filter(move |held| held.hand.link.is_some() == linked).take(EACH)
+        sorted.iter().filter(move |case| case.hand.link.is_some() == linked).take(EACH)
     };
     kind(false).chain(kind(true)).copied().collect()
 }
 
 /// Hands tried on a device under a scene.
-struct Trial<'d> {
+struct HandSearch<'d> {
     device: &'d Chain,
     /// Factor of the device's inertia.
     lighter: f64,
@@ -131,11 +131,11 @@ struct Trial<'d> {
     tried: usize,
 }
 
-impl<'d> Trial<'d> {
+impl<'d> HandSearch<'d> {
     fn new(scene: &Scene, device: &'d Chain, lighter: f64) -> Result<Self, SimulationError> {
         let experiment = Experiment::still(scene);
         // Says what is wrong before anything is searched for.
-        eigenvalues(&closed_loop(&experiment, Stride::default())?.matrix)?;
+        eigenvalues(&closed_loop(&experiment, Integration::default())?.matrix)?;
         Ok(Self { device, lighter, experiment, tried: 0 })
     }
 
@@ -144,8 +144,8 @@ impl<'d> Trial<'d> {
         self.lighter * self.device.inertia()
     }
 
-    fn family(&self, angle: f64) -> Vec<Grip> {
-        grip::family(self.inertia(), self.experiment.scene.timing.period, angle)
+    fn impedance_grid(&self, angle: f64) -> Vec<HandImpedance> {
+        impedance::impedance_grid(self.inertia(), self.experiment.scene.timing.period, angle)
     }
 
     /// The angle in rad a tick at which the real part of the rule is smallest.
@@ -156,22 +156,24 @@ impl<'d> Trial<'d> {
             return 0.5 * PI;
         };
         let velocity = Response::new(equivalent).from_velocity(scene.timing.period);
-        least(|theta| velocity.at_angle(theta).re, 0.0, PI).unwrap_or(0.5 * PI)
+        minimizing_angle(|theta| velocity.at_angle(theta).re, 0.0, PI).unwrap_or(0.5 * PI)
     }
 
     /// What the loop does in a hand.
-    fn of(&mut self, hand: Grip) -> Result<Held, SimulationError> {
+    fn of(&mut self, hand: HandImpedance) -> Result<HandCase, SimulationError> {
         self.tried += 1;
         self.experiment.plant = plant(self.device, self.lighter, &hand);
-        let closed = closed_loop(&self.experiment, Stride::default())?;
+        let closed = closed_loop(&self.experiment, Integration::default())?;
         // Numbers too far apart for their eigenvalues prove nothing.
         let all = eigenvalues(&closed.matrix).unwrap_or_default();
         // What creeps back to rest is always nearest to 1 and would hide what resonates.
-        let matters = |z: &&Complex<f64>| z.arg().abs() > CREEPS || z.norm() > 1.0 + GROWS;
+        let matters = |z: &&Complex<f64>| {
+            z.arg().abs() > SLOWEST_RESONANCE || z.norm() > 1.0 + GROWTH_THRESHOLD
+        };
         let larger = |a: &&Complex<f64>, b: &&Complex<f64>| a.norm().total_cmp(&b.norm());
         let largest = all.iter().filter(matters).max_by(larger).copied().unwrap_or_default();
         let turns = largest.arg().abs() / (2.0 * PI);
-        Ok(Held {
+        Ok(HandCase {
             device_inertia: self.inertia(),
             hand,
             spectral_radius: largest.norm(),
@@ -180,7 +182,7 @@ impl<'d> Trial<'d> {
     }
 
     /// Changes one number at a time for as long as that makes it worse, by ever smaller factors.
-    fn climb(&mut self, start: Held) -> Result<Held, SimulationError> {
+    fn climb(&mut self, start: HandCase) -> Result<HandCase, SimulationError> {
         /// Factor of the first changes, and the one at which they end.
         const FACTORS: [f64; 2] = [4.0, 1.01];
         let mut best = start;
@@ -188,9 +190,9 @@ impl<'d> Trial<'d> {
         while factor > FACTORS[1] {
             let mut better = false;
             for neighbour in self.neighbours(&best.hand, factor) {
-                let held = self.of(neighbour)?;
-                if held.spectral_radius > best.spectral_radius {
-                    (best, better) = (held, true);
+                let case = self.of(neighbour)?;
+                if case.spectral_radius > best.spectral_radius {
+                    (best, better) = (case, true);
                 }
             }
             if !better {
@@ -202,7 +204,7 @@ impl<'d> Trial<'d> {
 
     /// A hand with one of its numbers larger or smaller by a factor. A number that is zero begins at
     /// what is small beside the device.
-    fn neighbours(&self, hand: &Grip, factor: f64) -> Vec<Grip> {
+    fn neighbours(&self, hand: &HandImpedance, factor: f64) -> Vec<HandImpedance> {
         /// What is small beside the device.
         const SMALL: f64 = 1e-3;
         let (inertia, period) = (self.inertia(), self.experiment.scene.timing.period);
@@ -216,11 +218,16 @@ impl<'d> Trial<'d> {
         for inertia in changed(hand.inertia, inertia * SMALL) {
             // A hand behind a link has to have a mass.
             if inertia > 0.0 || hand.link.is_none() {
-                all.push(Grip { inertia, ..*hand });
+                all.push(HandImpedance { inertia, ..*hand });
             }
         }
-        all.extend(changed(hand.damping, damping).map(|damping| Grip { damping, ..*hand }));
-        all.extend(changed(hand.stiffness, stiffness).map(|stiffness| Grip { stiffness, ..*hand }));
+        all.extend(
+            changed(hand.damping, damping).map(|damping| HandImpedance { damping, ..*hand }),
+        );
+        all.extend(
+            changed(hand.stiffness, stiffness)
+                .map(|stiffness| HandImpedance { stiffness, ..*hand }),
+        );
         if let Some(link) = hand.link {
             let links = changed(link.stiffness, stiffness)
                 .map(|stiffness| Compliance { stiffness, ..link })
@@ -228,7 +235,7 @@ impl<'d> Trial<'d> {
                 .chain(
                     changed(link.damping, damping).map(|damping| Compliance { damping, ..link }),
                 );
-            all.extend(links.map(|link| Grip { link: Some(link), ..*hand }));
+            all.extend(links.map(|link| HandImpedance { link: Some(link), ..*hand }));
         }
         // A mass behind nothing is in no hand, and its rest anywhere a double eigenvalue 1, which
         // rounding moves to either side.

@@ -73,7 +73,7 @@ fn the_hand_that_was_found_makes_a_simulation_grow() {
     let plant = plant(&device(), 1.0, &found.hand);
     let start = crate::device::Motion { position: 0.0, velocity: 1e-3 };
     let experiment = Experiment { plant, start, samples: 3000, ..Experiment::still(&scene) };
-    let motion = crate::simulation::simulate(&experiment, Stride::default()).unwrap();
+    let motion = crate::simulation::simulate(&experiment, Integration::default()).unwrap();
     let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let grown = most(&motion.position[2000..]) / most(&motion.position[1000..2000]);
     assert!((grown.powf(1e-3) / found.spectral_radius - 1.0).abs() < 1e-3, "{grown}");

@@ -1,13 +1,20 @@
 //! The programs' servos around the simulated device: what a hand feels.
 
+use analysis::compare_run::{Input, RunOutcome, run_with_backend};
 use analysis::program::{ALL, Program};
-use analysis::scenario::{Input, Outcome, play};
 use analysis::toolchain::NumberFormat;
 use firmware::torque::LimitReason;
 
-fn outcome(program: &Program, format: NumberFormat) -> Outcome {
+fn outcome(program: &Program, format: NumberFormat) -> RunOutcome {
     let mut controller = program.controller(format, &program.transducers).unwrap();
-    play(Input::Hand(Box::new(program.device())), controller.as_mut(), None, 5000, || {}).unwrap()
+    run_with_backend(
+        Input::Hand(Box::new(program.device())),
+        controller.as_mut(),
+        None,
+        5000,
+        || {},
+    )
+    .unwrap()
 }
 
 #[test]

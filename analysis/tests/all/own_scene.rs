@@ -67,13 +67,13 @@ fn a_new_file_is_all_that_the_commands_need() {
 
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
-    let mut twin =
+    let mut board =
         program(&["board-sim", NAME, "--port", &port]).stdout(Stdio::piped()).spawn().unwrap();
-    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
     assert_eq!(said.next().unwrap().unwrap(), format!("{NAME} listens on {port}"));
     let tuned = answer(&haptic(&["tune", "--json", "--port", &port]));
-    let _ = twin.kill();
-    let _ = twin.wait();
+    let _ = board.kill();
+    let _ = board.wait();
     assert_eq!(tuned["parameters"]["stiffness"], 12.0, "{tuned}");
 
     let format = haptic(&["advise", NAME, "--hum", "0.05", "--rate", "1000", "--json"]);

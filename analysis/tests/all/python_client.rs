@@ -17,7 +17,7 @@ use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
 use firmware::wire::description::Description;
 use firmware::wire::message::{
-    Board, Changes, Outcome, Refusal, Remembered, Running, Status, ToBoard, ToHost,
+    ActiveParameters, Board, Changes, Outcome, PreviousFault, Refusal, Status, ToBoard, ToHost,
 };
 use firmware::wire::telemetry::Batch;
 use firmware::wire::{Decoder, Discarded, PROTOCOL, encode};
@@ -129,19 +129,19 @@ fn reads_every_message_to_the_host() {
         energy_step: 0.25,
         longest_gap: 0.036,
     };
-    let remembered = Remembered { fault: fault().into(), tick: 300, count: -1 };
-    let running = Running { sets: 2, margin: None, values };
+    let remembered = PreviousFault { fault: fault().into(), tick: 300, count: -1 };
+    let running = ActiveParameters { sets: 2, margin: None, values };
     let refused = Outcome::Refused(Refusal::Set(Step::Servo));
     let unarmed = Outcome::Refused(Refusal::Fault(fault().into()));
     let messages = [
         ToHost::Welcome { protocol: PROTOCOL, program: "damper_wall" },
         ToHost::Board(numbers),
-        ToHost::Running(running),
+        ToHost::ActiveParameters(running),
         ToHost::Status(status()),
         ToHost::Answer { id: 65_535, outcome: refused },
         ToHost::Answer { id: 7, outcome: unarmed },
         ToHost::Answer { id: 0, outcome: Outcome::Done },
-        ToHost::Remembered(remembered),
+        ToHost::PreviousFault(remembered),
         ToHost::Telemetry(batch),
         ToHost::Described(description()),
     ];
@@ -243,11 +243,11 @@ fn says_how_it_is_used() {
 fn talks_to_a_board() {
     let folder = tempfile::tempdir().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
-    let mut twin = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
+    let mut board = program(&["twin", "damper_wall", "--port", &port, "--for", "60"])
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
     assert_eq!(said.next().unwrap().unwrap(), format!("damper_wall listens on {port}"));
     let ask = |arguments: &[&str]| python(&[&["client.py", &port], arguments].concat());
     let running = answer(&ask(&["set", "stiffness=12.5", "damping=0.002"]));
@@ -283,6 +283,6 @@ fn talks_to_a_board() {
         assert_eq!(said.status.code(), Some(2), "{wrong:?}");
         assert!(String::from_utf8_lossy(&said.stderr).starts_with(words), "{said:?}");
     }
-    twin.kill().unwrap();
-    twin.wait().unwrap();
+    board.kill().unwrap();
+    board.wait().unwrap();
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::common::WALL;
 use analysis::file::{self, FileError, Format, Purpose, SceneFile, parse_for};
-use analysis::simulation::{Experiment, Stride, simulate};
+use analysis::simulation::{Experiment, Integration, simulate};
 use analysis::stability::judge;
 use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
@@ -225,8 +225,8 @@ fn delay_in_a_denominator_is_delay() {
     let beside = with("1, -0.2, 0, 0, 0, 0, 0.01", 5);
     let certified = certify(&beside.scene).unwrap();
     let experiment = |file: &SceneFile| Experiment::of(file, Path::new(".")).unwrap();
-    let moves = |file: &SceneFile| simulate(&experiment(file), Stride::default()).unwrap();
-    let stability = |file: &SceneFile| judge(&experiment(file), Stride::default()).unwrap();
+    let moves = |file: &SceneFile| simulate(&experiment(file), Integration::default()).unwrap();
+    let stability = |file: &SceneFile| judge(&experiment(file), Integration::default()).unwrap();
     assert!(moves(&beside).torque.iter().any(|torque| *torque != 0.0));
     for (denominator, delay) in [
         ("1, -0.2, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 0", 0),

@@ -7,9 +7,9 @@
 use crate::reference::{Matrix, Real, characteristic, exponential, image, modulus_of_root};
 use analysis::chain::{Link, Mass};
 use analysis::device::{Hand, Motion};
-use analysis::simulation::drive::Drive;
 use analysis::simulation::plant::Plant;
-use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
+use analysis::simulation::torque_signal::TorqueSignal;
+use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Scene, Timing};
@@ -86,7 +86,7 @@ fn experiment(environment: Environment, coupling: Option<f64>, start: Motion) ->
 
 /// Largest difference in each column, over the column's largest value.
 fn compare(name: &str, experiment: &Experiment, reference: &Trajectory) {
-    let found = simulate(experiment, Stride::default()).unwrap();
+    let found = simulate(experiment, Integration::default()).unwrap();
     for (column, is, should) in [
         ("position", &found.position, &reference.position),
         ("velocity", &found.velocity, &reference.velocity),
@@ -127,8 +127,8 @@ fn wall_in_a_hand_that_pushes() {
     let torque: Vec<f64> = (0..700).map(|k| 0.05 * f64::from((k * 37) % 101) / 101.0).collect();
     let environment = Environment::DamperWall(wall(22.0, 0.01, 1));
     let mut experiment = experiment(environment, Some(44.0), Motion::default());
-    experiment.plant = Plant::rigid(DEVICE).held(hand);
-    experiment.drive = Drive::Held(torque.clone());
+    experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
+    experiment.hand_torque = TorqueSignal::Held(torque.clone());
     let at = |k: usize| torque.get(k).copied().unwrap_or(0.0);
     let servo = delayed_wall(22.0, 0.01, 44.0);
     let reference = run(&rigid(hand), &[0.0, 0.0], servo, at);
@@ -180,7 +180,7 @@ fn limited_wall_with_a_face() {
     let mut experiment = experiment(environment, Some(coupling), start);
     experiment.scene.torque_limit = Some(limit);
     let hand = Hand { inertia: 3e-4, damping: 0.001, stiffness: 0.5 };
-    experiment.plant = Plant::rigid(DEVICE).held(hand);
+    experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
     let mut due = r(0.0);
     let servo = |x: &Real| {
         let torque = due.clone().limited(&r(limit));
@@ -203,8 +203,8 @@ fn chain_with_lag_and_sine() {
     let (amplitude, omega, phase) = (0.03, 411.0, 0.7);
     let environment = Environment::DelayedSpring(wall(stiffness, 0.0, 0));
     let mut experiment = experiment(environment, None, Motion::default());
-    experiment.plant = Plant::chain(&masses, &links).held(hand).lagging(lag);
-    experiment.drive = Drive::Sine { amplitude, omega, phase };
+    experiment.plant = Plant::chain(&masses, &links).with_hand(hand).with_actuator_lag(lag);
+    experiment.hand_torque = TorqueSignal::Sine { amplitude, omega, phase };
     let zero = || r(0.0);
     let last = r(masses[1].inertia) + r(hand.inertia);
     let (k, c) = (r(links[0].stiffness), r(links[0].damping));
@@ -300,8 +300,8 @@ fn spectral_radius() {
             let matrix = closed_wall(&rigid(hand), [stiffness, damping, coupling]);
             let environment = Environment::DamperWall(wall(stiffness, damping, 1));
             let mut experiment = experiment(environment, Some(coupling), Motion::default());
-            experiment.plant = Plant::rigid(DEVICE).held(hand);
-            let closed = closed_loop(&experiment, Stride::default()).unwrap();
+            experiment.plant = Plant::rigid(DEVICE).with_hand(hand);
+            let closed = closed_loop(&experiment, Integration::default()).unwrap();
             let found = eigenvalues(&closed.matrix).unwrap();
             let largest = found.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap();
             let root = modulus_of_root(&characteristic(&matrix), (largest.re, largest.im));

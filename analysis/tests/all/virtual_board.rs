@@ -51,13 +51,13 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
 }
 
 /// A virtual board behind a socket; ends with this.
-struct Twin {
+struct SimulatedBoard {
     process: Child,
     port: String,
     _folder: TempDir,
 }
 
-impl Twin {
+impl SimulatedBoard {
     fn of(board: Board, scene: &str) -> Self {
         let folder = TempDir::new().unwrap();
         let port = format!("unix:{}", folder.path().join("board").display());
@@ -76,7 +76,7 @@ impl Twin {
     }
 }
 
-impl Drop for Twin {
+impl Drop for SimulatedBoard {
     fn drop(&mut self) {
         // It may have ended by itself.
         let _ = self.process.kill();
@@ -88,22 +88,22 @@ impl Drop for Twin {
 #[test]
 fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
     for board in Board::ALL {
-        let twin = Twin::of(board, "damper_wall");
-        let (status, running) = twin.tune(&[]);
+        let board = SimulatedBoard::of(board, "damper_wall");
+        let (status, running) = board.tune(&[]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 22.0);
         let (state, reset) = (&running["state"], &running["reset"]);
         assert_eq!((state, reset), (&"disarmed".into(), &"power-on".into()), "{running}");
-        let (status, running) = twin.tune(&["--arm"]);
+        let (status, running) = board.tune(&["--arm"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
-        let (status, running) = twin.tune(&["stiffness=20"]);
+        let (status, running) = board.tune(&["stiffness=20"]);
         assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
         assert_eq!(running["parameters"]["stiffness"], 20.0);
         // Past the line: the board itself says no, says what would pass, and goes on.
-        let (status, refused) = twin.tune(&["damping=0.02"]);
+        let (status, refused) = board.tune(&["damping=0.02"]);
         assert_eq!(status, Some(1), "{refused}");
         assert!(refused["refused"].to_string().contains("would pass"), "{refused}");
-        let (_, running) = twin.tune(&[]);
+        let (_, running) = board.tune(&[]);
         assert_eq!(running["parameters"]["damping"], 0.01);
         assert_eq!(running["missed"], 0, "{running}");
     }

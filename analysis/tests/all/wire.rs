@@ -10,13 +10,13 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::common::{answer, haptic, program};
-use analysis::link::{Address, Answer, Link};
+use analysis::board_sim::{Pacing, SimulatedBoard};
+use analysis::link::{Address, Link, RequestResult};
+use analysis::lockstep::PlantIo;
 use analysis::program::{Program, damper_wall};
-use analysis::rig::Plant;
 use analysis::scope::Scope;
 use analysis::scope::control::{Action, Reply, Request};
-use analysis::scope::feed::{Event, Feed};
-use analysis::twin::{Clock, Twin};
+use analysis::scope::poller::{BoardPoller, Event};
 use firmware::certificate::Parameter;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
@@ -40,7 +40,7 @@ struct Codes {
     seen: HashMap<u16, u64>,
 }
 
-impl Plant for Held {
+impl PlantIo for Held {
     fn count(&mut self) -> Option<i32> {
         Some(DEPTH)
     }
@@ -76,37 +76,37 @@ impl Held {
 /// A board with the damper wall that was armed, and where it listens.
 struct Rig {
     held: Held,
-    twin: Twin,
+    board: SimulatedBoard,
     _folder: TempDir,
 }
 
 impl Rig {
-    fn new(clock: Clock) -> Self {
-        let rig = Self::off(clock);
-        assert_eq!(rig.link().arm().unwrap(), Answer::Done);
+    fn new(pacing: Pacing) -> Self {
+        let rig = Self::off(pacing);
+        assert_eq!(rig.link().arm().unwrap(), RequestResult::Done);
         rig
     }
 
     /// The same as it is when it is switched on.
-    fn off(clock: Clock) -> Self {
+    fn off(pacing: Pacing) -> Self {
         let folder = TempDir::new().unwrap();
         let address = Address::Unix(folder.path().join("board"));
         let held = Held::default();
         let wall = Program::find("damper_wall").unwrap();
-        let twin = wall.listen(Box::new(held.clone()), &address, clock).unwrap();
-        Self { held, twin, _folder: folder }
+        let board = wall.listen(Box::new(held.clone()), &address, pacing).unwrap();
+        Self { held, board, _folder: folder }
     }
 
     fn port(&self) -> String {
-        self.twin.address().to_string()
+        self.board.address().to_string()
     }
 
     fn link(&self) -> Link {
-        Link::open(self.twin.address()).unwrap()
+        Link::open(self.board.address()).unwrap()
     }
 
     fn raw(&self) -> UnixStream {
-        let Address::Unix(path) = self.twin.address() else { unreachable!() };
+        let Address::Unix(path) = self.board.address() else { unreachable!() };
         UnixStream::connect(path).unwrap()
     }
 
@@ -136,7 +136,7 @@ fn code(stiffness: f64) -> f64 {
 
 #[test]
 fn tune_changes_what_is_certified_and_prints_what_runs() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     let output = rig.haptic(&["tune"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert!(text(&output.stdout).contains("stiffness=22 damping=0.01 face=0"), "{output:?}");
@@ -161,7 +161,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
 /// Somebody may lean on the wall that is changed.
 #[test]
 fn tune_says_for_how_long_an_armed_board_lets_go() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     let said = "the torque was released for up to 36 ms";
     for (arguments, lets_go) in [
         (&["tune", "stiffness=12"][..], true),
@@ -179,7 +179,7 @@ fn tune_says_for_how_long_an_armed_board_lets_go() {
 
 #[test]
 fn tune_prints_the_boards_sentence_where_it_refuses() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     let sentence = with(30.0, 0.01).certify_in(Format::F32).unwrap_err().to_string();
     let output = rig.haptic(&["tune", "stiffness=30"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
@@ -196,7 +196,7 @@ fn tune_prints_the_boards_sentence_where_it_refuses() {
 
 #[test]
 fn a_bad_question_is_status_2() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     for (arguments, part) in [
         (["tune", "stiffnes=30"], "there is no parameter `stiffnes`"),
         (["tune", "stiffness"], "NAME=VALUE"),
@@ -237,7 +237,7 @@ fn somebody_who_is_no_board_is_told_from_one() {
 
 #[test]
 fn a_board_is_off_until_it_is_armed_and_says_why_it_was_reset() {
-    let rig = Rig::off(Clock::Free);
+    let rig = Rig::off(Pacing::Unthrottled);
     assert_eq!(rig.held.after(500), 2048);
     let output = rig.haptic(&["tune"]);
     let said = text(&output.stdout);
@@ -251,7 +251,7 @@ fn a_board_is_off_until_it_is_armed_and_says_why_it_was_reset() {
 
 #[test]
 fn arms_and_disarms() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     let said = answer(&rig.haptic(&["tune", "--json", "--disarm"]));
     assert_eq!((&said["refused"], &said["state"]), (&Value::Null, &"disarmed".into()));
     assert_eq!(rig.held.after(10), 2048);
@@ -266,7 +266,7 @@ fn arms_and_disarms() {
 
 #[test]
 fn scope_records_rows_and_ends_quietly() {
-    let rig = Rig::new(Clock::Real);
+    let rig = Rig::new(Pacing::RealTime);
     let output = rig.haptic(&["scope", "--csv", "-", "--for", "0.6", "--every", "1"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     assert_eq!(text(&output.stderr), "");
@@ -292,7 +292,7 @@ fn scope_records_rows_and_ends_quietly() {
 
 #[test]
 fn scope_ends_quietly_when_nobody_reads_on() {
-    let rig = Rig::new(Clock::Real);
+    let rig = Rig::new(Pacing::RealTime);
     let mut child = program(&["scope", "--port", &rig.port()])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -309,8 +309,8 @@ fn scope_ends_quietly_when_nobody_reads_on() {
 
 #[test]
 fn scope_says_that_the_link_is_lost_and_goes_on_when_it_is_back() {
-    let rig = Rig::new(Clock::Real);
-    let (address, folder) = (rig.twin.address().clone(), rig._folder);
+    let rig = Rig::new(Pacing::RealTime);
+    let (address, folder) = (rig.board.address().clone(), rig._folder);
     let csv = folder.path().join("ticks.csv");
     let mut child = program(&["scope", "--port", &address.to_string(), "--for", "4", "--csv"])
         .arg(&csv)
@@ -321,11 +321,11 @@ fn scope_says_that_the_link_is_lost_and_goes_on_when_it_is_back() {
     let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
     let rows = || std::fs::read_to_string(&csv).unwrap_or_default().lines().count();
     wait_for(|| rows() > 10);
-    drop(rig.twin);
+    drop(rig.board);
     assert!(said.next().unwrap().contains("is lost"));
     let before = rows();
     let wall = Program::find("damper_wall").unwrap();
-    let _again = wall.listen(Box::new(rig.held), &address, Clock::Real).unwrap();
+    let _again = wall.listen(Box::new(rig.held), &address, Pacing::RealTime).unwrap();
     wait_for(|| rows() > before + 10);
     let rest: Vec<String> = said.collect();
     assert!(rest.iter().any(|line| line == "connected again"), "{rest:?}");
@@ -344,26 +344,26 @@ fn wait_for(mut is_so: impl FnMut() -> bool) {
 /// What the keys of the scope ask for, from the line that is typed to what is shown of the answer.
 #[test]
 fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
-    let rig = Rig::new(Clock::Real);
+    let rig = Rig::new(Pacing::RealTime);
     let mut scope = Scope::new(rig.port(), 1.0);
-    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let poller = BoardPoller::start(rig.link(), NonZeroU32::MIN);
     let mut press = |text: &str, said: &str, is_so: fn(&Scope) -> bool| {
         for letter in text.chars() {
             let key = if letter == '\n' { KeyCode::Enter } else { KeyCode::Char(letter) };
             if let Action::Request(request) = scope.control.press(key.into()) {
-                feed.request(request);
+                poller.request(request);
             }
         }
         let end = Instant::now() + Duration::from_secs(20);
-        while !(is_so(&scope) && scope.control.said.as_ref().is_some_and(|s| s.contains(said))) {
-            assert!(Instant::now() < end, "{text:?}: {:?}", scope.control.said);
-            if let Some(event) = feed.next(Duration::from_millis(10)) {
+        while !(is_so(&scope) && scope.control.message.as_ref().is_some_and(|s| s.contains(said))) {
+            assert!(Instant::now() < end, "{text:?}: {:?}", scope.control.message);
+            if let Some(event) = poller.next(Duration::from_millis(10)) {
                 scope.take(event, |_| Ok::<(), std::convert::Infallible>(())).unwrap();
             }
         }
     };
     let softer: fn(&Scope) -> bool = |scope| {
-        let running = scope.running.as_ref();
+        let running = scope.parameters.as_ref();
         running.is_some_and(|r| r.values.contains(&(Parameter::Stiffness, 12.5)))
     };
     press("tstiffness = 12.5\n", "stiffness=12.5: done", softer);
@@ -375,23 +375,23 @@ fn the_scope_tunes_arms_and_disarms_the_board_that_it_shows() {
 /// A key that was pressed while the link was lost does nothing once it is back.
 #[test]
 fn what_is_asked_without_a_link_is_not_done_later() {
-    let rig = Rig::new(Clock::Real);
-    let feed = Feed::start(rig.link(), NonZeroU32::MIN);
+    let rig = Rig::new(Pacing::RealTime);
+    let poller = BoardPoller::start(rig.link(), NonZeroU32::MIN);
     let wait = |is_it: fn(&Event) -> bool| {
         let end = Instant::now() + Duration::from_secs(20);
-        while !feed.next(Duration::from_millis(10)).is_some_and(|event| is_it(&event)) {
+        while !poller.next(Duration::from_millis(10)).is_some_and(|event| is_it(&event)) {
             assert!(Instant::now() < end, "it takes too long");
         }
     };
-    drop(rig.twin);
+    drop(rig.board);
     wait(|event| matches!(event, Event::Lost(_)));
-    feed.request(Request::Arm);
+    poller.request(Request::Arm);
     wait(|event| matches!(event, Event::Reply(Request::Arm, Reply::NoLink)));
 }
 
 #[test]
 fn a_second_client_hears_that_the_port_is_in_use() {
-    let rig = Rig::new(Clock::Real);
+    let rig = Rig::new(Pacing::RealTime);
     let first = rig.link();
     let second = rig.haptic(&["tune"]);
     assert_eq!(second.status.code(), Some(2), "{second:?}");
@@ -429,7 +429,7 @@ fn a_serial_port_that_another_program_has_open_is_said_with_its_name() {
 /// Half of them inadmissible; the verdict on each is made here, apart from the wire.
 #[test]
 fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
-    let rig = Rig::new(Clock::Free);
+    let rig = Rig::new(Pacing::Unthrottled);
     let mut link = rig.link();
     let mut random = fastrand::Rng::with_seed(7);
     let (mut running, mut refused) = (22.0, 0);
@@ -442,7 +442,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
         let outcome = link.set(Changes::from_slice(&changes).unwrap()).unwrap();
         match with(stiffness, damping).certify_in(Format::F32) {
             Ok(_) => {
-                assert_eq!(outcome, Answer::Done, "set {i}");
+                assert_eq!(outcome, RequestResult::Done, "set {i}");
                 running = stiffness;
                 // Near its limit a wall is certified and rings at half the sample rate for as long as
                 // one likes: its torque at rest is still to come.
@@ -451,7 +451,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
                 }
             }
             Err(rejection) => {
-                assert_eq!(outcome, Answer::Refused(rejection.to_string()), "set {i}");
+                assert_eq!(outcome, RequestResult::Refused(rejection.to_string()), "set {i}");
                 refused += 1;
                 // Not for a single tick.
                 let last = rig.held.after(150);
@@ -470,7 +470,7 @@ fn of_a_thousand_sets_none_is_rendered_that_is_not_certified() {
 /// Random bytes, truncated frames, wrong checksums, a flood, and a stall in the middle of a frame.
 #[test]
 fn a_servo_keeps_time_whatever_comes_over_the_wire() {
-    let rig = Rig::new(Clock::Real);
+    let rig = Rig::new(Pacing::RealTime);
     let wanted = rig.held.after(500);
     rig.held.forget();
     let mut random = fastrand::Rng::with_seed(11);
@@ -502,11 +502,11 @@ fn a_servo_keeps_time_whatever_comes_over_the_wire() {
 fn a_twin_is_a_board_to_try_things_on() {
     let folder = TempDir::new().unwrap();
     let port = format!("unix:{}", folder.path().join("board").display());
-    let mut twin = program(&["twin", "free_mode", "--port", &port, "--for", "3"])
+    let mut board = program(&["twin", "free_mode", "--port", &port, "--for", "3"])
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+    let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
     assert_eq!(said.next().unwrap().unwrap(), format!("free_mode listens on {port}"));
     let running = answer(&haptic(&["tune", "--port", &port, "--json", "residual=0.004"]));
     assert_eq!((&running["refused"], &running["program"]), (&Value::Null, &"free_mode".into()));
@@ -517,7 +517,7 @@ fn a_twin_is_a_board_to_try_things_on() {
     let said = text(&second.stderr);
     assert!(said.contains("cannot listen on unix:"), "{said}");
     assert!(said.ends_with("another program listens there\n"), "{said}");
-    assert_eq!(twin.wait().unwrap().code(), Some(0));
+    assert_eq!(board.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
     assert!(
         text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"),
@@ -531,13 +531,13 @@ fn a_twin_that_is_told_to_end_or_killed_is_in_nobodys_way() {
     let path = folder.path().join("board");
     let port = format!("unix:{}", path.display());
     let start = || {
-        let mut twin = program(&["twin", "free_mode", "--port", &port, "--for", "60"])
+        let mut board = program(&["twin", "free_mode", "--port", &port, "--for", "60"])
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut said = BufReader::new(twin.stdout.take().unwrap()).lines();
+        let mut said = BufReader::new(board.stdout.take().unwrap()).lines();
         assert_eq!(said.next().unwrap().unwrap(), format!("free_mode listens on {port}"));
-        twin
+        board
     };
     let mut killed = start();
     killed.kill().unwrap();

@@ -11,11 +11,11 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use crate::common::{answer, haptic};
-use analysis::emulator::{Emulator, Report};
+use analysis::emulator::{Emulator, EmulatorReport};
 use analysis::link::{Address, Link};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use firmware::board::shown::Moved;
+use firmware::board::lockstep_protocol::TickInput;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::number::Format;
 use firmware::scene::Scene;
@@ -41,7 +41,7 @@ struct Seen {
 struct Board {
     seen: Arc<Mutex<Seen>>,
     over: Arc<AtomicBool>,
-    world: Option<JoinHandle<Report>>,
+    world: Option<JoinHandle<EmulatorReport>>,
     socket: PathBuf,
 }
 
@@ -51,9 +51,9 @@ impl Board {
         let tools = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}")).unwrap();
         let elf = tools.build_scene("damper_wall", NumberFormat::F32).unwrap();
         let mut emulator = Emulator::boot(&elf).unwrap();
-        emulator.engage().unwrap();
+        emulator.arm_and_wait().unwrap();
         for count in (0..=DEPTH).step_by(STEP) {
-            emulator.tick(Moved { count, missed: 0 }).unwrap();
+            emulator.tick(TickInput { count, missed: 0 }).unwrap();
         }
         let socket = emulator.port();
         let (seen, over) = (Arc::<Mutex<Seen>>::default(), Arc::<AtomicBool>::default());
@@ -126,22 +126,22 @@ impl Board {
     }
 
     /// Ends the board; gives what it says of itself.
-    fn end(mut self) -> Report {
+    fn end(mut self) -> EmulatorReport {
         self.over.store(true, Ordering::Relaxed);
         self.world.take().unwrap().join().unwrap()
     }
 }
 
 /// A world in which the device is held still.
-fn hold(mut emulator: Emulator, seen: &Mutex<Seen>, over: &AtomicBool) -> Report {
+fn hold(mut emulator: Emulator, seen: &Mutex<Seen>, over: &AtomicBool) -> EmulatorReport {
     while !over.load(Ordering::Relaxed) {
-        let shown = emulator.tick(Moved { count: DEPTH, missed: 0 }).unwrap();
+        let output = emulator.tick(TickInput { count: DEPTH, missed: 0 }).unwrap();
         let mut seen = seen.lock().unwrap();
         seen.ticks += 1;
-        seen.last = shown.code;
-        seen.codes.insert(shown.code);
-        if seen.states.last() != Some(&shown.state) {
-            seen.states.push(shown.state);
+        seen.last = output.code;
+        seen.codes.insert(output.code);
+        if seen.states.last() != Some(&output.state) {
+            seen.states.push(output.state);
         }
     }
     emulator.finish().unwrap()

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::common::set_up_tool;
 
 /// Longest that a page may take, browser's start included, on a slow machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// The browser.
 const NAME: &str = "chromium";
@@ -44,10 +44,10 @@ pub fn dom(page: &Path, width: u32) -> String {
     });
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > PATIENCE {
+        if start.elapsed() > TIMEOUT {
             child.kill().unwrap();
             child.wait().unwrap();
-            panic!("the browser did not end within {PATIENCE:?}");
+            panic!("the browser did not end within {TIMEOUT:?}");
         }
         std::thread::sleep(Duration::from_millis(20));
     }

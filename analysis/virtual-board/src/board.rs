@@ -1,26 +1,26 @@
-//! The board around the core: its peripherals on their bus, and the world that is wired to them.
+//! The board around the core: its peripherals on their bus, and the device that is wired to them.
 
 mod bus;
 
-use crate::chip::{Chip, PACER_INTERRUPT, TORQUE};
+use crate::chip::{Chip, TICK_INTERRUPT, TORQUE};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
-use crate::device::{Device, Still};
+use crate::device::{Device, FixedDevice};
+use crate::error::NotModelled;
 use crate::meter::Meter;
+use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
-use crate::peripheral::converter::Converter;
 use crate::peripheral::counter::Counter;
-use crate::peripheral::pacer::Pacer;
+use crate::peripheral::dac::Dac;
+use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::{Level, Pins};
-use crate::peripheral::plain::Plain;
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
-use crate::trouble::NotModelled;
 
 /// What happened on the board's pins, with the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The converter's output changed.
+    /// The DAC's output changed.
     Torque(Option<u16>),
     /// The amplifier's line changed.
     Amplifier(Level),
@@ -35,11 +35,11 @@ pub struct Board {
     /// Reset and clock control.
     pub clock: Clock,
     /// The pacing timer.
-    pub pacer: Pacer,
+    pub tick_timer: BasicTimer,
     /// The encoder's counter.
     pub encoder: Counter,
-    /// The converter.
-    pub converter: Converter,
+    /// The DAC.
+    pub dac: Dac,
     /// The serial port.
     pub serial: Serial,
     /// What is wired to the motor and the encoder.
@@ -50,20 +50,20 @@ pub struct Board {
     pub samples: u64,
     /// A register on which the bus gives an error, as of a broken peripheral.
     pub broken: Option<u32>,
-    /// What happened, if somebody wants to know.
+    /// Events of the pins, if they are recorded.
     pub events: Option<Vec<(u64, Event)>>,
     pub(crate) stopped: Option<NotModelled>,
     chip: &'static Chip,
     free_clock: Counter,
     /// The watchdog.
     pub watchdog: Watchdog,
-    power: Plain,
+    power: InertRegisters,
     /// The flash memory's interface.
-    pub flash: Plain,
+    pub flash: InertRegisters,
     /// System configuration.
-    pub configuration: Plain,
+    pub configuration: InertRegisters,
     /// The unit for debugging.
-    pub debug: Plain,
+    pub debug: InertRegisters,
     ports: Vec<Pins>,
     pub(crate) bus_error: Option<u32>,
     seen: (Option<u16>, Level),
@@ -76,10 +76,10 @@ impl Board {
             now: 0,
             system: System::default(),
             clock: Clock::new(chip.clock, chip.crystal, Cause::Power),
-            pacer: Pacer::new(),
+            tick_timer: BasicTimer::new(),
             encoder: Counter::new(chip.counter),
-            converter: Converter::new(chip.converter),
-            serial: Serial::new(chip.face),
+            dac: Dac::new(chip.dac),
+            serial: Serial::new(chip.usart),
             device,
             meter: Meter::default(),
             samples: 0,
@@ -104,10 +104,10 @@ impl Board {
         self.chip
     }
 
-    /// Every unit as out of reset; memory, time and the world stay, and with them the option bytes and
+    /// Every unit as out of reset; memory, time and the device stay, and with them the option bytes and
     /// what a debugger has set.
     pub fn reset(&mut self, cause: Cause) {
-        let device = std::mem::replace(&mut self.device, Box::new(Still));
+        let device = std::mem::replace(&mut self.device, Box::new(FixedDevice));
         let mut fresh = Self::new(self.chip, device);
         fresh.flash = self.flash_after_reset();
         fresh.debug = self.debug.clone();
@@ -121,11 +121,11 @@ impl Board {
             seen: self.seen,
             ..fresh
         };
-        self.look();
+        self.record_pin_events();
     }
 
     /// The flash memory's interface out of reset, with the option bytes as they are.
-    fn flash_after_reset(&self) -> Plain {
+    fn flash_after_reset(&self) -> InertRegisters {
         let mut flash = (self.chip.flash_interface)();
         flash.set(self.chip.options, self.flash.get(self.chip.options));
         flash
@@ -151,12 +151,12 @@ impl Board {
     /// What the torque's pin is driven with.
     pub fn torque(&self) -> Option<u16> {
         let (port, pin) = TORQUE;
-        self.converter.output().filter(|_| self.ports[port].is_analog(pin))
+        self.dac.output().filter(|_| self.ports[port].is_analog(pin))
     }
 
     /// When something happens next that the program has not asked for.
     pub fn due(&self) -> u64 {
-        [self.pacer.due(), self.serial.due(), self.watchdog.due(), self.system.systick.due()]
+        [self.tick_timer.due(), self.serial.due(), self.watchdog.due(), self.system.systick.due()]
             .into_iter()
             .flatten()
             .min()
@@ -166,31 +166,31 @@ impl Board {
     /// Does what is due; whether the watchdog resets the board.
     pub fn advance(&mut self) -> bool {
         let now = self.now;
-        if self.pacer.advance(now, self.clock.timer_divider()) {
+        if self.tick_timer.advance(now, self.clock.timer_divider()) {
             self.sample();
         }
         self.serial.advance(now, self.clock.bus_divider());
         if self.system.systick.advance(now) {
             self.system.exceptions.pend(SYS_TICK);
         }
-        self.lines();
-        self.look();
+        self.update_interrupt_lines();
+        self.record_pin_events();
         self.watchdog.due().is_some_and(|due| due <= now)
     }
 
-    /// The pacing timer's update: the sample that it ends goes into the device, and the converter
+    /// The pacing timer's update: the sample that it ends goes into the device, and the DAC
     /// begins the next one.
     fn sample(&mut self) {
         self.samples += 1;
         let counts = self.device.sample(self.torque(), self.amplifier() == Level::High);
-        self.turn(counts);
-        if self.pacer.triggers() {
-            self.converter.trigger();
+        self.turn_encoder(counts);
+        if self.tick_timer.triggers() {
+            self.dac.trigger();
         }
     }
 
     /// Turns the encoder, where it is wired as the program has set its pins up.
-    pub fn turn(&mut self, counts: i32) {
+    pub fn turn_encoder(&mut self, counts: i32) {
         if self.is_wired(self.chip.encoder) {
             self.encoder.turn(counts);
         }
@@ -209,15 +209,15 @@ impl Board {
         pins.iter().all(|&(port, pin)| self.ports[port].function(pin) == Some(function))
     }
 
-    /// The interrupt lines as the units hold them.
-    fn lines(&mut self) {
+    /// Sets the interrupt lines as the units hold them.
+    fn update_interrupt_lines(&mut self) {
         let exceptions = &mut self.system.exceptions;
-        exceptions.set_line(FIRST_INTERRUPT + PACER_INTERRUPT, self.pacer.line());
+        exceptions.set_line(FIRST_INTERRUPT + TICK_INTERRUPT, self.tick_timer.line());
         exceptions.set_line(FIRST_INTERRUPT + self.chip.serial_interrupt, self.serial.line());
     }
 
-    /// Takes down what has changed on the pins.
-    fn look(&mut self) {
+    /// Records the events of pins that have changed.
+    fn record_pin_events(&mut self) {
         let now = (self.torque(), self.amplifier());
         if now == self.seen {
             return;

@@ -2,10 +2,10 @@
 
 use crate::names;
 use crate::peripheral::clock::{self, Layout};
+use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::Pins;
-use crate::peripheral::plain::Plain;
-use crate::peripheral::serial::Face;
-use crate::peripheral::{clock_f4, clock_g4, converter, flash, power};
+use crate::peripheral::serial::UsartVariant;
+use crate::peripheral::{clock_f4, clock_g4, dac, flash, power};
 
 /// A peripheral of either chip, by what it is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,22 +23,22 @@ pub enum Unit {
     /// A port of pins: 0 is A.
     Pins(usize),
     /// TIM6.
-    Pacer,
+    TickTimer,
     /// The free-running clock.
     FreeClock,
     /// The encoder's counter.
     Encoder,
-    /// The converter.
-    Converter,
+    /// The DAC.
+    Dac,
     /// The serial port.
     Serial,
     /// The independent watchdog.
     Watchdog,
 }
 
-/// Where a unit is and what it is called.
+/// Entry of the memory map: address and name of a unit.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct MapEntry {
     /// Its first address.
     pub base: u32,
     /// Its name in the reference manual.
@@ -76,7 +76,7 @@ pub struct Chip {
     /// The core's clock in Hz once the program has set it up.
     pub core: u64,
     /// The map of its peripherals.
-    pub map: &'static [Place],
+    pub map: &'static [MapEntry],
     /// Bits of the encoder's counter.
     pub counter: u32,
     /// The pin that switches the amplifier on, as port and number; high is on, on every board.
@@ -89,44 +89,44 @@ pub struct Chip {
     pub serial_interrupt: u16,
     /// Registers of its clock control.
     pub clock: &'static clock::Layout,
-    /// Its converter's bits.
-    pub converter: converter::Layout,
+    /// Its DAC's bits.
+    pub dac: dac::Layout,
     /// Its serial port's registers.
-    pub face: Face,
+    pub usart: UsartVariant,
     /// Its power control.
-    pub power: fn() -> Plain,
+    pub power: fn() -> InertRegisters,
     /// Its flash interface.
-    pub flash_interface: fn() -> Plain,
+    pub flash_interface: fn() -> InertRegisters,
     /// The place of the option bytes in it.
     pub options: u32,
     /// Its system configuration.
-    pub configuration: fn() -> Plain,
+    pub configuration: fn() -> InertRegisters,
     /// Its unit for debugging.
-    pub debug: fn() -> Plain,
+    pub debug: fn() -> InertRegisters,
     /// Names of its units' registers, by the place behind the unit's first.
     pub names: fn(Unit, u32) -> Option<&'static str>,
     /// Its ports out of reset.
     pub ports: fn(usize) -> Pins,
 }
 
-/// TIM6 with the converter's underrun: the servo's interrupt.
-pub const PACER_INTERRUPT: u16 = 54;
-/// The pin that the converter drives: PA4 on both.
+/// TIM6 with the DAC's underrun: the servo's interrupt.
+pub const TICK_INTERRUPT: u16 = 54;
+/// The pin that the DAC drives: PA4 on both.
 pub const TORQUE: (usize, u32) = (0, 4);
 
-const fn place(
+const fn map_entry(
     base: u32,
     name: &'static str,
     unit: Unit,
     enable: u32,
     reset: u32,
     bit: u32,
-) -> Place {
-    Place { base, name, unit, clocked: Some((enable, reset, bit)) }
+) -> MapEntry {
+    MapEntry { base, name, unit, clocked: Some((enable, reset, bit)) }
 }
 
-const fn always(base: u32, name: &'static str, unit: Unit) -> Place {
-    Place { base, name, unit, clocked: None }
+const fn ungated(base: u32, name: &'static str, unit: Unit) -> MapEntry {
+    MapEntry { base, name, unit, clocked: None }
 }
 
 /// What a debugger may have stopped while it halts the core: bits of [`FREEZE`]. Nothing here is
@@ -146,26 +146,26 @@ static F4: &Layout = &clock_f4::LAYOUT;
 
 /// The map of an STM32G4. Which two timers are the encoder's counter and the free-running clock depends
 /// on the board; all else is in the same place.
-const fn g4_map([first, second]: [Place; 2]) -> [Place; 18] {
+const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 18] {
     [
         first,
         second,
-        place(0x4000_1000, "TIM6", Unit::Pacer, 0x58, 0x38, 4),
-        always(0x4000_3000, "IWDG", Unit::Watchdog),
-        place(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
-        place(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
-        place(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
-        always(0x4002_1000, "RCC", Unit::Clock),
-        place(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
-        place(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
-        place(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
-        place(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
-        place(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
-        place(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
-        place(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
-        place(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
-        place(0x5000_0800, "DAC1", Unit::Converter, 0x4C, 0x2C, 16),
-        always(0xE004_2000, "DBGMCU", Unit::Debug),
+        map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
+        ungated(0x4000_3000, "IWDG", Unit::Watchdog),
+        map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
+        map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
+        map_entry(0x4001_0000, "SYSCFG", Unit::Configuration, 0x60, 0x40, 0),
+        ungated(0x4002_1000, "RCC", Unit::Clock),
+        map_entry(0x4002_2000, "FLASH", Unit::Flash, 0x48, 0x28, 8),
+        map_entry(0x4800_0000, "GPIOA", Unit::Pins(0), 0x4C, 0x2C, 0),
+        map_entry(0x4800_0400, "GPIOB", Unit::Pins(1), 0x4C, 0x2C, 1),
+        map_entry(0x4800_0800, "GPIOC", Unit::Pins(2), 0x4C, 0x2C, 2),
+        map_entry(0x4800_0C00, "GPIOD", Unit::Pins(3), 0x4C, 0x2C, 3),
+        map_entry(0x4800_1000, "GPIOE", Unit::Pins(4), 0x4C, 0x2C, 4),
+        map_entry(0x4800_1400, "GPIOF", Unit::Pins(5), 0x4C, 0x2C, 5),
+        map_entry(0x4800_1800, "GPIOG", Unit::Pins(6), 0x4C, 0x2C, 6),
+        map_entry(0x5000_0800, "DAC1", Unit::Dac, 0x4C, 0x2C, 16),
+        ungated(0xE004_2000, "DBGMCU", Unit::Debug),
     ]
 }
 
@@ -178,8 +178,8 @@ pub static NUCLEO_G474RE: Chip = Chip {
     crystal: 24_000_000,
     core: 170_000_000,
     map: &g4_map([
-        place(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
-        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
+        map_entry(0x4000_0000, "TIM2", Unit::Encoder, 0x58, 0x38, 0),
+        map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x58, 0x38, 3),
     ]),
     counter: 32,
     amplifier: (1, 10),
@@ -189,15 +189,15 @@ pub static NUCLEO_G474RE: Chip = Chip {
     serial: ([(0, 2), (0, 3)], 7),
     serial_interrupt: 38,
     clock: G4,
-    converter: converter::G4,
-    face: Face::G4,
+    dac: dac::G4,
+    usart: UsartVariant::G4,
     names: names::g4,
     power: power::g4,
     flash_interface: flash::g4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: || Plain::new(&[(0x1C, 0, 0)]),
-    debug: || Plain::new(DEBUG_G4),
+    configuration: || InertRegisters::new(&[(0x1C, 0, 0)]),
+    debug: || InertRegisters::new(DEBUG_G4),
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
         0 => Pins::new(0xABFF_FFFF, 0x0C00_0000, 0x6400_0000),
@@ -214,8 +214,8 @@ pub static B_G431B_ESC1: Chip = Chip {
     coupled: (10 << 10, true),
     crystal: 8_000_000,
     map: &g4_map([
-        place(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
-        place(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
+        map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
+        map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
     ]),
     counter: 16,
     amplifier: (0, 15),
@@ -235,26 +235,26 @@ pub static STM32F405: Chip = Chip {
     crystal: 8_000_000,
     core: 168_000_000,
     map: &[
-        place(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
-        place(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
-        place(0x4000_1000, "TIM6", Unit::Pacer, 0x40, 0x20, 4),
-        always(0x4000_3000, "IWDG", Unit::Watchdog),
-        place(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
-        place(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),
-        place(0x4000_7400, "DAC", Unit::Converter, 0x40, 0x20, 29),
-        place(0x4001_3800, "SYSCFG", Unit::Configuration, 0x44, 0x24, 14),
-        place(0x4002_0000, "GPIOA", Unit::Pins(0), 0x30, 0x10, 0),
-        place(0x4002_0400, "GPIOB", Unit::Pins(1), 0x30, 0x10, 1),
-        place(0x4002_0800, "GPIOC", Unit::Pins(2), 0x30, 0x10, 2),
-        place(0x4002_0C00, "GPIOD", Unit::Pins(3), 0x30, 0x10, 3),
-        place(0x4002_1000, "GPIOE", Unit::Pins(4), 0x30, 0x10, 4),
-        place(0x4002_1400, "GPIOF", Unit::Pins(5), 0x30, 0x10, 5),
-        place(0x4002_1800, "GPIOG", Unit::Pins(6), 0x30, 0x10, 6),
-        place(0x4002_1C00, "GPIOH", Unit::Pins(7), 0x30, 0x10, 7),
-        place(0x4002_2000, "GPIOI", Unit::Pins(8), 0x30, 0x10, 8),
-        always(0x4002_3800, "RCC", Unit::Clock),
-        always(0x4002_3C00, "FLASH", Unit::Flash),
-        always(0xE004_2000, "DBGMCU", Unit::Debug),
+        map_entry(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
+        map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
+        map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x40, 0x20, 4),
+        ungated(0x4000_3000, "IWDG", Unit::Watchdog),
+        map_entry(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
+        map_entry(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),
+        map_entry(0x4000_7400, "DAC", Unit::Dac, 0x40, 0x20, 29),
+        map_entry(0x4001_3800, "SYSCFG", Unit::Configuration, 0x44, 0x24, 14),
+        map_entry(0x4002_0000, "GPIOA", Unit::Pins(0), 0x30, 0x10, 0),
+        map_entry(0x4002_0400, "GPIOB", Unit::Pins(1), 0x30, 0x10, 1),
+        map_entry(0x4002_0800, "GPIOC", Unit::Pins(2), 0x30, 0x10, 2),
+        map_entry(0x4002_0C00, "GPIOD", Unit::Pins(3), 0x30, 0x10, 3),
+        map_entry(0x4002_1000, "GPIOE", Unit::Pins(4), 0x30, 0x10, 4),
+        map_entry(0x4002_1400, "GPIOF", Unit::Pins(5), 0x30, 0x10, 5),
+        map_entry(0x4002_1800, "GPIOG", Unit::Pins(6), 0x30, 0x10, 6),
+        map_entry(0x4002_1C00, "GPIOH", Unit::Pins(7), 0x30, 0x10, 7),
+        map_entry(0x4002_2000, "GPIOI", Unit::Pins(8), 0x30, 0x10, 8),
+        ungated(0x4002_3800, "RCC", Unit::Clock),
+        ungated(0x4002_3C00, "FLASH", Unit::Flash),
+        ungated(0xE004_2000, "DBGMCU", Unit::Debug),
     ],
     counter: 16,
     amplifier: (1, 6),
@@ -264,14 +264,14 @@ pub static STM32F405: Chip = Chip {
     serial: ([(1, 10), (1, 11)], 7),
     serial_interrupt: 39,
     clock: F4,
-    converter: converter::F405,
-    face: Face::F405,
+    dac: dac::F405,
+    usart: UsartVariant::F405,
     names: names::f405,
     power: power::f405,
     flash_interface: flash::f405,
     options: 0x14,
-    configuration: || Plain::new(&[]),
-    debug: || Plain::new(DEBUG_F405),
+    configuration: || InertRegisters::new(&[]),
+    debug: || InertRegisters::new(DEBUG_F405),
     ports: |port| match port {
         0 => Pins::new(0xA800_0000, 0x0C00_0000, 0x6400_0000),
         1 => Pins::new(0x0000_0280, 0x0000_00C0, 0x0000_0100),
@@ -283,7 +283,7 @@ pub static STM32F405: Chip = Chip {
 /// TIM2 is modelled. As there, it counts without being clocked.
 pub static NETDUINO_PLUS_2: Chip = Chip {
     name: "netduinoplus2",
-    map: &[always(0x4000_0000, "TIM2", Unit::FreeClock)],
+    map: &[ungated(0x4000_0000, "TIM2", Unit::FreeClock)],
     ..STM32F405
 };
 
@@ -300,9 +300,10 @@ impl Chip {
     }
 
     /// The unit at an address.
-    pub fn at(&self, address: u32) -> Option<&'static Place> {
-        let place =
-            |chip: &'static [Place]| chip.iter().find(|place| address & !(SPAN - 1) == place.base);
-        place(self.map)
+    pub fn at(&self, address: u32) -> Option<&'static MapEntry> {
+        let map_entry = |chip: &'static [MapEntry]| {
+            chip.iter().find(|map_entry| address & !(SPAN - 1) == map_entry.base)
+        };
+        map_entry(self.map)
     }
 }

@@ -4,16 +4,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a device is, to the board.
 pub trait Device {
-    /// A sample ends: what the converter put out during it, and whether the amplifier was on. Gives
+    /// A sample ends: what the DAC put out during it, and whether the amplifier was on. Gives
     /// the counts that the encoder has turned in it.
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
 }
 
 /// A device that stands still.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Still;
+pub struct FixedDevice;
 
-impl Device for Still {
+impl Device for FixedDevice {
     fn sample(&mut self, _: Option<u16>, _: bool) -> i32 {
         0
     }

@@ -4,8 +4,8 @@
 use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
 use crate::board::Board;
-use crate::conditional::Trail;
 use crate::core::exceptions::Masks;
+use crate::it_block::PcHistory;
 use crate::processor::Halt;
 
 /// The regions of peripherals, and of the core's own registers.
@@ -26,7 +26,7 @@ pub struct Context {
     /// An exception waits for its mask to fall.
     masked: bool,
     /// Where the last instructions were.
-    pub trail: Trail,
+    pub history: PcHistory,
     /// Why the engine was stopped, if it was.
     pub halt: Option<Halt>,
 }
@@ -34,7 +34,7 @@ pub struct Context {
 impl Context {
     /// Around a board.
     pub fn new(board: Board) -> Self {
-        Self { board, deadline: 0, masked: false, trail: Trail::default(), halt: None }
+        Self { board, deadline: 0, masked: false, history: PcHistory::default(), halt: None }
     }
 
     /// A run begins, up to a time; with `masked`, also to where the masks let an exception through.
@@ -83,13 +83,13 @@ fn before_instruction(engine: &mut Engine<'_>, address: u64, size: u32) {
     let address = address as u32;
     let context = engine.get_data();
     let is_usual =
-        context.board.now < context.deadline && !context.masked && context.trail.is_next(address);
+        context.board.now < context.deadline && !context.masked && context.history.is_next(address);
     // Half of the time that a board takes is spent here: nothing else is asked in the usual way.
     if !is_usual && !goes_on(engine, address) {
         return;
     }
     let context = engine.get_data_mut();
-    context.trail.push(address, size);
+    context.history.push(address, size);
     context.board.now += 1;
 }
 
@@ -101,14 +101,14 @@ fn goes_on(engine: &mut Engine<'_>, address: u32) -> bool {
         stop(engine, Halt::Attention);
         return false;
     }
-    if !context.trail.is_next(address) {
-        let mut trail = context.trail;
-        let skipped = trail.skip(address, |from, code| {
+    if !context.history.is_next(address) {
+        let mut history = context.history;
+        let skipped = history.skip(address, |from, code| {
             // Where there is no memory, there is no block.
             let _ = engine.mem_read(from.into(), code);
         });
         let context = engine.get_data_mut();
-        context.trail = trail;
+        context.history = history;
         context.board.now += skipped;
     }
     true

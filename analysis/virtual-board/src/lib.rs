@@ -1,17 +1,17 @@
-//! A board that is a simulation down to the registers, with a program that does not know it.
+//! A board that is simulated down to the registers and runs an unmodified program.
 //!
 //! What `haptic flash` would write to an STM32G474RE, an STM32G431CB or an STM32F405RG runs here
 //! unmodified: the drivers set clocks up and wait for them, the pacing timer interrupts, the encoder's
-//! counter is turned by a simulated device, and the converter's output drives that device.
+//! counter is turned by a simulated device, and the DAC's output drives that device.
 //!
 //! - [`machine`]: the board with its power on.
-//! - [`board`]: the units, and the world that is wired to them.
-//! - [`chip`]: the chips: where what is, and which pins it uses.
+//! - [`board`]: the units, and the device that is wired to them.
+//! - [`chip`]: the chips: their memory maps, and the pins that the boards use.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile.
-//! - [`trouble`]: why a board cannot go on.
+//! - [`error`]: why a board cannot be switched on or cannot go on.
 //! - [`semihosting`]: a debugger that answers a program's calls.
 //!
 //! Time is counted in instructions, each of which takes one clock of the core; so it is the right
@@ -19,12 +19,13 @@
 
 pub mod board;
 pub mod chip;
-mod conditional;
 pub mod core;
 pub mod device;
+pub mod error;
 mod frame;
 mod hooks;
 pub mod image;
+mod it_block;
 pub mod machine;
 pub mod meter;
 mod names;
@@ -32,4 +33,3 @@ pub mod peripheral;
 pub mod processor;
 mod rtt;
 pub mod semihosting;
-pub mod trouble;

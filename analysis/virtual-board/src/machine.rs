@@ -1,6 +1,6 @@
 //! The board with its power on: instructions, exceptions between them, and time.
 
-mod serve;
+mod exception_entry;
 
 use std::path::Path;
 
@@ -11,12 +11,12 @@ use crate::chip::Chip;
 use crate::core::exceptions::{NON_MASKABLE, Number};
 use crate::core::system::FaultStatus;
 use crate::device::Device;
+use crate::error::{BoardError, BootError};
 use crate::frame::THUMB;
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
 use crate::processor::{Halt, Processor};
 use crate::rtt;
-use crate::trouble::{BootError, Trouble};
 
 /// A board with its power on.
 pub struct Machine {
@@ -115,7 +115,7 @@ impl Machine {
     ///
     /// # Errors
     /// Where the board cannot go on.
-    pub fn run_for(&mut self, instructions: u64) -> Result<(), Trouble> {
+    pub fn run_for(&mut self, instructions: u64) -> Result<(), BoardError> {
         let end = self.board().now + instructions;
         while self.board().now < end {
             self.step(end)?;
@@ -132,11 +132,11 @@ impl Machine {
         what: &'static str,
         instructions: u64,
         mut is_so: impl FnMut(&Board) -> bool,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), BoardError> {
         let end = self.board().now + instructions;
         while !is_so(self.board()) {
             if self.board().now >= end {
-                return Err(Trouble::Late { what, instructions });
+                return Err(BoardError::Late { what, instructions });
             }
             self.step(end)?;
         }
@@ -147,7 +147,7 @@ impl Machine {
     ///
     /// # Errors
     /// Where the board cannot go on, or the pacing timer does not come.
-    pub fn run_samples(&mut self, samples: u64) -> Result<(), Trouble> {
+    pub fn run_samples(&mut self, samples: u64) -> Result<(), BoardError> {
         for _ in 0..samples {
             let next = self.board().samples + 1;
             self.run_until("an update of the pacing timer", LONGEST, |board| {
@@ -164,7 +164,7 @@ impl Machine {
     }
 
     /// From one event to the next, at most up to a time.
-    fn step(&mut self, end: u64) -> Result<(), Trouble> {
+    fn step(&mut self, end: u64) -> Result<(), BoardError> {
         let board = self.core.board_mut();
         if board.clock.notice_failure() {
             board.system.exceptions.pend(NON_MASKABLE);
@@ -184,7 +184,7 @@ impl Machine {
     }
 
     /// What is due between two instructions, or has come of the last one.
-    fn catch_up(&mut self) -> Result<(), Trouble> {
+    fn catch_up(&mut self) -> Result<(), BoardError> {
         if self.core.board_mut().advance() {
             self.reset(Cause::Watchdog);
         }
@@ -193,7 +193,7 @@ impl Machine {
         }
         let at = self.core.last_address();
         if let Some(what) = self.core.board().stopped.clone() {
-            return Err(Trouble::NotModelled { what, now: self.board().now, address: at });
+            return Err(BoardError::NotModelled { what, now: self.board().now, address: at });
         }
         if let Some(address) = self.core.board_mut().bus_error.take() {
             // The access has failed; the instruction is the one that made it.
@@ -204,7 +204,7 @@ impl Machine {
     }
 
     /// What becomes of the core that has stopped executing.
-    fn halted(&mut self, halt: Halt) -> Result<(), Trouble> {
+    fn halted(&mut self, halt: Halt) -> Result<(), BoardError> {
         match halt {
             Halt::Attention => Ok(()),
             Halt::Waiting => {
@@ -216,7 +216,7 @@ impl Machine {
             Halt::NoMemory { fetch: false, address } => self.fault(FaultStatus::Data, address),
             Halt::Breakpoint if self.debugged => {
                 let (now, address) = (self.board().now, self.core.last_address());
-                Err(Trouble::Breakpoint { now, address })
+                Err(BoardError::Breakpoint { now, address })
             }
             Halt::Undefined => self.fault(FaultStatus::Undefined, 0),
             Halt::Breakpoint | Halt::Invalid => self.fault(FaultStatus::State, 0),
@@ -230,10 +230,10 @@ impl Machine {
     }
 
     /// The clock of the core and of all that it paces stands still. The watchdog has its own.
-    fn stand_still(&mut self) -> Result<(), Trouble> {
+    fn stand_still(&mut self) -> Result<(), BoardError> {
         let board = self.core.board_mut();
         let Some(due) = board.watchdog.due() else {
-            return Err(Trouble::NoClock { now: board.now });
+            return Err(BoardError::NoClock { now: board.now });
         };
         board.now = due;
         self.reset(Cause::Watchdog);

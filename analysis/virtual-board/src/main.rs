@@ -7,7 +7,7 @@
 //! | board | bytes | | world | bytes |
 //! |---|---|---|---|---|
 //! | 1 | 1 | | counts that the encoder turned by | 4 |
-//! | code of the converter, 65535 for none | 2 | | length of what follows | 2 |
+//! | code of the DAC, 65535 for none | 2 | | length of what follows | 2 |
 //! | whether the amplifier is on | 1 | | bytes for the serial port | |
 //! | length of what follows | 2 | | | |
 //! | bytes that the serial port sent | | | | |
@@ -25,7 +25,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use virtual_board::chip::Chip;
 use virtual_board::device::Device;
 use virtual_board::machine::Machine;
-use virtual_board::meter::Spread;
+use virtual_board::meter::InstructionStats;
 
 fn main() -> ExitCode {
     match run() {
@@ -37,20 +37,20 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the world and the board have for each other.
+/// Bytes on their way between the host and the board's serial port.
 #[derive(Default)]
-struct Wire {
+struct SerialQueues {
     to_board: Vec<u8>,
     from_board: Vec<u8>,
-    /// The world has ended, or this is why it cannot be heard.
+    /// The host has closed its end, or why it cannot be read.
     end: Option<io::Result<()>>,
 }
 
-/// The device is whoever is at the standard input and output.
-struct World {
+/// The plant, which the host simulates at the standard input and output.
+struct HostPlant {
     input: Stdin,
     output: BufWriter<Stdout>,
-    wire: Arc<Mutex<Wire>>,
+    serial: Arc<Mutex<SerialQueues>>,
 }
 
 fn run() -> Result<(), Box<dyn std::error::Error>> {
@@ -62,25 +62,28 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         let names = Chip::BOARDS.map(|chip| chip.name).join(", ");
         return Err(format!("there is no virtual board {board}; there are {names}").into());
     };
-    let wire = Arc::<Mutex<Wire>>::default();
-    let world =
-        World { input: io::stdin(), output: BufWriter::new(io::stdout()), wire: wire.clone() };
-    let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(world))?;
-    while step(&mut machine, &wire)?.is_none() {}
+    let serial = Arc::<Mutex<SerialQueues>>::default();
+    let plant = HostPlant {
+        input: io::stdin(),
+        output: BufWriter::new(io::stdout()),
+        serial: serial.clone(),
+    };
+    let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(plant))?;
+    while step(&mut machine, &serial)?.is_none() {}
     Ok(report(&mut machine)?)
 }
 
-/// A sample, with what comes and goes over the serial port; says when the world has ended.
+/// A sample, with what comes and goes over the serial port; says when the host has closed its end.
 fn step(
     machine: &mut Machine,
-    wire: &Mutex<Wire>,
+    serial: &Mutex<SerialQueues>,
 ) -> Result<Option<()>, Box<dyn std::error::Error>> {
     machine.run_samples(1)?;
     let board = machine.board_mut();
-    let mut wire = wire.lock().unwrap_or_else(PoisonError::into_inner);
-    board.send(&std::mem::take(&mut wire.to_board));
-    wire.from_board.extend(board.serial.take_sent());
-    Ok(wire.end.take().transpose()?)
+    let mut serial = serial.lock().unwrap_or_else(PoisonError::into_inner);
+    board.send(&std::mem::take(&mut serial.to_board));
+    serial.from_board.extend(board.serial.take_sent());
+    Ok(serial.end.take().transpose()?)
 }
 
 /// What was measured, to the standard output.
@@ -88,8 +91,8 @@ fn report(machine: &mut Machine) -> io::Result<()> {
     let mut output = BufWriter::new(io::stdout());
     output.write_all(&[0])?;
     let meter = &machine.board().meter;
-    for spread in [meter.compute(), meter.interrupt()] {
-        let Spread { count, least, most, sum } = spread;
+    for stats in [meter.compute(), meter.interrupt()] {
+        let InstructionStats { count, least, most, sum } = stats;
         for number in [count, least, most, sum] {
             output.write_all(&number.to_le_bytes())?;
         }
@@ -100,11 +103,11 @@ fn report(machine: &mut Machine) -> io::Result<()> {
     output.flush()
 }
 
-impl World {
+impl HostPlant {
     fn exchange(&mut self, code: Option<u16>, amplifier: bool) -> io::Result<i32> {
-        let mut wire = self.wire.lock().unwrap_or_else(PoisonError::into_inner);
-        let sent = wire.from_board.len().min(u16::MAX.into());
-        let bytes: Vec<u8> = wire.from_board.drain(..sent).collect();
+        let mut serial = self.serial.lock().unwrap_or_else(PoisonError::into_inner);
+        let sent = serial.from_board.len().min(u16::MAX.into());
+        let bytes: Vec<u8> = serial.from_board.drain(..sent).collect();
         self.output.write_all(&[1])?;
         self.output.write_all(&code.unwrap_or(u16::MAX).to_le_bytes())?;
         self.output.write_all(&[amplifier.into()])?;
@@ -117,12 +120,12 @@ impl World {
         self.input.read_exact(&mut length)?;
         let mut bytes = vec![0; u16::from_le_bytes(length).into()];
         self.input.read_exact(&mut bytes)?;
-        wire.to_board.extend(bytes);
+        serial.to_board.extend(bytes);
         Ok(i32::from_le_bytes(turned))
     }
 }
 
-impl Device for World {
+impl Device for HostPlant {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         match self.exchange(code, amplifier) {
             Ok(turned) => turned,
@@ -131,7 +134,7 @@ impl Device for World {
                     io::ErrorKind::UnexpectedEof => Ok(()),
                     _ => Err(error),
                 };
-                self.wire.lock().unwrap_or_else(PoisonError::into_inner).end = Some(end);
+                self.serial.lock().unwrap_or_else(PoisonError::into_inner).end = Some(end);
                 0
             }
         }

@@ -3,7 +3,7 @@
 
 /// Numbers of instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Spread {
+pub struct InstructionStats {
     /// How many there were.
     pub count: u64,
     /// The smallest.
@@ -14,13 +14,13 @@ pub struct Spread {
     pub sum: u64,
 }
 
-impl Default for Spread {
+impl Default for InstructionStats {
     fn default() -> Self {
         Self { count: 0, least: u64::MAX, most: 0, sum: 0 }
     }
 }
 
-impl Spread {
+impl InstructionStats {
     fn add(&mut self, number: u64) {
         self.count += 1;
         self.least = self.least.min(number);
@@ -32,21 +32,21 @@ impl Spread {
 /// What is measured of each tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Meter {
-    compute: Spread,
-    interrupt: Spread,
+    compute: InstructionStats,
+    interrupt: InstructionStats,
     /// When the interrupt began, and when the encoder was read in it.
     began: Option<u64>,
     read: Option<u64>,
 }
 
 impl Meter {
-    /// From reading the encoder's counter to writing the converter's code, both included.
-    pub fn compute(&self) -> Spread {
+    /// From reading the encoder's counter to writing the DAC's code, both included.
+    pub fn compute(&self) -> InstructionStats {
         self.compute
     }
 
     /// From the interrupt's first instruction to its last.
-    pub fn interrupt(&self) -> Spread {
+    pub fn interrupt(&self) -> InstructionStats {
         self.interrupt
     }
 

@@ -14,8 +14,8 @@ const TIMER: Row = &[
 /// Ports of pins.
 const PINS: Row =
     &["MODER", "OTYPER", "OSPEEDR", "PUPDR", "IDR", "ODR", "BSRR", "LCKR", "AFRL", "AFRH", "BRR"];
-/// The converter; the F4's ends with the status.
-const CONVERTER: Row = &[
+/// The DAC; the F4's ends with the status.
+const DAC: Row = &[
     "CR", "SWTRGR", "DHR12R1", "DHR12L1", "DHR8R1", "DHR12R2", "DHR12L2", "DHR8R2", "DHR12RD",
     "DHR12LD", "DHR8RD", "DOR1", "DOR2", "SR", "CCR", "MCR", "SHSR1", "SHSR2", "SHHR", "SHRR", "",
     "", "STR1", "STR2", "STMODR",
@@ -148,9 +148,9 @@ pub fn f405(unit: Unit, offset: u32) -> Option<&'static str> {
 /// What both have alike.
 fn common(unit: Unit) -> Row {
     match unit {
-        Unit::Pacer | Unit::FreeClock | Unit::Encoder => TIMER,
+        Unit::TickTimer | Unit::FreeClock | Unit::Encoder => TIMER,
         Unit::Pins(_) => PINS,
-        Unit::Converter => CONVERTER,
+        Unit::Dac => DAC,
         Unit::Watchdog => WATCHDOG,
         Unit::Debug => DEBUG,
         Unit::Clock | Unit::Power | Unit::Flash | Unit::Configuration | Unit::Serial => &[],
@@ -171,9 +171,9 @@ mod tests {
         for (unit, offset, name) in [
             (Unit::Clock, 0x9C, "CCIPR2"),
             (Unit::Clock, 0x58, "APB1ENR1"),
-            (Unit::Pacer, 0x2C, "ARR"),
-            (Unit::Converter, 0x2C, "DOR1"),
-            (Unit::Converter, 0x3C, "MCR"),
+            (Unit::TickTimer, 0x2C, "ARR"),
+            (Unit::Dac, 0x2C, "DOR1"),
+            (Unit::Dac, 0x3C, "MCR"),
             (Unit::Serial, 0x24, "RDR"),
             (Unit::Pins(1), 0x18, "BSRR"),
             (Unit::Power, 0x80, "CR5"),

@@ -146,7 +146,7 @@ impl Processor {
 
     /// Where the last instruction was.
     pub fn last_address(&self) -> u32 {
-        self.engine.get_data().trail.latest()
+        self.engine.get_data().history.latest()
     }
 
     /// What holds exceptions off.
@@ -209,7 +209,7 @@ impl Processor {
 mod tests {
     use super::*;
     use crate::chip::{Chip, STM32F405};
-    use crate::device::Still;
+    use crate::device::FixedDevice;
 
     /// `b .`
     const STAY: u16 = 0xE7FE;
@@ -221,7 +221,7 @@ mod tests {
         code: &[u16],
         registers: [u32; 4],
     ) -> (Halt, Processor) {
-        let mut core = Processor::new(Board::new(chip, Box::new(Still)));
+        let mut core = Processor::new(Board::new(chip, Box::new(FixedDevice)));
         let bytes: Vec<_> = code.iter().flat_map(|half| half.to_le_bytes()).collect();
         core.set_memory(at, &bytes);
         let names = [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2, RegisterARM::R3];

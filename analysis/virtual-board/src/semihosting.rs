@@ -10,9 +10,9 @@ use std::path::Path;
 use unicorn_engine::RegisterARM;
 
 use crate::chip::Chip;
-use crate::device::Still;
+use crate::device::FixedDevice;
+use crate::error::{BoardError, BootError};
 use crate::machine::Machine;
-use crate::trouble::{BootError, Trouble};
 
 /// The instruction of a call, `BKPT 0xAB` (section 4.1).
 const CALL: u16 = 0xBEAB;
@@ -35,8 +35,8 @@ const LONGEST: u64 = 100_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Handle {
     Console = 1,
-    Questions,
-    Answers,
+    Requests,
+    Replies,
 }
 
 /// Why a program gave no answer.
@@ -44,7 +44,7 @@ enum Handle {
 pub enum CallError {
     /// The board cannot go on.
     #[error(transparent)]
-    Trouble(#[from] Trouble),
+    BoardError(#[from] BoardError),
     /// The call is none that is answered here.
     #[error("the program calls operation {operation:#x} at {address:#010x}, which is not modelled")]
     NoOperation {
@@ -74,10 +74,10 @@ pub struct Guest {
     machine: Machine,
     /// Names of the file that it reads and of the one that it writes.
     names: [&'static str; 2],
-    questions: VecDeque<u8>,
+    requests: VecDeque<u8>,
     /// Whether there will be no more of them.
     closed: bool,
-    answers: VecDeque<u8>,
+    replies: VecDeque<u8>,
     console: Vec<u8>,
 }
 
@@ -92,10 +92,10 @@ impl Guest {
         chip: &'static Chip,
         names: [&'static str; 2],
     ) -> Result<Self, BootError> {
-        let mut machine = Machine::boot(elf, chip, Box::new(Still))?;
+        let mut machine = Machine::boot(elf, chip, Box::new(FixedDevice))?;
         machine.debugged = true;
-        let (questions, answers) = (VecDeque::new(), VecDeque::new());
-        Ok(Self { machine, names, questions, closed: false, answers, console: Vec::new() })
+        let (requests, replies) = (VecDeque::new(), VecDeque::new());
+        Ok(Self { machine, names, requests, closed: false, replies, console: Vec::new() })
     }
 
     /// The board.
@@ -107,12 +107,12 @@ impl Guest {
     ///
     /// # Errors
     /// Where it does not.
-    pub fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
-        self.questions.extend(question);
-        while self.answers.len() < answer.len() {
+    pub fn exchange(&mut self, request: &[u8], answer: &mut [u8]) -> Result<(), CallError> {
+        self.requests.extend(request);
+        while self.replies.len() < answer.len() {
             self.run()?;
         }
-        let answered: Vec<_> = self.answers.drain(..answer.len()).collect();
+        let answered: Vec<_> = self.replies.drain(..answer.len()).collect();
         answer.copy_from_slice(&answered);
         Ok(())
     }
@@ -135,13 +135,13 @@ impl Guest {
 
     /// Up to the next call, and the answer to it.
     fn run(&mut self) -> Result<(), CallError> {
-        let Err(trouble) = self.machine.run_for(LONGEST) else {
-            return Err(Trouble::Late { what: "a call", instructions: LONGEST }.into());
+        let Err(error) = self.machine.run_for(LONGEST) else {
+            return Err(BoardError::Late { what: "a call", instructions: LONGEST }.into());
         };
-        let Trouble::Breakpoint { address, .. } = trouble else { return Err(trouble.into()) };
+        let BoardError::Breakpoint { address, .. } = error else { return Err(error.into()) };
         let core = self.machine.core_mut();
         if core.memory(address, 2).as_deref() != Some(&CALL.to_le_bytes()) {
-            return Err(trouble.into());
+            return Err(error.into());
         }
         let operation = core.register(RegisterARM::R0);
         let block = core.register(RegisterARM::R1);
@@ -164,7 +164,7 @@ impl Guest {
             }
             CLOSE => handle(first).map(|_| 0),
             WRITE => self.write(handle(first), second, third),
-            READ if handle(first) == Some(Handle::Questions) => self.read(second, third)?,
+            READ if handle(first) == Some(Handle::Requests) => self.read(second, third)?,
             EXIT_EXTENDED if first == APPLICATION_EXIT => return Err(CallError::Ended(second)),
             _ => return Err(CallError::NoOperation { operation, address }),
         };
@@ -172,12 +172,9 @@ impl Guest {
     }
 
     fn open(&self, name: &[u8]) -> u32 {
-        let [questions, answers] = self.names.map(str::as_bytes);
-        let handles = [
-            (CONSOLE, Handle::Console),
-            (questions, Handle::Questions),
-            (answers, Handle::Answers),
-        ];
+        let [requests, replies] = self.names.map(str::as_bytes);
+        let handles =
+            [(CONSOLE, Handle::Console), (requests, Handle::Requests), (replies, Handle::Replies)];
         let found = handles.into_iter().find(|(known, _)| *known == name);
         found.map_or(FAILED, |(_, handle)| handle as u32)
     }
@@ -187,25 +184,25 @@ impl Guest {
         let bytes = self.machine.core_mut().memory(from, size as usize)?;
         match handle? {
             Handle::Console => self.console.extend(bytes),
-            Handle::Answers => self.answers.extend(bytes),
-            Handle::Questions => return None,
+            Handle::Replies => self.replies.extend(bytes),
+            Handle::Requests => return None,
         }
         Some(0)
     }
 
     /// Bytes that were not read: all of them at the end.
     fn read(&mut self, to: u32, size: u32) -> Result<Option<u32>, CallError> {
-        if self.questions.is_empty() && !self.closed {
+        if self.requests.is_empty() && !self.closed {
             return Err(CallError::Waiting);
         }
-        let count = self.questions.len().min(size as usize);
-        let bytes: Vec<_> = self.questions.drain(..count).collect();
+        let count = self.requests.len().min(size as usize);
+        let bytes: Vec<_> = self.requests.drain(..count).collect();
         let is_there = self.machine.core_mut().set_memory(to, &bytes);
         Ok(is_there.then_some(size - count as u32))
     }
 }
 
 fn handle(number: u32) -> Option<Handle> {
-    let handles = [Handle::Console, Handle::Questions, Handle::Answers];
+    let handles = [Handle::Console, Handle::Requests, Handle::Replies];
     handles.into_iter().find(|handle| *handle as u32 == number)
 }

@@ -1,16 +1,16 @@
-//! What tests and measurements ask of the [`firmware`] on the emulated board, and what answers there.
+//! Requests of tests and measurements to the [`firmware`] on the emulated board, and the servers there.
 //!
-//! A host puts a scene to the board as words: to have it judged ([`question`]), to have its servo run
-//! ([`play`]), or to have its torques and their instructions ([`trial`]; other sines than the sweep's,
-//! [`sines`], too). On the board a `server` answers. No program that drives a motor needs any of this.
+//! A host sends a scene to the board as words: to certify it ([`scene_codec`]), to run its servo
+//! ([`loop_request`]), or to measure the instructions of its torques ([`bench_request`]) and of sines
+//! ([`sines`]). On the board a `server` answers. No program that drives a motor needs any of this.
 #![cfg_attr(not(test), no_std)]
 
-pub mod play;
-pub mod question;
+pub mod bench_request;
+pub mod loop_request;
+pub mod scene_codec;
 pub mod sines;
-pub mod trial;
 
-mod words;
+mod transducer_codec;
 
 #[cfg(all(target_os = "none", feature = "emulated"))]
 pub mod server;

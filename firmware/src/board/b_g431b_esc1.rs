@@ -5,7 +5,7 @@
 //!
 //! The board's own power stage stays off: all six inputs of its gate drivers are driven low. It is
 //! a speed controller and has no input for an analogue current amplifier; what this firmware needs of it
-//! is reachable, but both pins of the DAC have other purposes (see [`CONVERTER`]).
+//! is reachable, but both pins of the DAC have other purposes (see [`DAC`]).
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
@@ -16,9 +16,9 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::converter::Converter;
-use super::stm32::line::Line;
-use super::stm32::{Connected, clock_170, quadrature, serial};
+use super::stm32::dac::DacChannel;
+use super::stm32::output_pin::OutputPin;
+use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
@@ -35,11 +35,11 @@ pub const ENCODER_CLOCK: f64 = 170e6;
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that tells how late the servo is: TIM2, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM2;
-/// The converter: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
+/// The DAC: DAC1's channel 1 on PA4. The board uses PA4 to sense the back-EMF of its phase 1,
 /// so there is no pad: the wire to the amplifier is soldered to the pin's side of that divider, and
 /// nothing is connected to the board's motor output 1. Channel 2's pin PA5 is in the middle of a
 /// current sense amplifier.
-pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
 /// What the output buffer drives: 0.2 V from either rail (DS12589), at the lowest that the
 /// board's 3.3 V can be, three per cent below.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
@@ -48,7 +48,7 @@ pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PA15, which is the pad PWM of J3 and the only one that is neither the encoder's nor
 /// the serial port's. In reset it belongs to the debug port, and the chip pulls it up by 25 to 55 kΩ:
 /// the resistor to ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOA, pin: 15 };
+pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOA, pin: 15 };
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
@@ -60,7 +60,7 @@ pub fn clocks() -> Config {
 }
 
 /// Gives each pin its purpose; the amplifier is off.
-pub fn connect(chip: Peripherals) -> Connected {
+pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
@@ -79,8 +79,8 @@ pub fn connect(chip: Peripherals) -> Connected {
         Timer::new(chip.TIM2),
         Timer::new(chip.TIM6),
     ));
-    CONVERTER.connect(chip.DAC1, chip.PA4);
-    Connected {
+    DAC.connect(chip.DAC1, chip.PA4);
+    BoardPeripherals {
         // The virtual serial port of the debug probe that the board comes with; without the probe,
         // the pads TX and RX of J3.
         serial: serial::open(chip.USART2, chip.PB4, chip.PB3, Interrupts),

@@ -7,8 +7,8 @@
 //! All of the firmware's `unsafe` is in the modules of the boards.
 
 pub mod input_filter;
+pub mod lockstep_protocol;
 pub mod report;
-pub mod shown;
 pub mod sim_hardware;
 
 #[cfg(all(target_os = "none", feature = "board-qemu"))]
@@ -25,15 +25,15 @@ pub mod critical;
 mod fatal;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
+pub mod fault_memory;
+#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
+#[allow(unsafe_code)]
 pub mod isr_cell;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 pub mod link;
 #[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-#[allow(unsafe_code)]
-pub mod retained;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 pub mod servo_isr;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]

@@ -12,9 +12,9 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::converter::Converter;
-use super::stm32::line::Line;
-use super::stm32::{Connected, clock_170, quadrature, serial};
+use super::stm32::dac::DacChannel;
+use super::stm32::output_pin::OutputPin;
+use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
@@ -31,9 +31,9 @@ pub const ENCODER_CLOCK: f64 = 170e6;
 pub const ENCODER_PULL: Pull = Pull::Up;
 /// The clock that tells how late the servo is: TIM5, the other one with 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The converter: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
+/// The DAC: DAC1's channel 1, whose pin PA4 is A2 on the Arduino header. Channel 2's pin PA5
 /// drives the board's LED.
-pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
 /// What the output buffer drives: 0.2 V from either rail (DS12288), at the lowest that the
 /// board's 3.3 V can be, three per cent below.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
@@ -41,7 +41,7 @@ pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 pub const TIMER_TRIGGER: u8 = 7;
 /// The amplifier: PB10, which is D6 on the Arduino header. It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 10 };
+pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 10 };
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
@@ -53,7 +53,7 @@ pub fn clocks() -> Config {
 }
 
 /// Gives each pin its purpose; the amplifier is off.
-pub fn connect(chip: Peripherals) -> Connected {
+pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
@@ -63,8 +63,8 @@ pub fn connect(chip: Peripherals) -> Connected {
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
     ));
-    CONVERTER.connect(chip.DAC1, chip.PA4);
-    Connected {
+    DAC.connect(chip.DAC1, chip.PA4);
+    BoardPeripherals {
         // The virtual serial port of the board's debug probe.
         serial: serial::open(chip.USART2, chip.PA3, chip.PA2, Interrupts),
     }

@@ -11,7 +11,7 @@ use crate::servo_loop::Hardware;
 pub trait SimIo {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;
-    /// The converter is given a code.
+    /// The DAC is given a code.
     fn write(&mut self, code: DacCode);
     /// The amplifier is switched.
     fn amplifier(&mut self, _on: bool) {}
@@ -20,7 +20,7 @@ pub trait SimIo {
 /// A board whose ticks take no time, which is fresh from power-on and needs no watchdog.
 #[derive(Clone, Debug)]
 pub struct SimHardware<L> {
-    /// Encoder, converter and amplifier.
+    /// Encoder, DAC and amplifier.
     pub lines: L,
     /// Timer counts in a period.
     period: u32,
@@ -58,11 +58,11 @@ impl<L: SimIo> Hardware for SimHardware<L> {
 }
 
 impl<L: SimIo> Startup for SimHardware<L> {
-    fn zero(&mut self) {}
+    fn zero_encoder(&mut self) {}
 
-    fn guard(&mut self) {}
+    fn start_watchdog(&mut self) {}
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         FaultRecord::NOTHING
     }
 

@@ -14,7 +14,7 @@ unsafe extern "C" {
 }
 
 /// Bytes that have not been written since the reset.
-pub fn left() -> u32 {
+pub fn unused() -> u32 {
     let (bottom, top) = (&raw const BOTTOM, &raw const TOP);
     let mut lowest = bottom;
     // SAFETY: reads words between the ends of the stack, which are RAM and which nothing writes

@@ -19,9 +19,9 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::converter::Converter;
-use super::stm32::line::Line;
-use super::stm32::{Connected, quadrature, serial};
+use super::stm32::dac::DacChannel;
+use super::stm32::output_pin::OutputPin;
+use super::stm32::{BoardPeripherals, quadrature, serial};
 use crate::dac::OutputRange;
 
 /// Its name as a feature and for `haptic flash`.
@@ -38,9 +38,9 @@ pub const ENCODER_CLOCK: f64 = 84e6;
 pub const ENCODER_PULL: Pull = Pull::None;
 /// The clock that tells how late the servo is: TIM5, which has 32 bits.
 pub const CLOCK: pac::timer::TimGp32 = pac::TIM5;
-/// The converter: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
+/// The DAC: channel 1, whose pin PA4 is the chip select of the SPI header (HW_SPI_PIN_NSS).
 /// Channel 2's pin PA5 is an analogue input of the communication header.
-pub const CONVERTER: Converter = Converter { registers: pac::DAC1, channel: 0 };
+pub const DAC: DacChannel = DacChannel { registers: pac::DAC1, channel: 0 };
 /// What the output buffer drives: 0.2 V from either rail (DS8626), at the lowest that the
 /// board's 3.3 V can be, three per cent below.
 pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
@@ -48,7 +48,7 @@ pub const DAC_RANGE: OutputRange = OutputRange { supply: 3.2, headroom: 0.2 };
 pub const TIMER_TRIGGER: u8 = 0;
 /// The amplifier: PB6, the signal of the servo connector (HW_ICU_PIN). It floats while the chip is in reset, so
 /// the amplifier's input needs a pull-down resistor.
-pub const AMPLIFIER: Line = Line { port: pac::GPIOB, pin: 6 };
+pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOB, pin: 6 };
 
 bind_interrupts!(struct Interrupts {
     USART3 => BufferedInterruptHandler<USART3>;
@@ -75,7 +75,7 @@ pub fn clocks() -> Config {
 }
 
 /// Gives each pin its purpose; the amplifier is off.
-pub fn connect(chip: Peripherals) -> Connected {
+pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
     // The drivers set clocks and pins up and would undo that when dropped; from here on the servo
     // works with the registers.
     core::mem::forget((
@@ -89,8 +89,8 @@ pub fn connect(chip: Peripherals) -> Connected {
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
     ));
-    CONVERTER.connect(chip.DAC1, chip.PA4);
-    Connected {
+    DAC.connect(chip.DAC1, chip.PA4);
+    BoardPeripherals {
         // TX and RX of the communication header.
         serial: serial::open(chip.USART3, chip.PB11, chip.PB10, Interrupts),
     }

@@ -24,7 +24,7 @@ pub enum SweepError {
         /// Half the sampling rate in Hz, which it must be below.
         largest: f64,
     },
-    /// An amplitude that the converter cannot give.
+    /// An amplitude that the DAC cannot give.
     Amplitude {
         /// Which tone.
         tone: usize,

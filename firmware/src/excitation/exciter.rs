@@ -7,7 +7,7 @@ use crate::dac::DacCode;
 /// What a sweep gives for one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Excitation {
-    /// What the converter shall hold.
+    /// What the DAC shall hold.
     pub code: DacCode,
     /// The tone that this sample belongs to the measured part of; `None` while the device settles
     /// and after the sweep.

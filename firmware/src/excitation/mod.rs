@@ -26,7 +26,7 @@
 //! let mut exciter = Exciter::new(&SWEEP);
 //! assert_eq!(exciter.next().code.offset(), 0);
 //!
-//! // More than the converter can give does not become a sweep.
+//! // More than the DAC can give does not become a sweep.
 //! let loud = Tone { frequency: 64.0, amplitude: 2.5, settle: 8, measured: 16 };
 //! let error = Sweep::new(0.001, &MOTOR, [loud]).unwrap_err();
 //! assert!(error.to_string().contains("an amplitude of 2.5 N m"));
@@ -70,7 +70,7 @@ pub struct Tone {
     pub measured: u32,
 }
 
-/// Tones one after the other, checked: every one within the converter's range and a whole number
+/// Tones one after the other, checked: every one within the DAC's range and a whole number
 /// of samples long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep<const N: usize> {
@@ -138,7 +138,7 @@ impl<const N: usize> Sweep<N> {
         self.period
     }
 
-    /// Motor torque in N m at the converter's largest code.
+    /// Motor torque in N m at the DAC's largest code.
     pub const fn full_scale_torque(&self) -> f64 {
         self.full_scale_torque
     }

@@ -1,7 +1,7 @@
 //! The sine of a part of a turn, by a polynomial.
 
 /// The coefficients of `u, u^3, u^5` whose largest error on a quarter of a turn is the least that
-/// there is, 7e-5: a seventh of a converter's code at full scale.
+/// there is, 7e-5: a seventh of a DAC's code at full scale.
 pub const QUINTIC: [f32; 3] = [6.281_28, -41.095_24, 73.585_51];
 
 /// The sine of `turn` turns, from 0 to 1, by an odd polynomial of the angle to the nearest zero.

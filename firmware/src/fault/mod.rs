@@ -3,9 +3,9 @@
 //! A fault is not a [limit reason](crate::torque::LimitReason), which only says why an output is
 //! less than was asked for. After a fault the motor stays off until somebody arms it again.
 
-mod retained;
+mod record;
 
-pub use retained::FaultRecord;
+pub use record::FaultRecord;
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! One tick: encoder count in, converter code out.
+//! One tick: encoder count in, DAC code out.
 
 mod clamp;
 mod prepared_servo;
@@ -24,7 +24,7 @@ use crate::torque::{LimitReason, Limiter};
 /// What a tick gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// What the converter shall hold.
+    /// What the DAC shall hold.
     pub code: DacCode,
     /// Why this is less than the scene asked for.
     pub limit: LimitReason,
@@ -103,7 +103,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         })
     }
 
-    /// One tick. Angle, coupling and environment solved with the limited torque, converter code:
+    /// One tick. Angle, coupling and environment solved with the limited torque, DAC code:
     /// no division, no allocation, and nothing that could panic.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount) -> Output {
@@ -186,7 +186,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         Output { code: DacCode::from_low_bits(code), limit }
     }
 
-    /// One tick between an encoder and a converter that are at hand.
+    /// One tick between an encoder and a DAC that are at hand.
     #[inline(always)]
     pub fn update(&mut self, encoder: &mut impl Encoder, dac: &mut impl Dac) -> LimitReason {
         let output = self.tick(encoder.read());

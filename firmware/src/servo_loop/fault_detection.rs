@@ -7,8 +7,8 @@ use crate::environment::MAX_DELAY;
 use crate::fault::FaultRecord;
 use crate::output_timing::OutputTiming;
 
-/// Ticks in a row without trouble before the servo may be armed.
-const CALM: u32 = MAX_DELAY as u32 + 2;
+/// Ticks in a row without a fault before the servo may be armed.
+const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// The code of a servo that is not simply running. Whatever the rest of the program thinks:
@@ -23,7 +23,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// in it. Gives the number of the tick.
     #[cold]
     #[inline(never)]
-    pub(super) fn begin_late(
+    pub(super) fn check_tick_timing(
         &mut self,
         passed: u32,
         raw: RawCount,
@@ -69,7 +69,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A step that is too far for one period; it may not be for those that passed.
     #[cold]
     #[inline(never)]
-    pub(super) fn jump(
+    pub(super) fn check_jump(
         &mut self,
         passed: u32,
         step: i32,
@@ -86,7 +86,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A torque that is not a number.
     #[cold]
     #[inline(never)]
-    pub(super) fn not_a_number(
+    pub(super) fn stop_on_nan(
         &mut self,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
@@ -99,7 +99,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// of: no worst period covers that.
     #[cold]
     #[inline(never)]
-    pub(super) fn long(
+    pub(super) fn check_longest_tick(
         &mut self,
         elapsed: u32,
         hardware: &mut impl Hardware,
@@ -115,14 +115,14 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         0
     }
 
-    /// The host was heard.
-    pub(super) fn hear(&mut self) {
+    /// A message from the host has come.
+    pub(super) fn on_host_message(&mut self) {
         self.link_lost = false;
         self.link_deadline = self.tick.wrapping_add(self.link_timeout);
     }
 
-    /// Sees to it that the host is not silent for too long.
-    pub(super) fn watch_link(&mut self) {
+    /// Detects a host that is silent for too long, and fades the torque out if the policy says so.
+    pub(super) fn check_link(&mut self) {
         if self.tick.wrapping_sub(self.link_deadline).cast_signed() < 0 {
             return;
         }
@@ -134,22 +134,22 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.link_lost = true;
         if self.link == LinkPolicy::Release && self.state.is_armed() {
             self.ramp = ARMING;
-            self.begin_fading_out(AfterFade::Stop(self.lost()));
+            self.begin_fading_out(AfterFade::Stop(self.link_lost_fault()));
         }
     }
 
-    fn lost(&self) -> Fault {
+    fn link_lost_fault(&self) -> Fault {
         Fault::LinkLost { allowed: self.link_timeout }
     }
 
-    /// Notes trouble; where there is torque, it stops the servo.
+    /// Records a fault; where there is torque, it stops the servo.
     fn fail(
         &mut self,
         fault: Fault,
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) {
-        self.fault_detection = Some(fault);
+        self.detected_fault = Some(fault);
         self.fault_free_ticks = 0;
         if self.state.is_armed() {
             self.stop(fault, hardware, inbox);
@@ -170,14 +170,14 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fault = Some(fault);
         let count = self.rendering.servo().low_count();
         hardware.store_fault(&FaultRecord { fault, tick: self.tick, count }.encode());
-        inbox.tell(Notice::Stopped(fault));
+        inbox.notify(Notice::Stopped(fault));
     }
 
-    /// What would stop the servo again at once.
-    pub(super) fn persists(&self) -> Option<Fault> {
+    /// The fault that would stop the servo again at once.
+    pub(super) fn persistent_fault(&self) -> Option<Fault> {
         if self.link == LinkPolicy::Release && self.link_lost {
-            return Some(self.lost());
+            return Some(self.link_lost_fault());
         }
-        self.fault_detection.filter(|_| self.fault_free_ticks < CALM)
+        self.detected_fault.filter(|_| self.fault_free_ticks < FAULT_FREE_TICKS)
     }
 }

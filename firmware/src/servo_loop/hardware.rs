@@ -13,7 +13,7 @@ pub const BEGAN_LATE: u32 = 0;
 pub trait Hardware {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;
-    /// Gives a code to the converter; when it reaches the motor is the mode's matter.
+    /// Gives a code to the DAC; when it reaches the motor is the mode's matter.
     fn write(&mut self, code: DacCode);
     /// Switches the motor's amplifier.
     fn amplifier(&mut self, on: bool);

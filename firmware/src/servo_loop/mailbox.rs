@@ -12,7 +12,7 @@ const ARM: u32 = 1;
 const DISARM: u32 = 2;
 const STATUS: u32 = 4;
 const SET: u32 = 8;
-const HEARD: u32 = 16;
+const HOST_ALIVE: u32 = 16;
 
 /// Sets that wait: one, and the place that a queue keeps free.
 const SETS: usize = 2;
@@ -25,21 +25,21 @@ pub struct Mailbox<R> {
     sets: Queue<R, SETS>,
     notices: Queue<Notice, NOTICES>,
     /// What is asked for; the interrupt looks at nothing else in an ordinary tick.
-    asked: AtomicU32,
+    pending: AtomicU32,
 }
 
 impl<R> Mailbox<R> {
     /// An empty mailbox.
     pub const fn new() -> Self {
-        Self { sets: Queue::new(), notices: Queue::new(), asked: AtomicU32::new(0) }
+        Self { sets: Queue::new(), notices: Queue::new(), pending: AtomicU32::new(0) }
     }
 
     /// The task's end and the interrupt's end.
     pub fn split(&mut self) -> (Requests<'_, R>, Inbox<'_, R>) {
         let (submit, sets) = self.sets.split();
-        let (tell, notices) = self.notices.split();
-        let asked = &self.asked;
-        (Requests { submit, notices, asked }, Inbox { sets, tell, asked })
+        let (notice_sender, notices) = self.notices.split();
+        let pending = &self.pending;
+        (Requests { submit, notices, pending }, Inbox { sets, notice_sender, pending })
     }
 }
 
@@ -53,29 +53,29 @@ impl<R> Default for Mailbox<R> {
 pub struct Requests<'a, R> {
     submit: Producer<'a, R>,
     notices: Consumer<'a, Notice>,
-    asked: &'a AtomicU32,
+    pending: &'a AtomicU32,
 }
 
 impl<R> Requests<'_, R> {
     /// Asks for the servo to be armed; [`Notice::Armed`] or [`Notice::NotArmed`] answers.
     pub fn arm(&self) {
-        self.ask(ARM);
+        self.post(ARM);
     }
 
     /// Asks for the clamp to be closed and the amplifier switched off; [`Notice::Disarmed`]
     /// answers. Asked for together with arming, disarming wins.
     pub fn disarm(&self) {
-        self.ask(DISARM);
+        self.post(DISARM);
     }
 
     /// Asks for a [`Notice::Status`].
-    pub fn ask_status(&self) {
-        self.ask(STATUS);
+    pub fn request_status(&self) {
+        self.post(STATUS);
     }
 
-    /// Says that the host was heard.
-    pub fn heard(&self) {
-        self.ask(HEARD);
+    /// Reports a message from the host.
+    pub fn host_alive(&self) {
+        self.post(HOST_ALIVE);
     }
 
     /// Gives a set to be swapped in as a whole; [`Notice::Applied`] answers. It has to be of the
@@ -85,7 +85,7 @@ impl<R> Requests<'_, R> {
     /// The set itself, where the one before it is still waiting.
     pub fn submit(&mut self, set: R) -> Result<(), R> {
         self.submit.enqueue(set)?;
-        self.ask(SET);
+        self.post(SET);
         Ok(())
     }
 
@@ -94,42 +94,42 @@ impl<R> Requests<'_, R> {
         self.notices.dequeue()
     }
 
-    fn ask(&self, request: u32) {
-        self.asked.fetch_or(request, Ordering::Release);
+    fn post(&self, request: u32) {
+        self.pending.fetch_or(request, Ordering::Release);
     }
 }
 
 /// The interrupt's end.
 pub struct Inbox<'a, R> {
     sets: Consumer<'a, R>,
-    tell: Producer<'a, Notice>,
-    asked: &'a AtomicU32,
+    notice_sender: Producer<'a, Notice>,
+    pending: &'a AtomicU32,
 }
 
-/// What was asked for since the last tick.
+/// Requests since the last tick.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
+pub(super) struct PendingRequests {
     pub arm: bool,
     pub disarm: bool,
     pub status: bool,
-    pub heard: bool,
+    pub host_alive: bool,
 }
 
 impl<R> Inbox<'_, R> {
     /// What is asked for, as a word; zero where it is nothing.
     #[inline(always)]
-    pub(super) fn asked(&self) -> u32 {
-        self.asked.load(Ordering::Relaxed)
+    pub(super) fn pending(&self) -> u32 {
+        self.pending.load(Ordering::Relaxed)
     }
 
     /// What is asked for, once.
-    pub(super) fn take(&self) -> Asked {
-        let asked = self.asked.swap(0, Ordering::Acquire);
-        Asked {
-            arm: asked & (ARM | DISARM) == ARM,
-            disarm: asked & DISARM != 0,
-            status: asked & STATUS != 0,
-            heard: asked & HEARD != 0,
+    pub(super) fn take(&self) -> PendingRequests {
+        let pending = self.pending.swap(0, Ordering::Acquire);
+        PendingRequests {
+            arm: pending & (ARM | DISARM) == ARM,
+            disarm: pending & DISARM != 0,
+            status: pending & STATUS != 0,
+            host_alive: pending & HOST_ALIVE != 0,
         }
     }
 
@@ -144,7 +144,7 @@ impl<R> Inbox<'_, R> {
     }
 
     /// Tells the low-priority side; where it has left too many notices unread, this one is lost.
-    pub(super) fn tell(&mut self, notice: Notice) {
-        let _ = self.tell.enqueue(notice);
+    pub(super) fn notify(&mut self, notice: Notice) {
+        let _ = self.notice_sender.enqueue(notice);
     }
 }

@@ -1,7 +1,7 @@
 //! What one interrupt of the servo's timer does, on every board.
 //!
 //! ```text
-//! count -> servo -> code -> converter     in every tick, whatever else is the matter
+//! count -> servo -> code -> DAC           in every tick, whatever else is the matter
 //! disarmed -> fading in -> running -> fading out -> disarmed, or settling -> fading in
 //!     any of them -> faulted -> (armed again) -> fading in
 //! ```
@@ -79,7 +79,7 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     /// Ticks until the samples of a new set have filled its memory.
     settling: u32,
     /// What was last found that stops a servo, and the ticks since then without amplifier.
-    fault_detection: Option<Fault>,
+    detected_fault: Option<Fault>,
     fault_free_ticks: u32,
     link: LinkPolicy,
     /// Ticks of silence after which the host counts as lost, if it can.
@@ -92,13 +92,13 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A cycle around a rendering, disarmed.
     ///
-    /// `period` is the number of timer counts in a period, and `left` the fault that was left from
+    /// `period` is the number of timer counts in a period, and `previous_fault` the fault from
     /// before the last reset.
     pub fn new(
         rendering: PreparedServo<E, N, M>,
         options: &Options,
         period: u32,
-        left: Option<Fault>,
+        previous_fault: Option<Fault>,
     ) -> Self {
         let link_timeout = match options.link {
             LinkPolicy::Ignore => TimingLimits::LONGEST,
@@ -111,7 +111,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             energy: EnergyMonitor::default(),
             state: State::Disarmed,
             after_fade: AfterFade::Release,
-            fault: left,
+            fault: previous_fault,
             tick: 0,
             period,
             late: MissedUpdates::default(),
@@ -120,7 +120,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             was_late: false,
             ramp: swap::ARMING,
             settling: 0,
-            fault_detection: None,
+            detected_fault: None,
             fault_free_ticks: 0,
             link: options.link,
             link_timeout,
@@ -145,7 +145,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         // cost three or four instructions each. And before there is a torque, or after there is a
         // code: what a call must not touch costs an instruction or two to be kept from it.
         if passed != 1 {
-            tick = self.begin_late(passed, raw, hardware, inbox);
+            tick = self.check_tick_timing(passed, raw, hardware, inbox);
         }
         // Control: from the count to the code of this tick.
         let before = self.rendering.servo().low_count();
@@ -153,30 +153,30 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let count = self.rendering.servo().low_count();
         let step = count.wrapping_sub(before);
         if self.rendering.timing_limits().is_too_far(step) {
-            self.jump(passed, step, hardware, inbox);
+            self.check_jump(passed, step, hardware, inbox);
         }
         if output.limit == LimitReason::NotANumber {
-            self.not_a_number(hardware, inbox);
+            self.stop_on_nan(hardware, inbox);
         }
-        let mut attend = inbox.asked();
+        let mut pending = inbox.pending();
         let mut code = output.code;
         if self.state != State::Running {
             code = self.unless_disarmed(code);
-            attend = u32::MAX;
+            pending = u32::MAX;
         }
         // Output: latched by the timer at the beginning of the next period, where torques are.
         hardware.write(code);
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
         let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
-        if attend != 0 || link_due {
+        if pending != 0 || link_due {
             self.run_state_machine(hardware, inbox, frames.dropped());
         }
         hardware.feed_watchdog();
         let elapsed = hardware.time_in_period();
         let mut slack = self.period.wrapping_sub(elapsed);
         if elapsed > self.longest {
-            slack = self.long(elapsed, hardware, inbox);
+            slack = self.check_longest_tick(elapsed, hardware, inbox);
         }
         frames.push(Frame { tick, count, code, limit: output.limit, state: self.state, slack });
     }

@@ -15,15 +15,15 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
         dropped: u32,
     ) {
-        let asked = inbox.take();
-        if asked.heard {
-            self.hear();
+        let requests = inbox.take();
+        if requests.host_alive {
+            self.on_host_message();
         }
-        self.watch_link();
-        if asked.arm {
+        self.check_link();
+        if requests.arm {
             self.arm(hardware, inbox);
         }
-        if asked.disarm {
+        if requests.disarm {
             self.disarm(inbox);
         }
         match self.state {
@@ -31,17 +31,17 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             State::FadingIn => self.fade_in(inbox),
             State::FadingOut => self.fade_out(hardware, inbox),
             State::Settling => self.settle(inbox),
-            State::Disarmed | State::Faulted => self.rest(inbox),
+            State::Disarmed | State::Faulted => self.idle(inbox),
         }
-        if asked.status {
-            inbox.tell(Notice::Status(self.status(dropped)));
+        if requests.status {
+            inbox.notify(Notice::Status(self.status(dropped)));
         }
     }
 
     fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if !self.state.is_armed() {
-            if let Some(fault) = self.persists() {
-                return inbox.tell(Notice::NotArmed(fault));
+            if let Some(fault) = self.persistent_fault() {
+                return inbox.notify(Notice::NotArmed(fault));
             }
             self.fault = None;
             hardware.store_fault(&FaultRecord::NOTHING);
@@ -54,13 +54,13 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
         match (self.state, self.after_fade) {
             (State::FadingOut, AfterFade::Stop(fault)) => {
-                return inbox.tell(Notice::NotArmed(fault));
+                return inbox.notify(Notice::NotArmed(fault));
             }
             (State::FadingOut, AfterFade::Release) => self.state = State::FadingIn,
             _ => {}
         }
         self.after_fade = AfterFade::Render;
-        inbox.tell(Notice::Armed);
+        inbox.notify(Notice::Armed);
     }
 
     fn disarm(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
@@ -68,7 +68,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.ramp = ARMING;
             self.begin_fading_out(AfterFade::Release);
         } else {
-            inbox.tell(Notice::Disarmed);
+            inbox.notify(Notice::Disarmed);
         }
     }
 
@@ -118,7 +118,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             AfterFade::Release => {
                 hardware.amplifier(false);
                 self.state = State::Disarmed;
-                inbox.tell(Notice::Disarmed);
+                inbox.notify(Notice::Disarmed);
             }
             AfterFade::Stop(fault) => self.stop(fault, hardware, inbox),
         }
@@ -135,7 +135,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     /// A tick without amplifier.
-    fn rest(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+    fn idle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         self.swap(inbox);
         self.fault_free_ticks = self.fault_free_ticks.saturating_add(1);
     }
@@ -147,7 +147,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         set.servo_mut().take_position_from(self.rendering.servo());
         set.rest_here();
         self.rendering = set;
-        inbox.tell(Notice::Applied);
+        inbox.notify(Notice::Applied);
         true
     }
 

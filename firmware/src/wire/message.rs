@@ -36,10 +36,10 @@ pub type Id = u16;
 /// What a host asks for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToBoard {
-    /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::Remembered`] where a fault
+    /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] where a fault
     /// is, and [`ToHost::Board`]. The same in every version of the protocol.
     Hello,
-    /// Which numbers are running? Answered by [`ToHost::Running`].
+    /// Which numbers are running? Answered by [`ToHost::ActiveParameters`].
     Get,
     /// How is it going? Answered by [`ToHost::Status`].
     Status,
@@ -79,8 +79,8 @@ pub enum ToHost<S> {
     },
     /// What the numbers of the other messages mean on this board.
     Board(Board),
-    /// The numbers that run.
-    Running(Running),
+    /// The active parameters.
+    ActiveParameters(ActiveParameters),
     /// How it is going.
     Status(Status),
     /// What became of a request.
@@ -91,7 +91,7 @@ pub enum ToHost<S> {
         outcome: Outcome,
     },
     /// What stopped this board before it was last started.
-    Remembered(Remembered),
+    PreviousFault(PreviousFault),
     /// Ticks that were asked for with [`ToBoard::Stream`].
     Telemetry(Batch),
     /// The scene that runs, and how.
@@ -115,9 +115,9 @@ pub struct Board {
     pub longest_gap: f64,
 }
 
-/// The numbers that run.
+/// The active parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Running {
+pub struct ActiveParameters {
     /// Sets that were swapped in since the start; wraps.
     pub sets: u32,
     /// Damping in N m s/rad that the device may lose with these numbers running; `None`: not known.
@@ -238,7 +238,7 @@ impl fmt::Display for FaultCode {
 
 /// A fault of before the last reset, and when and where it happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Remembered {
+pub struct PreviousFault {
     /// What happened.
     pub fault: FaultCode,
     /// In which tick; 0 where that is not known.
@@ -247,7 +247,7 @@ pub struct Remembered {
     pub count: i32,
 }
 
-impl From<FaultRecord> for Remembered {
+impl From<FaultRecord> for PreviousFault {
     fn from(record: FaultRecord) -> Self {
         Self { fault: record.fault.into(), tick: record.tick, count: record.count }
     }

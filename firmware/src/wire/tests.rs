@@ -11,7 +11,7 @@ use super::*;
 const LONGEST: usize = 300;
 type Message = Vec<u8, LONGEST>;
 /// Two bytes say how long it is, four are its checksum.
-type Ear = Decoder<{ LONGEST + 6 }>;
+type FrameDecoder = Decoder<{ LONGEST + 6 }>;
 
 /// What a decoder hears in noise.
 const NOTHING: [Message; 0] = [];
@@ -21,8 +21,8 @@ fn framed(message: &Message) -> std::vec::Vec<u8> {
     encode(message, &mut buffer).unwrap().to_vec()
 }
 
-fn hear(ear: &mut Ear, bytes: &[u8]) -> std::vec::Vec<Message> {
-    bytes.iter().filter_map(|&byte| ear.push::<Message>(byte)).collect()
+fn decode(decoder: &mut FrameDecoder, bytes: &[u8]) -> std::vec::Vec<Message> {
+    bytes.iter().filter_map(|&byte| decoder.push::<Message>(byte)).collect()
 }
 
 fn message() -> impl Strategy<Value = Message> {
@@ -55,41 +55,41 @@ fn a_frame_that_does_not_fit_is_an_error_at_every_size() {
 
 #[test]
 fn each_way_to_be_spoilt_has_its_count() {
-    let mut ear = Ear::new();
+    let mut decoder = FrameDecoder::new();
     let frame = framed(&Message::from_slice(&[1, 2, 3]).unwrap());
     // Only three of the checksum's four bytes.
-    assert_eq!(hear(&mut ear, &[4, 9, 9, 9, 0]), NOTHING);
+    assert_eq!(decode(&mut decoder, &[4, 9, 9, 9, 0]), NOTHING);
     // The end of a block is missing.
-    assert_eq!(hear(&mut ear, &[9, 9, 9, 0]), NOTHING);
-    assert_eq!(ear.discarded(), Discarded { broken: 2, ..Discarded::default() });
+    assert_eq!(decode(&mut decoder, &[9, 9, 9, 0]), NOTHING);
+    assert_eq!(decoder.discarded(), Discarded { broken: 2, ..Discarded::default() });
     let mut wrong = frame.clone();
     wrong[3] ^= 0x40;
-    assert_eq!(hear(&mut ear, &wrong), NOTHING);
-    assert_eq!(ear.discarded().checksum, 1);
+    assert_eq!(decode(&mut decoder, &wrong), NOTHING);
+    assert_eq!(decoder.discarded().checksum, 1);
     let mut buffer = [0; 2 * LONGEST];
     let long = encode(&[[7_u8; 31]; 12], &mut buffer).unwrap();
-    assert_eq!(hear(&mut ear, long), NOTHING);
-    assert_eq!(ear.discarded().too_long, 1);
+    assert_eq!(decode(&mut decoder, long), NOTHING);
+    assert_eq!(decoder.discarded().too_long, 1);
     // A list that says it is longer than its message, and one that is shorter.
     for foreign in [(5_u8, 1_u8, 2_u8), (1, 1, 2)] {
         let mut buffer = [0; 16];
-        assert_eq!(hear(&mut ear, encode(&foreign, &mut buffer).unwrap()), NOTHING);
+        assert_eq!(decode(&mut decoder, encode(&foreign, &mut buffer).unwrap()), NOTHING);
     }
-    assert_eq!(ear.discarded().unknown, 2);
-    assert_eq!(ear.discarded().total(), 6);
-    assert_eq!(hear(&mut ear, &frame).len(), 1);
+    assert_eq!(decoder.discarded().unknown, 2);
+    assert_eq!(decoder.discarded().total(), 6);
+    assert_eq!(decode(&mut decoder, &frame).len(), 1);
 }
 
 proptest! {
     #[test]
     fn what_is_sent_is_heard(messages in vec(message(), 1..5)) {
-        let mut ear = Ear::new();
+        let mut decoder = FrameDecoder::new();
         for message in &messages {
             let frame = framed(message);
             prop_assert!(!frame[1..frame.len() - 1].contains(&DELIMITER));
-            prop_assert_eq!(hear(&mut ear, &frame), [message.clone()]);
+            prop_assert_eq!(decode(&mut decoder, &frame), [message.clone()]);
         }
-        prop_assert_eq!(ear.discarded(), Discarded::default());
+        prop_assert_eq!(decoder.discarded(), Discarded::default());
     }
 
     /// Three wrong bits are within what CRC-32 finds for certain at these lengths; a zero that
@@ -105,10 +105,10 @@ proptest! {
             let inner = 1..right.len() - 1;
             wrong[inner.start + place.index(inner.len())] ^= 1 << bit;
         }
-        let mut ear = Ear::new();
-        let heard = hear(&mut ear, &wrong);
+        let mut decoder = FrameDecoder::new();
+        let heard = decode(&mut decoder, &wrong);
         prop_assert!(heard.is_empty() || (wrong == right && heard == [message]));
-        prop_assert!(!heard.is_empty() || ear.discarded().total() > 0);
+        prop_assert!(!heard.is_empty() || decoder.discarded().total() > 0);
     }
 
     #[test]
@@ -116,10 +116,10 @@ proptest! {
         noise in vec(prop_oneof![any::<u8>(), Just(0), Just(0xff)], 0..1000),
         message in message(),
     ) {
-        let mut ear = Ear::new();
-        let before = hear(&mut ear, &noise);
+        let mut decoder = FrameDecoder::new();
+        let before = decode(&mut decoder, &noise);
         prop_assert_eq!(before, NOTHING);
-        prop_assert_eq!(hear(&mut ear, &framed(&message)), [message]);
+        prop_assert_eq!(decode(&mut decoder, &framed(&message)), [message]);
     }
 
     /// Whether a byte is lost at any place or the wire falls silent there: the next one is heard.
@@ -135,7 +135,7 @@ proptest! {
             wire.truncate(place);
         }
         wire.extend(framed(&second));
-        let heard = hear(&mut Ear::new(), &wire);
+        let heard = decode(&mut FrameDecoder::new(), &wire);
         prop_assert_eq!(heard.last(), Some(&second));
         prop_assert!(heard.len() == 1 || heard == [first, second]);
     }

@@ -7,7 +7,7 @@ use firmware::board::isr_cell::IsrCell;
 use firmware::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::AMPLIFIER;
-use firmware::board::stm32::{Mode, begin, connect, period};
+use firmware::board::stm32::{Mode, init_chip, period, start_timer};
 use firmware::boot::Startup;
 use firmware::certificate::TimingChecked;
 use firmware::dac::DacCode;
@@ -18,7 +18,7 @@ use firmware::servo_loop::{Hardware, Options, ServoLoop};
 
 use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
 
-/// The scene, as late as the board's converter.
+/// The scene, as late as the board's DAC.
 const TIMED: TimingChecked<Scene<Environment>, Mode> = SCENE.certified().timing_checked();
 
 /// The board, but for what would move something.
@@ -55,7 +55,7 @@ impl Hardware for Muted {
     }
 }
 
-static PLACE: IsrCell<ServoIsr<Muted, Environment, f32, Mode>> = IsrCell::empty();
+static ISR_STATE: IsrCell<ServoIsr<Muted, Environment, f32, Mode>> = IsrCell::empty();
 static MAILBOX: MailboxCell<Environment, f32, Mode> = static_cell::StaticCell::new();
 
 /// What the interrupt has measured, in cycles.
@@ -99,7 +99,7 @@ unsafe extern "C" fn TIM6_DAC() {
     let start = DWT::cycle_count();
     // SAFETY: this is the handler of the interrupt that is enabled once the place is filled, and no
     // interrupt interrupts itself.
-    unsafe { PLACE.borrow_mut() }.tick();
+    unsafe { ISR_STATE.borrow_mut() }.tick();
     MEASURED.add(DWT::cycle_count().wrapping_sub(start));
 }
 
@@ -109,7 +109,7 @@ pub fn measure() -> Result<(), Failure> {
     const OPENING: u32 = 200;
     /// Ticks of a minute. Their sum fits 32 bits up to 70 000 cycles a tick.
     const MINUTE: u32 = 60_000;
-    let _ = connect(FILTER);
+    let _ = init_chip(FILTER);
     // SAFETY: `connect` is through with the core's peripherals, and nobody else uses them.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
@@ -122,10 +122,10 @@ pub fn measure() -> Result<(), Failure> {
     requests.arm();
     let mut hardware = Muted(hardware);
     hardware.0.zero();
-    begin(&mut hardware.0);
+    start_timer(&mut hardware.0);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {
-        PLACE.init(ServoIsr { servo_loop, hardware, inbox, frames });
+        ISR_STATE.init(ServoIsr { servo_loop, hardware, inbox, frames });
         NVIC::unmask(embassy_stm32::interrupt::TIM6_DAC);
     }
     defmt::info!("move the handle, if you like, for a minute: the amplifier is off");

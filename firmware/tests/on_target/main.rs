@@ -9,8 +9,8 @@ mod cycles;
 use firmware::board::input_filter::InputFilter;
 use firmware::board::stm32::quadrature::Counter;
 use firmware::board::stm32::registers::Registers;
-use firmware::board::stm32::wiring::{CHIP, CONVERTER, ENCODER, ENCODER_CLOCK};
-use firmware::board::stm32::{begin, connect, period, width};
+use firmware::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
+use firmware::board::stm32::{init_chip, period, start_timer, width};
 use firmware::boot::Startup;
 use firmware::dac::DacCode;
 use firmware::encoder::Position;
@@ -52,10 +52,10 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 
 /// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
-    let _ = connect(FILTER);
+    let _ = init_chip(FILTER);
     let mut hardware = Registers::new(period(SCENE.timing.period));
-    hardware.zero();
-    begin(&mut hardware);
+    hardware.zero_encoder();
+    start_timer(&mut hardware);
     hardware
 }
 
@@ -115,15 +115,15 @@ fn latch() -> Result<(), Failure> {
     let mut hardware = paced();
     for code in [2048 - MOST, 1024, 2047, 2048, 3072, 2048 + MOST, 2048] {
         next(&mut hardware);
-        let before = CONVERTER.output();
+        let before = DAC.output();
         hardware.write(DacCode::new(code).map_err(|_| "no code")?);
         cortex_m::asm::delay(1000);
-        if CONVERTER.output() != before {
-            return Err("a code has appeared within its tick: the converter is not latched");
+        if DAC.output() != before {
+            return Err("a code has appeared within its tick: the DAC is not latched");
         }
         next(&mut hardware);
         cortex_m::asm::delay(1000);
-        if CONVERTER.output() != code {
+        if DAC.output() != code {
             return Err("a code has not appeared at the next update: is the trigger the timer's?");
         }
     }

@@ -34,7 +34,7 @@ const TERMS: u32 = 17;
 
 /// Device and hand, as rates and energies.
 #[derive(Clone, Copy, Debug)]
-pub struct Held {
+pub struct HeldDevice {
     rates: Matrix,
     /// Kinetic and potential energy is `x' energy x`.
     energy: Matrix,
@@ -55,7 +55,7 @@ pub struct Step {
     hand: Option<Box<Matrix>>,
 }
 
-impl Held {
+impl HeldDevice {
     /// A device of this damping in a hand, whose inertia is that of both.
     pub fn new(hand: &Hand, damping: f64) -> Self {
         let mut mass = [hand.inertia, 1.0, 1.0];

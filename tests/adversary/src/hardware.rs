@@ -82,13 +82,13 @@ impl Hardware for Board {
 }
 
 impl Startup for Board {
-    fn zero(&mut self) {
+    fn zero_encoder(&mut self) {
         self.zero = self.angle;
     }
 
-    fn guard(&mut self) {}
+    fn start_watchdog(&mut self) {}
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
         FaultRecord::NOTHING
     }
 

@@ -1,6 +1,6 @@
 //! Searches for energy that a certified scene gives away.
 //!
-//! The firmware's own cycle runs against an exactly simulated device in a passive hand: any hand of
+//! The firmware's own servo loop runs against an exactly simulated device in a passive hand: any hand of
 //! up to three masses, any angle to arm at, updates missed and codes late, sets swapped. What the
 //! certificate claims is an energy: device and hand never have more than they started with, and
 //! what little the assumptions allow. A search looks for a run in which they do.
@@ -12,7 +12,11 @@ pub mod hardware;
 #[cfg(not(target_os = "none"))]
 pub mod norm;
 #[cfg(not(target_os = "none"))]
+pub mod normalized_scene;
+#[cfg(not(target_os = "none"))]
 pub mod plan;
+#[cfg(not(target_os = "none"))]
+pub mod refuted_scenes;
 #[cfg(not(target_os = "none"))]
 pub mod report;
 #[cfg(not(target_os = "none"))]
@@ -21,7 +25,3 @@ pub mod run;
 pub mod scenes;
 #[cfg(not(target_os = "none"))]
 pub mod search;
-#[cfg(not(target_os = "none"))]
-pub mod shaking;
-#[cfg(not(target_os = "none"))]
-pub mod subject;

@@ -1,4 +1,4 @@
-//! What a run does: the hand and where it starts, when updates are missed, and what is asked of the
+//! The plan of a run: the hand and where it starts, the timing of the ticks, and the requests to the
 //! servo.
 
 use std::f64::consts::PI;
@@ -8,13 +8,13 @@ use tests::hands::Hand;
 use tests::scenes::log_uniform;
 
 use crate::device::{SEGMENTS, State};
-use crate::subject::Subject;
+use crate::normalized_scene::NormalizedScene;
 
-/// What happens to the tick of one period.
+/// Timing of the tick of one period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tick {
+pub enum TickTiming {
     /// It is in time.
-    SimHardware,
+    OnTime,
     /// The interrupt does not run.
     Missed,
     /// Its code comes after the update that it was for.
@@ -27,9 +27,9 @@ pub enum Tick {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pattern {
     /// All in time.
-    SimHardware,
+    AllOnTime,
     /// The first so many of these, again and again.
-    Periodic([Tick; Pattern::LONGEST], usize),
+    Periodic([TickTiming; Pattern::LONGEST], usize),
     /// By chance, each with a probability, and never more in a row than so many.
     Random {
         /// Where the numbers begin.
@@ -49,7 +49,7 @@ impl Pattern {
 
     /// Whether it has delayed ticks.
     pub fn delays(&self) -> bool {
-        matches!(self, Self::Periodic(ticks, length) if ticks[..*length].contains(&Tick::Delayed))
+        matches!(self, Self::Periodic(ticks, length) if ticks[..*length].contains(&TickTiming::Delayed))
     }
 
     /// One that misses at most `most` updates in a row, if that is not zero; with late codes where
@@ -57,7 +57,7 @@ impl Pattern {
     pub fn draw(rng: &mut impl Rng, most: u32, latched: bool) -> Self {
         let only_delays = most == 0 && latched && rng.random_bool(0.3);
         if !only_delays && (most == 0 || rng.random_bool(0.15)) {
-            return Self::SimHardware;
+            return Self::AllOnTime;
         }
         if most > 0 && rng.random_bool(0.3) {
             let missed = rng.random_range(0..=200);
@@ -65,7 +65,7 @@ impl Pattern {
             return Self::Random { seed: rng.random::<u64>() | 1, missed, late, most };
         }
         let length = rng.random_range(2..=Self::LONGEST);
-        let mut ticks = [Tick::SimHardware; Self::LONGEST];
+        let mut ticks = [TickTiming::OnTime; Self::LONGEST];
         let mut in_a_row = 0;
         let kind = match (only_delays, latched) {
             (true, _) => 3,
@@ -77,11 +77,14 @@ impl Pattern {
             if in_a_row < most && rng.random_bool(0.6) {
                 in_a_row += 1;
                 let is_late = late && (kind == 1 || rng.random_bool(0.5));
-                *tick = if is_late { Tick::Late } else { Tick::Missed };
+                *tick = if is_late { TickTiming::Late } else { TickTiming::Missed };
             } else {
                 in_a_row = 0;
-                *tick =
-                    if delayed && rng.random_bool(0.6) { Tick::Delayed } else { Tick::SimHardware };
+                *tick = if delayed && rng.random_bool(0.6) {
+                    TickTiming::Delayed
+                } else {
+                    TickTiming::OnTime
+                };
             }
         }
         Self::Periodic(ticks, length)
@@ -145,49 +148,49 @@ fn bounded(mut hand: Hand) -> Hand {
 
 impl Plan {
     /// A plan for a subject.
-    pub fn draw(rng: &mut impl Rng, subject: &Subject, periods: u32) -> Self {
-        let mut hand = bounded(Self::hand(rng, subject));
+    pub fn draw(rng: &mut impl Rng, normalized: &NormalizedScene, periods: u32) -> Self {
+        let mut hand = bounded(Self::hand(rng, normalized));
         // A limit cycle must feed somebody: with a damper in the hand it does so for ever.
         if hand.damping == 0.0 && rng.random_bool(0.7) {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
         }
         let mut start = [0.0; 8];
-        let size = subject.size * log_uniform(rng, 0.1, 3.0);
+        let size = normalized.size * log_uniform(rng, 0.1, 3.0);
         for i in 0..=hand.segments.len() {
             start[2 * i] = size * rng.random_range(-1.0..1.0);
             start[2 * i + 1] = size * rng.random_range(-1.0..1.0);
         }
         let armed_by_boot = rng.random_bool(0.5);
-        let zero = if armed_by_boot { start[0] } else { subject.place(rng) };
+        let zero = if armed_by_boot { start[0] } else { normalized.place(rng) };
         let most = match rng.random_range(0..10) {
-            0 => subject.tolerated + rng.random_range(1..=3),
-            _ => subject.tolerated,
+            0 => normalized.tolerated + rng.random_range(1..=3),
+            _ => normalized.tolerated,
         };
         let mut plan = Self {
             hand,
             zero,
             start,
             armed_by_boot,
-            pattern: Pattern::draw(rng, most, subject.latched),
-            delay: Self::delay(rng, subject),
+            pattern: Pattern::draw(rng, most, normalized.latched),
+            delay: Self::delay(rng, normalized),
             requests: [None; REQUESTS],
             again: rng.random_bool(0.7),
             periods,
         };
-        plan.draw_requests(rng, subject);
+        plan.draw_requests(rng, normalized);
         plan
     }
 
     /// Later than what counts as in time, or nearly as late as that is.
-    fn delay(rng: &mut impl Rng, subject: &Subject) -> f64 {
+    fn delay(rng: &mut impl Rng, normalized: &NormalizedScene) -> f64 {
         if rng.random_bool(0.5) {
             rng.random_range(0.04..0.55)
         } else {
-            subject.in_time * rng.random_range(0.9..1.0)
+            normalized.in_time * rng.random_range(0.9..1.0)
         }
     }
 
-    fn hand(rng: &mut impl Rng, subject: &Subject) -> Hand {
+    fn hand(rng: &mut impl Rng, normalized: &NormalizedScene) -> Hand {
         match rng.random_range(0..8) {
             0 => Hand::draw(rng),
             1..=2 => {
@@ -199,13 +202,13 @@ impl Plan {
                 Hand::tuned(rng, theta)
             }
             _ => {
-                let theta = subject.angles[rng.random_range(0..subject.angles.len())];
+                let theta = normalized.angles[rng.random_range(0..normalized.angles.len())];
                 Hand::tuned(rng, theta)
             }
         }
     }
 
-    fn draw_requests(&mut self, rng: &mut impl Rng, subject: &Subject) {
+    fn draw_requests(&mut self, rng: &mut impl Rng, normalized: &NormalizedScene) {
         self.requests = [None; REQUESTS];
         let mut next = 0;
         let mut ask = |period: u32, request: Request| {
@@ -222,7 +225,7 @@ impl Plan {
         if late < 100 {
             return;
         }
-        if subject.sets > 1 && rng.random_bool(0.6) {
+        if normalized.sets > 1 && rng.random_bool(0.6) {
             for set in [1, 0, 1].into_iter().take(rng.random_range(1..=3)) {
                 ask(rng.random_range(40..late), Request::Submit(set));
             }
@@ -236,7 +239,7 @@ impl Plan {
     }
 
     /// A plan like this one, some of it changed by about `spread`.
-    pub fn varied(&self, rng: &mut impl Rng, subject: &Subject, spread: f64) -> Self {
+    pub fn varied(&self, rng: &mut impl Rng, normalized: &NormalizedScene, spread: f64) -> Self {
         let mut plan = self.clone();
         let all = rng.random_bool(0.3);
         let mut pick = |share: f64| all || rng.random_bool(share);
@@ -259,11 +262,11 @@ impl Plan {
             }
         }
         if pattern {
-            plan.pattern = Pattern::draw(rng, subject.tolerated, subject.latched);
-            plan.delay = Self::delay(rng, subject);
+            plan.pattern = Pattern::draw(rng, normalized.tolerated, normalized.latched);
+            plan.delay = Self::delay(rng, normalized);
         }
         if requests {
-            plan.draw_requests(rng, subject);
+            plan.draw_requests(rng, normalized);
         }
         plan
     }

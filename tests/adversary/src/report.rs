@@ -4,10 +4,10 @@ use std::fmt;
 
 use firmware::torque::LimitReason;
 
+use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;
 use crate::run::{Outcome, Output};
-use crate::scenes::Drawn;
-use crate::subject::Subject;
+use crate::scenes::RandomScene;
 
 /// A run in which a certified scene gave energy away.
 #[derive(Clone, Debug)]
@@ -17,9 +17,9 @@ pub struct Counterexample {
     /// The scene's number in it.
     pub number: u64,
     /// What was drawn.
-    pub drawn: Drawn,
+    pub drawn: RandomScene,
     /// The same as numbers.
-    pub subject: Subject,
+    pub normalized: NormalizedScene,
     /// The run.
     pub plan: Plan,
     /// When the codes reached the motor.
@@ -30,7 +30,7 @@ pub struct Counterexample {
 
 impl fmt::Display for Counterexample {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seed, number, drawn, subject, plan, output, outcome } = self;
+        let Self { seed, number, drawn, normalized, plan, output, outcome } = self;
         let gain = outcome.gained - outcome.allowed;
         writeln!(f, "counterexample: ADVERSARY_SEED={seed}, scene {number}, {}", drawn.kind)?;
         if outcome.went_on {
@@ -59,6 +59,6 @@ impl fmt::Display for Counterexample {
         }
         writeln!(f, "  {:?} {:?}", drawn.transducers, drawn.rendering)?;
         writeln!(f, "  {plan:?}")?;
-        write!(f, "  {subject:?}")
+        write!(f, "  {normalized:?}")
     }
 }

@@ -1,4 +1,4 @@
-//! One run: the cycle on a simulated board, against device and hand, and the account of energy.
+//! One run: the servo loop on a simulated board, against device and hand, and the energy balance.
 //!
 //! With `W` the work of the motor and `b` the damping of the device, the energy `H` of device and
 //! hand and what the hand's dampers took, `D`, are together `H(0) + W - b * integral v^2`. The
@@ -16,13 +16,13 @@ use std::marker::PhantomData;
 use firmware::environment::{Discretize, Environment};
 use firmware::number::Number;
 use firmware::servo::{OutputMode, OutputTiming, PreparedServo, SupportsTiming};
-use firmware::servo_loop::{Mailbox, ServoLoop, State as Doing};
+use firmware::servo_loop::{Mailbox, ServoLoop, State as ServoState};
 use firmware::tuning::Tunable;
 
-use crate::device::{Held, State, Step, TORQUE};
+use crate::device::{HeldDevice, State, Step, TORQUE};
 use crate::hardware::{Board, Last, PERIOD};
-use crate::plan::{Pattern, Plan, Request, Tick};
-use crate::subject::Subject;
+use crate::normalized_scene::NormalizedScene;
+use crate::plan::{Pattern, Plan, Request, TickTiming};
 
 /// When a code reaches the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,8 +81,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// What a climb goes up: what was gained if that is above zero, else the rate.
-    pub fn height(&self) -> f64 {
+    /// The objective of a climb: the energy that was gained if that is above zero, else the rate.
+    pub fn objective(&self) -> f64 {
         if self.score > 0.0 { 1.0 + self.score.min(1e6) } else { self.rate.min(0.99) }
     }
 
@@ -103,9 +103,9 @@ pub struct Machine<N: Number, M> {
     mode: PhantomData<M>,
 }
 
-/// What was put in and taken since the start.
+/// Energy that was put in and taken since the start.
 #[derive(Clone, Copy, Debug, Default)]
-struct Account {
+struct EnergyBalance {
     /// Work of the motor less what the device dissipated.
     gained: f64,
     /// What the device dissipated.
@@ -125,12 +125,12 @@ struct Account {
     stops: f64,
 }
 
-impl Account {
+impl EnergyBalance {
     /// What torques that are off allow.
-    fn errors(&self, subject: &Subject) -> f64 {
+    fn errors(&self, normalized: &NormalizedScene) -> f64 {
         let turns = (self.farthest / std::f64::consts::TAU).max(1.0);
-        let error = subject.error + subject.numbers * turns;
-        error * (2.0 * self.travel + subject.compliance * self.changes)
+        let error = normalized.error + normalized.numbers * turns;
+        error * (2.0 * self.travel + normalized.compliance * self.changes)
     }
 
     /// Moves the state on with this torque, and books what that takes and gives.
@@ -149,10 +149,10 @@ impl Account {
         self.travel += squared.max(0.0).sqrt();
     }
 
-    fn allowed(&self, subject: &Subject) -> f64 {
-        let Subject { bound, compliance, face, .. } = *subject;
+    fn allowed(&self, normalized: &NormalizedScene) -> f64 {
+        let NormalizedScene { bound, compliance, face, .. } = *normalized;
         let opening = bound * (self.farthest + face + compliance * bound);
-        f64::from(self.openings) * opening + self.errors(subject) + self.stops
+        f64::from(self.openings) * opening + self.errors(normalized) + self.stops
     }
 }
 
@@ -179,9 +179,9 @@ struct Ticks {
 
 impl Ticks {
     #[inline]
-    fn next(&mut self) -> Tick {
+    fn next(&mut self) -> TickTiming {
         match &mut self.pattern {
-            Pattern::SimHardware => Tick::SimHardware,
+            Pattern::AllOnTime => TickTiming::OnTime,
             Pattern::Periodic(ticks, length) => {
                 let tick = ticks[self.at];
                 self.at = (self.at + 1) % *length;
@@ -190,16 +190,16 @@ impl Ticks {
             Pattern::Random { seed, missed, late, most } => {
                 let number = next(seed);
                 let tick = if number & 0xff < u64::from(*missed) {
-                    Tick::Missed
+                    TickTiming::Missed
                 } else if number >> 8 & 0xff < u64::from(*late) {
-                    Tick::Late
+                    TickTiming::Late
                 } else {
-                    Tick::SimHardware
+                    TickTiming::OnTime
                 };
-                self.in_a_row = if tick == Tick::SimHardware { 0 } else { self.in_a_row + 1 };
+                self.in_a_row = if tick == TickTiming::OnTime { 0 } else { self.in_a_row + 1 };
                 if self.in_a_row > *most {
                     self.in_a_row = 0;
-                    return Tick::SimHardware;
+                    return TickTiming::OnTime;
                 }
                 tick
             }
@@ -222,40 +222,40 @@ where
     }
 
     /// Runs a plan. `audited`: with the energy of device and hand beside the account.
-    pub fn run(&self, subject: &Subject, plan: &Plan, audited: bool) -> Outcome {
-        let held = Held::new(&plan.hand, subject.damping);
+    pub fn run(&self, normalized: &NormalizedScene, plan: &Plan, audited: bool) -> Outcome {
+        let held = HeldDevice::new(&plan.hand, normalized.damping);
         let step = |part: f64| if audited { held.audited(part) } else { held.step(part) };
         let parts = match self.output {
             Output::Early(part) => [Some(step(part)), Some(step(1.0 - part))],
             _ => [None, Some(step(1.0))],
         };
-        self.play(subject, plan, &held, &parts, audited)
+        self.play(normalized, plan, &held, &parts, audited)
     }
 
     fn play(
         &self,
-        subject: &Subject,
+        normalized: &NormalizedScene,
         plan: &Plan,
-        held: &Held,
+        held: &HeldDevice,
         parts: &[Option<Step>; 2],
         audited: bool,
     ) -> Outcome {
         let mut mailbox = Mailbox::new();
         let (mut requests, mut inbox) = mailbox.split();
         let mut servo_loop = self.servo_loop.clone();
-        let mut board = Board::new(subject.counts_per_radian, !plan.armed_by_boot);
+        let mut board = Board::new(normalized.counts_per_radian, !plan.armed_by_boot);
         // As booting does it, with the device at the board's zero.
         board.angle = plan.zero;
-        firmware::boot::Startup::zero(&mut board);
+        firmware::boot::Startup::zero_encoder(&mut board);
         if plan.armed_by_boot {
             requests.arm();
         }
         let mut x = plan.start;
-        let mut account = Account::default();
+        let mut balance = EnergyBalance::default();
         let mut outcome =
             Outcome { score: -1.0, start: held.energy(&x), rate: -1.0, ..Outcome::default() };
         let mut last = Last::default();
-        let (mut before, mut last_rate) = (Account::default(), -1.0_f64);
+        let (mut before, mut last_rate) = (EnergyBalance::default(), -1.0_f64);
         let window = (plan.periods / 4).max(LOOK);
         let mut ticks = Ticks { pattern: plan.pattern, at: 0, in_a_row: 0 };
         // Codes above mid-scale: what the motor has, and what waits for the next period.
@@ -266,10 +266,10 @@ where
         let latched = self.output == Output::Latched;
         let mut powered = false;
         let torque = |motor: i16, powered: bool| {
-            if powered { f64::from(motor) * subject.torque_per_code } else { 0.0 }
+            if powered { f64::from(motor) * normalized.torque_per_code } else { 0.0 }
         };
         let split = |part: f64| [part, 1.0 - part].map(|part| held.audited(part));
-        let overrun = (latched && subject.overrun > 0.0).then(|| split(subject.overrun));
+        let overrun = (latched && normalized.overrun > 0.0).then(|| split(normalized.overrun));
         let delayed = plan.pattern.delays().then(|| split(plan.delay));
         let mut was_late = false;
         let first = plan.requests.iter().flatten().map(|(period, _)| *period).min();
@@ -303,24 +303,24 @@ where
             let tick = ticks.next();
             let mut switched = false;
             // A tick that has to wait for the one before it reads its count when that has ended.
-            let waits = if tick == Tick::Delayed {
+            let waits = if tick == TickTiming::Delayed {
                 delayed.as_ref()
             } else {
-                overrun.as_ref().filter(|_| was_late && tick != Tick::Missed)
+                overrun.as_ref().filter(|_| was_late && tick != TickTiming::Missed)
             };
-            was_late = tick == Tick::Late;
+            was_late = tick == TickTiming::Late;
             if let Some([first, _]) = waits {
-                account.advance(&mut x, first, torque(motor, powered), held.damping());
+                balance.advance(&mut x, first, torque(motor, powered), held.damping());
             }
-            if tick == Tick::Missed {
+            if tick == TickTiming::Missed {
                 skipped += 1;
                 in_a_row += 1;
             } else {
                 let was = last.state;
                 board.angle = x[0];
                 board.passed = skipped + 1;
-                board.late = tick == Tick::Late;
-                board.delay = if tick == Tick::Delayed && plan.delay > subject.in_time {
+                board.late = tick == TickTiming::Late;
+                board.delay = if tick == TickTiming::Delayed && plan.delay > normalized.in_time {
                     (plan.delay * f64::from(PERIOD)) as u32
                 } else {
                     0
@@ -337,21 +337,21 @@ where
                 }
                 if last.state != was {
                     match last.state {
-                        Doing::FadingIn => account.openings += 1,
+                        ServoState::FadingIn => balance.openings += 1,
                         // A clamp that opens within a tick.
-                        Doing::Running if was != Doing::FadingIn => account.openings += 1,
-                        Doing::Faulted => {
+                        ServoState::Running if was != ServoState::FadingIn => balance.openings += 1,
+                        ServoState::Faulted => {
                             outcome.faults += 1;
                             let damping = held.damping().max(f64::MIN_POSITIVE);
                             let longest = f64::from(since.max(1) + 1);
-                            account.stops += longest * strongest * strongest / (4.0 * damping);
+                            balance.stops += longest * strongest * strongest / (4.0 * damping);
                         }
                         _ => {}
                     }
                     // Notices would otherwise be kept for a reader.
                     while requests.notice().is_some() {}
                 }
-                if in_a_row > subject.tolerated && last.state.is_armed() && was.is_armed() {
+                if in_a_row > normalized.tolerated && last.state.is_armed() && was.is_armed() {
                     outcome.went_on = true;
                 }
                 if !board.late {
@@ -359,7 +359,7 @@ where
                     since = 0;
                     strongest = 0.0;
                 }
-                if plan.again && last.state == Doing::Faulted && period % 16 == 0 {
+                if plan.again && last.state == ServoState::Faulted && period % 16 == 0 {
                     requests.arm();
                 }
             }
@@ -371,35 +371,35 @@ where
                 }
                 let torque = torque(motor, powered);
                 strongest = strongest.max(torque.abs());
-                account.advance(&mut x, part, torque, held.damping());
+                balance.advance(&mut x, part, torque, held.damping());
             }
-            account.farthest = account.farthest.max((x[0] - plan.zero).abs());
+            balance.farthest = balance.farthest.max((x[0] - plan.zero).abs());
             if period % LOOK == LOOK - 1 {
-                let allowed = account.allowed(subject);
+                let allowed = balance.allowed(normalized);
                 let all = outcome.start + allowed;
-                let score = (account.gained - allowed) / all.max(f64::MIN_POSITIVE);
+                let score = (balance.gained - allowed) / all.max(f64::MIN_POSITIVE);
                 if score > outcome.score || score.is_nan() {
                     (outcome.score, outcome.period) = (score, period);
-                    (outcome.gained, outcome.allowed) = (account.gained, allowed);
+                    (outcome.gained, outcome.allowed) = (balance.gained, allowed);
                 }
-                let largest = outcome.start + account.gained;
+                let largest = outcome.start + balance.gained;
                 outcome.largest = outcome.largest.max(largest);
-                outcome.openings = account.openings;
+                outcome.openings = balance.openings;
                 outcome.limits = last.limits;
                 if audited {
-                    let residual = held.energy(&x) + account.taken - largest;
+                    let residual = held.energy(&x) + balance.taken - largest;
                     outcome.residual = outcome.residual.max(residual.abs());
                 }
                 if period % window >= window - LOOK {
-                    let errors = account.errors(subject) - before.errors(subject);
+                    let errors = balance.errors(normalized) - before.errors(normalized);
                     // With what rounds away, so that rest is no gain.
-                    let rounded = ROUNDING * (account.moved + account.dissipated + outcome.start);
-                    let took = (account.dissipated - before.dissipated).max(0.0) + errors + rounded;
-                    let rate = (account.gained - before.gained - errors - rounded)
+                    let rounded = ROUNDING * (balance.moved + balance.dissipated + outcome.start);
+                    let took = (balance.dissipated - before.dissipated).max(0.0) + errors + rounded;
+                    let rate = (balance.gained - before.gained - errors - rounded)
                         / took.max(f64::MIN_POSITIVE);
                     outcome.rate = last_rate.min(rate);
                     last_rate = rate;
-                    before = account;
+                    before = balance;
                 }
                 outcome.periods = period + 1;
                 // Beyond all numbers.
@@ -408,7 +408,7 @@ where
                 }
             }
             // The transducers exclude that; in a fraction of it the counter cannot wrap unseen.
-            if x[1].abs() > subject.fastest {
+            if x[1].abs() > normalized.fastest {
                 break;
             }
         }

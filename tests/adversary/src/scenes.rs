@@ -137,7 +137,7 @@ enum Knob {
 
 /// A scene with all that it runs with.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub struct RandomScene {
     /// What was drawn.
     pub kind: Kind,
     /// The scene.
@@ -168,7 +168,7 @@ pub struct Drawn {
     pub injected: Option<f64>,
 }
 
-impl Drawn {
+impl RandomScene {
     /// A scene with sensor and motor so fine that they hardly matter, at angles of about `size` rad.
     pub fn of(kind: Kind, scene: Scene, format: Numbers, latched: bool, size: f64) -> Self {
         let unit = scene.device.damping / scene.timing.period;
@@ -218,7 +218,7 @@ fn sometimes(rng: &mut impl Rng, wanted: Option<bool>, probability: f64) -> bool
 }
 
 /// Draws a scene and takes it to the line; `None` where it has none near.
-pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
+pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
     let kind = choice.kind.unwrap_or_else(|| match rng.random_range(0..20) {
         0..=7 => Kind::Wall,
         8..=9 => Kind::FreeMode,
@@ -373,7 +373,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<Drawn> {
     };
     // The room is known only once the scene is certified.
     let injected = sometimes(rng, choice.injected, 0.15).then(|| 1.0 - log_uniform(rng, 1e-6, 0.9));
-    Some(Drawn {
+    Some(RandomScene {
         kind,
         scene,
         other,

@@ -17,11 +17,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::hardware::Board;
+use crate::normalized_scene::NormalizedScene;
 use crate::plan::Plan;
 use crate::report::Counterexample;
 use crate::run::{Machine, Outcome, Output};
-use crate::scenes::{self, Choice, Drawn, Numbers};
-use crate::subject::Subject;
+use crate::scenes::{self, Choice, Numbers, RandomScene};
 
 /// How long a search is, and what it draws.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +113,7 @@ pub trait Task {
     fn with<N: Number, M: OutputMode>(
         self,
         machine: Machine<N, M>,
-        subject: Subject,
+        normalized: NormalizedScene,
         program: &Program<Environment>,
     ) -> Self::Result
     where
@@ -134,7 +134,7 @@ pub enum Unjudged {
 /// # Errors
 /// Why not.
 pub fn booted<T: Task>(
-    drawn: &Drawn,
+    drawn: &RandomScene,
     output: Option<Output>,
     task: T,
 ) -> Result<T::Result, Unjudged> {
@@ -151,7 +151,7 @@ pub fn booted<T: Task>(
 }
 
 fn with<N: Number, M: OutputMode, T: Task>(
-    drawn: &Drawn,
+    drawn: &RandomScene,
     output: Option<Output>,
     task: T,
 ) -> Result<T::Result, Unjudged>
@@ -185,20 +185,21 @@ where
         None => drawn.other = None,
     }
     let drawn = &drawn;
-    let subject = Subject::of(drawn, &assessments, N::FORMAT).ok_or(Unjudged::Unbounded)?;
+    let normalized =
+        NormalizedScene::of(drawn, &assessments, N::FORMAT).ok_or(Unjudged::Unbounded)?;
     let program = Program {
         scene: drawn.scene,
         transducers: drawn.transducers,
         rendering: drawn.rendering,
         options: Options::DEFAULT,
     };
-    let mut board = Board::new(subject.counts_per_radian, true);
+    let mut board = Board::new(normalized.counts_per_radian, true);
     let mut mailbox = Mailbox::new();
     let (requests, _inbox) = mailbox.split();
     let Booted { servo_loop, .. } =
         boot::<_, N, M>(&program, &mut board, &requests).map_err(|_| Unjudged::Refused)?;
     let machine = Machine::new(servo_loop, sets, output.unwrap_or(Output::of::<M>()));
-    Ok(task.with(machine, subject, &program))
+    Ok(task.with(machine, normalized, &program))
 }
 
 fn certify_quickly(scene: &Scene, format: Numbers) -> Option<()> {
@@ -218,7 +219,7 @@ const SURE: f64 = 1e-5;
 struct Climb<'a> {
     search: &'a Search,
     number: u64,
-    drawn: &'a Drawn,
+    drawn: &'a RandomScene,
     rng: ChaCha8Rng,
 }
 
@@ -228,7 +229,7 @@ impl Task for Climb<'_> {
     fn with<N: Number, M: OutputMode>(
         mut self,
         machine: Machine<N, M>,
-        subject: Subject,
+        normalized: NormalizedScene,
         _: &Program<Environment>,
     ) -> Found
     where
@@ -238,7 +239,7 @@ impl Task for Climb<'_> {
         let mut found = Found { accepted: 1, largest: -1.0, rate: -1.0, ..Found::default() };
         let rng = &mut self.rng;
         let run = |found: &mut Found, plan: &Plan, audited: bool| -> Outcome {
-            let outcome = machine.run(&subject, plan, audited);
+            let outcome = machine.run(&normalized, plan, audited);
             found.runs += 1;
             found.ticks += u64::from(outcome.periods);
             outcome
@@ -255,7 +256,7 @@ impl Task for Climb<'_> {
                     outcome = run(found, &plan, false);
                 }
             }
-            let better = best.as_ref().is_none_or(|(_, b)| outcome.height() > b.height());
+            let better = best.as_ref().is_none_or(|(_, b)| outcome.objective() > b.objective());
             if outcome.is_violation() {
                 let mut audit = run(found, &plan, true);
                 // What the simulation itself makes is no gain.
@@ -274,7 +275,7 @@ impl Task for Climb<'_> {
         };
         let mut is_refuted = false;
         for _ in 0..effort.drawn {
-            let plan = Plan::draw(rng, &subject, effort.periods);
+            let plan = Plan::draw(rng, &normalized, effort.periods);
             is_refuted = consider(&mut found, plan, &mut best);
             if is_refuted {
                 break;
@@ -286,11 +287,11 @@ impl Task for Climb<'_> {
             if is_refuted {
                 break;
             }
-            let before = outcome.height();
-            let mut plan = plan.varied(rng, &subject, spread);
+            let before = outcome.objective();
+            let mut plan = plan.varied(rng, &normalized, spread);
             plan.periods = effort.periods;
             is_refuted = consider(&mut found, plan, &mut best);
-            let after = best.as_ref().map_or(before, |(_, o)| o.height());
+            let after = best.as_ref().map_or(before, |(_, o)| o.objective());
             spread =
                 if after > before { (spread * 1.3).min(1.0) } else { (spread * 0.85).max(1e-3) };
         }
@@ -302,7 +303,7 @@ impl Task for Climb<'_> {
                     seed: self.search.seed,
                     number: self.number,
                     drawn: self.drawn.clone(),
-                    subject,
+                    normalized,
                     plan,
                     output: machine.output,
                     outcome,
@@ -325,7 +326,7 @@ impl Search {
     }
 
     /// Searches through the runs of a scene.
-    pub fn climb(&self, number: u64, drawn: &Drawn, rng: ChaCha8Rng) -> Found {
+    pub fn climb(&self, number: u64, drawn: &RandomScene, rng: ChaCha8Rng) -> Found {
         let climb = Climb { search: self, number, drawn, rng };
         let nothing = Found { largest: -1.0, rate: -1.0, ..Found::default() };
         match booted(drawn, self.output, climb) {

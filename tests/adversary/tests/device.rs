@@ -1,7 +1,7 @@
 //! The held device against an independent exponential of the same chain, and its energies against
 //! each other.
 
-use adversary::device::{Held, TORQUE};
+use adversary::device::{HeldDevice, TORQUE};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,7 @@ fn a_held_device_moves_as_the_reference_does() {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     for _ in 0..500 {
         let hand = draw(&mut rng);
-        let (plant, held) = (Plant::new(&hand), Held::new(&hand, 1.0));
+        let (plant, held) = (Plant::new(&hand), HeldDevice::new(&hand, 1.0));
         let masses = 1 + hand.segments.len();
         let mut x = [0.0; 8];
         x[..2 * masses].fill_with(|| rng.random_range(-1.0..1.0));

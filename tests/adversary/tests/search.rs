@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use adversary::normalized_scene::{declared, margin};
 use adversary::scenes::{self, Choice};
 use adversary::search::{Effort, Search};
-use adversary::subject::{declared, margin};
 use firmware::certificate::assess_in;
 use firmware::scene::Scene;
 use rand::SeedableRng;

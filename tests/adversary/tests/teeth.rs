@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
+use adversary::normalized_scene::NormalizedScene;
 use adversary::plan::{Pattern, Plan, REQUESTS};
+use adversary::refuted_scenes::{self, RefutedScene};
 use adversary::run::{Machine, Outcome, Output};
-use adversary::scenes::{Choice, Drawn, Kind, Numbers};
+use adversary::scenes::{Choice, Kind, Numbers, RandomScene};
 use adversary::search::{Effort, Search, Task, booted};
-use adversary::shaking::{self, Shaking};
-use adversary::subject::Subject;
 use firmware::boot::Program;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Number;
@@ -29,13 +29,13 @@ impl Task for Once {
     fn with<N: Number, M: OutputMode>(
         self,
         machine: Machine<N, M>,
-        subject: Subject,
+        normalized: NormalizedScene,
         _: &Program<Environment>,
     ) -> Outcome
     where
         Environment: Tunable<N> + SupportsTiming<M>,
     {
-        machine.run(&subject, &self.plan, true)
+        machine.run(&normalized, &self.plan, true)
     }
 }
 
@@ -45,7 +45,10 @@ fn readme(one_sided: bool, torque_limit: Option<f64>) -> Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: Environment::DamperWall(Wall { one_sided, ..shaking::wall(22.0, 0.01, 1) }),
+        environment: Environment::DamperWall(Wall {
+            one_sided,
+            ..refuted_scenes::wall(22.0, 0.01, 1)
+        }),
         torque_limit,
     }
 }
@@ -64,7 +67,7 @@ fn springy(stiffness: f64) -> Plan {
         zero: -0.03,
         start,
         armed_by_boot: true,
-        pattern: Pattern::SimHardware,
+        pattern: Pattern::AllOnTime,
         delay: 0.0,
         requests: [None; REQUESTS],
         again: false,
@@ -81,7 +84,7 @@ fn springy(stiffness: f64) -> Plan {
 fn a_torque_that_comes_early_shakes_a_springy_finger() {
     for (one_sided, torque_limit) in [(false, None), (false, Some(1.0)), (true, Some(1.0))] {
         let scene = readme(one_sided, torque_limit);
-        let mut drawn = Drawn::of(Kind::Wall, scene, Numbers::F32, true, 0.1);
+        let mut drawn = RandomScene::of(Kind::Wall, scene, Numbers::F32, true, 0.1);
         // The device is as it was declared.
         drawn.taken = 0.0;
         let mut shakes = 0;
@@ -151,8 +154,8 @@ fn a_device_with_less_damping_than_its_scene_needs_gives_energy_away() {
 }
 
 /// What becomes of a scene that shook once: refused, or not to be shaken.
-fn judge(shaking: &Shaking, format: Numbers, latched: bool) -> Result<&'static str, String> {
-    let scene = shaking.scene;
+fn judge(refuted: &RefutedScene, format: Numbers, latched: bool) -> Result<&'static str, String> {
+    let scene = refuted.scene;
     let search = Search {
         seed: 3,
         scenes: 1,
@@ -164,8 +167,8 @@ fn judge(shaking: &Shaking, format: Numbers, latched: bool) -> Result<&'static s
     };
     // Against the torque of a converter that is hardly, sometimes and nearly always at its end.
     for full_scale in [4.0, 1.0, 20.0] {
-        let mut drawn = Drawn::of(Kind::Wall, scene, format, latched, 0.1);
-        drawn.judged_as = shaking.judged_as;
+        let mut drawn = RandomScene::of(Kind::Wall, scene, format, latched, 0.1);
+        drawn.judged_as = refuted.judged_as;
         if scene.torque_limit.is_none() {
             drawn.transducers.full_scale_torque *= 0.25 * full_scale;
         }
@@ -183,13 +186,13 @@ fn judge(shaking: &Shaking, format: Numbers, latched: bool) -> Result<&'static s
 #[test]
 fn scenes_that_shook_once_are_refused_or_come_to_rest() {
     let mut shook = Vec::new();
-    for shaking in shaking::all() {
+    for refuted in refuted_scenes::all() {
         for format in [Numbers::F32, Numbers::F64, Numbers::Q24] {
             for latched in [false, true] {
-                let judged = judge(&shaking, format, latched);
+                let judged = judge(&refuted, format, latched);
                 let text = judged.as_ref().map_or("SHAKES", |text| text);
-                println!("{}, {format:?}, latched {latched}: {text}", shaking.name);
-                shook.extend(judged.err().map(|why| format!("{}: {why}", shaking.name)));
+                println!("{}, {format:?}, latched {latched}: {text}", refuted.name);
+                shook.extend(judged.err().map(|why| format!("{}: {why}", refuted.name)));
             }
         }
     }

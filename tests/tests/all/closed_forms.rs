@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
 use tests::exact::{Q, of_f64, ratio};
 use tests::scenes::{
-    Drawn, Frame, free_fraction, log_uniform, short, sum_of, wall_data, wall_fraction,
+    ExactScene, Frame, free_fraction, log_uniform, short, sum_of, wall_data, wall_fraction,
 };
 
 const ROUNDS: usize = 200;
@@ -48,19 +48,19 @@ impl Draw {
         q(self.damping)
     }
 
-    fn wall(&self, damping: f64, filter: Option<f64>, delay: usize) -> Drawn {
+    fn wall(&self, damping: f64, filter: Option<f64>, delay: usize) -> ExactScene {
         let wall = wall_data(self.stiffness, damping, filter, delay);
         let fraction = wall_fraction(&wall, self.frame.period);
         self.frame.with(Environment::DamperWall(wall), fraction)
     }
 }
 
-fn enclosure(drawn: &Drawn) -> Interval {
+fn enclosure(drawn: &ExactScene) -> Interval {
     assess(&drawn.scene).alpha.unwrap_or_else(|| panic!("no index for {:?}", drawn.scene))
 }
 
 /// The closed form is the index: by the reference exactly, by the certificate inside it.
-fn agree(drawn: &Drawn, alpha: &Q) {
+fn agree(drawn: &ExactScene, alpha: &Q) {
     let reference = drawn.exact.alpha().expect("the index exists");
     assert_eq!(reference.compare(alpha), Ordering::Equal, "reference, {:?}", drawn.scene);
     let found = enclosure(drawn);
@@ -69,7 +69,7 @@ fn agree(drawn: &Drawn, alpha: &Q) {
 }
 
 /// The same for a closed form that was computed in floating point.
-fn agree_closely(drawn: &Drawn, alpha: f64) {
+fn agree_closely(drawn: &ExactScene, alpha: f64) {
     let found = enclosure(drawn);
     let slack = 1e-12 * alpha.abs();
     let overlap = found.lo() <= alpha + slack && alpha - slack <= found.hi();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
+use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::studies::arithmetic::{Motion, cost};
 use analysis::studies::bench::live::live_set;
 use analysis::studies::tradeoff::{servo, sine};
@@ -21,9 +21,9 @@ use firmware::passivity::interval::Interval;
 use firmware::scene::Scene;
 use firmware::servo::{Servo, Transducers};
 use firmware::tuning::Tunable;
-use firmware_harness::question::{Ends, Reply};
+use firmware_harness::bench_request::BenchRequest;
+use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
 use firmware_harness::sines::Sine;
-use firmware_harness::trial::Trial;
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -87,7 +87,7 @@ fn run<E, N>(
     format: NumberFormat,
     certified: &Certified<Scene<E>>,
     transducers: &Transducers,
-) -> Report
+) -> EmulatorReport
 where
     E: Tunable<N>,
     N: Number,
@@ -95,7 +95,7 @@ where
     let elf = &PROGRAMS[&(name, format)];
     let mut servo = Servo::<E, N>::new(certified, transducers).unwrap();
     let mut board = Emulator::boot(elf).unwrap();
-    board.engage().unwrap();
+    board.arm_and_wait().unwrap();
     let counts = counts(1);
     assert!(counts.iter().any(|count| count.abs() > 1 << 15), "the counter wraps");
     for (tick, count) in counts.into_iter().enumerate() {
@@ -110,12 +110,12 @@ where
     report
 }
 
-fn bits(index: Option<Interval>) -> Ends {
+fn bits(index: Option<Interval>) -> IntervalBits {
     index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
 }
 
 /// What holds for every run.
-fn check<E>(report: &Report, certified: &Certified<Scene<E>>) {
+fn check<E>(report: &EmulatorReport, certified: &Certified<Scene<E>>) {
     assert_eq!((report.ticks, report.dropped, report.overruns), (TICKS as u64, 0, 0));
     assert_eq!(report.calibration.per_instruction, 32, "the emulator counts 32 ns an instruction");
     assert_eq!(report.compute_instructions.count, TICKS as u64);
@@ -136,14 +136,14 @@ fn check<E>(report: &Report, certified: &Certified<Scene<E>>) {
 /// The board's judgement of all reference cases is that of the host, bit for bit.
 #[test]
 fn the_board_judges_as_the_host_does() {
-    let elf = TOOLCHAIN.build_judge().unwrap_or_else(|error| panic!("{error}"));
-    let mut board = Judge::boot(&elf).unwrap();
+    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = CertifyClient::boot(&elf).unwrap();
     let mut most = 0;
     for case in vectors::all() {
         let scene = case.scene();
-        let reply = board.judge(&scene).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        let reply = board.certify(&scene).unwrap_or_else(|error| panic!("{}: {error}", case.name));
         let found = assess(&scene);
-        let expected = Reply {
+        let expected = CertifyReply {
             alpha: bits(found.alpha),
             alpha_coupled: bits(found.alpha_coupled),
             paper: found.paper,
@@ -162,8 +162,8 @@ fn the_board_judges_as_the_host_does() {
 /// data, on the board it is a type.
 #[test]
 fn every_format_computes_as_the_host_does() {
-    let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
-    let mut board = Trials::boot(&elf).unwrap();
+    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = BenchClient::boot(&elf).unwrap();
     for (number, case) in servo::cases().iter().enumerate() {
         let motion = Motion::recorded(&case.subject, counts(number as u64));
         for arithmetic in Arithmetic::ALL {
@@ -175,7 +175,7 @@ fn every_format_computes_as_the_host_does() {
     }
     let turns: Vec<_> = sine::turns().into_iter().map(f32::to_bits).collect();
     for sine in Sine::ALL {
-        let outputs = board.compute(&Trial::Sine(sine), &turns).unwrap();
+        let outputs = board.compute(&BenchRequest::Sine(sine), &turns).unwrap();
         for (turn, output) in turns.iter().zip(outputs) {
             let here = f64::from(sine.of_turn(f32::from_bits(*turn)));
             assert_eq!(output.value.to_bits(), here.to_bits(), "{} {turn:x}", sine.name());
@@ -184,13 +184,13 @@ fn every_format_computes_as_the_host_does() {
     // A type of scene that the program has not is refused, and the next question is answered.
     let subject = servo::cases()[0].subject;
     let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
-    let other = Trial::Servo {
+    let other = BenchRequest::Servo {
         scene: Scene { environment, ..subject.scene },
         transducers: subject.transducers,
         arithmetic: Arithmetic::F32,
     };
-    assert!(matches!(board.compute(&other, &[0]), Err(EmulatorError::NoTrial)));
-    assert_eq!(board.compute(&Trial::Sine(Sine::Quintic), &[0]).unwrap()[0].value, 0.0);
+    assert!(matches!(board.compute(&other, &[0]), Err(EmulatorError::NoBenchProgram)));
+    assert_eq!(board.compute(&BenchRequest::Sine(Sine::Quintic), &[0]).unwrap()[0].value, 0.0);
     board.finish().unwrap();
 }
 
@@ -214,7 +214,7 @@ fn a_board_that_does_nothing_is_an_error() {
     // Stack pointer, reset vector, and a branch to itself.
     let image = [0, 0x10, 0, 0x20, 9, 0, 0, 0, 0xfe, 0xe7];
     std::fs::write(file.path(), image).unwrap();
-    let mut board = Emulator::boot(file.path()).unwrap().with_patience(Duration::from_millis(500));
+    let mut board = Emulator::boot(file.path()).unwrap().with_timeout(Duration::from_millis(500));
     let error = board.exchange(0).unwrap_err();
     assert!(matches!(error, EmulatorError::Silent { .. }), "{error}");
 }

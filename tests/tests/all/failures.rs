@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use analysis::emulator::Player;
+use analysis::emulator::ServoClient;
 use analysis::studies::failures::claim::Failure;
 use analysis::studies::failures::fate::End;
 use analysis::studies::failures::report::{CaseReport, walls};
@@ -23,10 +23,11 @@ use tests::poly::Poly;
 use tests::remainders::is_schur;
 use tests::rules::Exact;
 
-fn board() -> Player {
+fn board() -> ServoClient {
     let toolchain = prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
         .unwrap_or_else(|error| panic!("{error}"));
-    Player::boot(&toolchain.build_player().unwrap_or_else(|error| panic!("{error}"))).unwrap()
+    ServoClient::boot(&toolchain.build_servo_server().unwrap_or_else(|error| panic!("{error}")))
+        .unwrap()
 }
 
 /// The claims of each case that are wrong: those that say safe, and those that say unsafe.

@@ -7,11 +7,11 @@ use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 use analysis::emulator::Emulator;
-use analysis::emulator::world::{Act, World};
-use analysis::link::{Address, Answer, Link};
+use analysis::emulator::plant_thread::{PlantModel, PlantThread};
+use analysis::link::{Address, Link, RequestResult};
 use analysis::program::damper_wall;
 use analysis::toolchain::{NumberFormat, Tools, prepare};
-use firmware::board::shown::{Moved, Shown};
+use firmware::board::lockstep_protocol::{TickInput, TickOutput};
 use firmware::boot::Program;
 use firmware::certificate::Parameter;
 use firmware::fault::Fault;
@@ -39,23 +39,23 @@ const FADING: f64 = 100.0;
 const LARGEST_STEP: u32 = 978;
 
 /// What a tick of the board was.
-type Tick = (Moved, Shown);
+type Tick = (TickInput, TickOutput);
 
 /// A hand that goes in and out of the wall, with what was done to it so far and what is to be done
 /// next.
 #[derive(Clone, Default)]
 struct Hand {
     count: Arc<Mutex<i32>>,
-    next: Arc<Mutex<VecDeque<Moved>>>,
+    next: Arc<Mutex<VecDeque<TickInput>>>,
     ticks: Arc<Mutex<Vec<Tick>>>,
     moves: bool,
 }
 
-impl Act for Hand {
-    fn next(&mut self) -> Moved {
-        if let Some(moved) = self.next.lock().unwrap().pop_front() {
-            *self.count.lock().unwrap() = moved.count.cast_signed();
-            return moved;
+impl PlantModel for Hand {
+    fn next_input(&mut self) -> TickInput {
+        if let Some(input) = self.next.lock().unwrap().pop_front() {
+            *self.count.lock().unwrap() = input.count.cast_signed();
+            return input;
         }
         let mut count = self.count.lock().unwrap();
         if self.moves {
@@ -63,44 +63,44 @@ impl Act for Hand {
             let tick = self.ticks.lock().unwrap().len() as f64;
             *count = (700.0 * (0.01 * tick).sin()) as i32;
         }
-        Moved { count: count.cast_unsigned(), missed: 0 }
+        TickInput { count: count.cast_unsigned(), missed: 0 }
     }
 
-    fn see(&mut self, moved: Moved, shown: Shown) {
-        self.ticks.lock().unwrap().push((moved, shown));
+    fn observe(&mut self, input: TickInput, output: TickOutput) {
+        self.ticks.lock().unwrap().push((input, output));
     }
 }
 
 impl Hand {
-    fn last(&self) -> Option<Shown> {
-        self.ticks.lock().unwrap().last().map(|(_, shown)| *shown)
+    fn last(&self) -> Option<TickOutput> {
+        self.ticks.lock().unwrap().last().map(|(_, output)| *output)
     }
 
     /// Waits until the board shows what is asked for.
-    fn wait(&self, what: &str, is_so: impl Fn(&Shown) -> bool) {
+    fn wait(&self, what: &str, is_so: impl Fn(&TickOutput) -> bool) {
         let patience = Instant::now() + Duration::from_secs(60);
-        while !self.last().is_some_and(|shown| is_so(&shown)) {
+        while !self.last().is_some_and(|output| is_so(&output)) {
             assert!(Instant::now() < patience, "{what} within a minute; {:?}", self.last());
             std::thread::sleep(Duration::from_micros(200));
         }
     }
 
     /// Does something to the board and gives the ticks from there on, this one and some more.
-    fn provoke(&self, moved: Moved) -> Vec<Tick> {
+    fn provoke(&self, input: TickInput) -> Vec<Tick> {
         let before = self.ticks.lock().unwrap().len();
-        self.next.lock().unwrap().push_back(moved);
+        self.next.lock().unwrap().push_back(input);
         while self.ticks.lock().unwrap().len() < before + 20 {
             std::thread::sleep(Duration::from_micros(200));
         }
         let ticks = self.ticks.lock().unwrap()[before..].to_vec();
-        ticks.into_iter().skip_while(|(done, _)| *done != moved).collect()
+        ticks.into_iter().skip_while(|(done, _)| *done != input).collect()
     }
 }
 
 /// A running board in a world with this hand.
-fn board(hand: &Hand, mut emulator: Emulator) -> (World, Link) {
-    emulator.engage().unwrap();
-    let world = World::start(emulator, hand.clone());
+fn board(hand: &Hand, mut emulator: Emulator) -> (PlantThread, Link) {
+    emulator.arm_and_wait().unwrap();
+    let world = PlantThread::start(emulator, hand.clone());
     let link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
     (world, link)
 }
@@ -123,18 +123,18 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
     let mut replica = Replica::<_, Simultaneous>::boot(program);
     let mut is_on = false;
     let mut engaged = Vec::new();
-    emulator.engage_seen(|shown| engaged.push(shown)).unwrap();
-    for shown in engaged {
+    emulator.arm_and_observe(|output| engaged.push(output)).unwrap();
+    for output in engaged {
         // In the tick in which the board has taken the request.
-        if shown.amplifier && !is_on {
+        if output.amplifier && !is_on {
             replica.arm();
         }
-        is_on = shown.amplifier;
-        assert_eq!(replica.tick(0), (shown.code, shown.state));
+        is_on = output.amplifier;
+        assert_eq!(replica.tick(0), (output.code, output.state));
     }
 
     let hand = Hand { moves: true, ..Hand::default() };
-    let world = World::start(emulator, hand.clone());
+    let world = PlantThread::start(emulator, hand.clone());
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
     let mut random = ChaCha8Rng::seed_from_u64(4);
     let mut taken = VecDeque::new();
@@ -146,11 +146,11 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
             (Parameter::Face, random.random_range(-0.01..0.01)),
         ];
         match link.set(set.into_iter().collect()).unwrap() {
-            Answer::Done => taken.push_back(set),
-            Answer::Refused(_) => refused += 1,
+            RequestResult::Done => taken.push_back(set),
+            RequestResult::Refused(_) => refused += 1,
         }
         // One swap after the other, so that each begins with a fade.
-        hand.wait("it runs again", |shown| shown.state == State::Running);
+        hand.wait("it runs again", |output| output.state == State::Running);
     }
     let status = link.status().unwrap();
     assert_eq!((status.missed, status.sets as usize), (0, taken.len()));
@@ -158,13 +158,13 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
     assert!(refused > 10 && taken.len() > 10, "{refused} refused, {} taken", taken.len());
 
     let mut last = State::Running;
-    for (tick, (moved, shown)) in hand.ticks.lock().unwrap().iter().enumerate() {
-        if shown.state == State::FadingOut && last != State::FadingOut {
+    for (tick, (input, output)) in hand.ticks.lock().unwrap().iter().enumerate() {
+        if output.state == State::FadingOut && last != State::FadingOut {
             replica.submit(&taken.pop_front().expect("a swap for each set"));
         }
-        let expected = replica.tick(moved.count.cast_signed());
-        assert_eq!((shown.code, shown.state), expected, "tick {tick}");
-        last = shown.state;
+        let expected = replica.tick(input.count.cast_signed());
+        assert_eq!((output.code, output.state), expected, "tick {tick}");
+        last = output.state;
     }
     assert!(taken.is_empty(), "{} sets never ran", taken.len());
 }
@@ -174,25 +174,26 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
 #[test]
 fn the_board_boots_in_an_order_in_which_nothing_can_move() {
     let hand = Hand { count: Arc::new(Mutex::new(5000)), ..Hand::default() };
-    let world = World::start(Emulator::boot(&PROGRAM).unwrap(), hand.clone());
-    let off = Shown { code: MID_SCALE, amplifier: false, state: State::Disarmed };
-    hand.wait("it has booted", |shown| *shown == off);
+    let world = PlantThread::start(Emulator::boot(&PROGRAM).unwrap(), hand.clone());
+    let off = TickOutput { code: MID_SCALE, amplifier: false, state: State::Disarmed };
+    hand.wait("it has booted", |output| *output == off);
     // Where the device was is its zero: into the wall by as much as it goes in a tick, and again.
     for count in [5500, 6000] {
-        let ticks = hand.provoke(Moved { count, missed: 0 });
-        assert!(ticks.iter().all(|(_, shown)| *shown == off), "{ticks:?}");
+        let ticks = hand.provoke(TickInput { count, missed: 0 });
+        assert!(ticks.iter().all(|(_, output)| *output == off), "{ticks:?}");
     }
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
     assert_eq!(link.status().unwrap().reset, ResetCause::PowerOn);
-    assert_eq!(link.arm().unwrap(), Answer::Done);
-    hand.wait("it runs", |shown| shown.state == State::Running);
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
+    hand.wait("it runs", |output| output.state == State::Running);
     let ticks = hand.ticks.lock().unwrap().clone();
-    let armed = ticks.iter().skip_while(|(_, shown)| *shown == off).map(|(_, shown)| shown);
-    for (tick, shown) in armed.enumerate().take_while(|(_, shown)| shown.state != State::Running) {
-        let torque = f64::from(MID_SCALE) - f64::from(shown.code);
+    let armed = ticks.iter().skip_while(|(_, output)| *output == off).map(|(_, output)| output);
+    for (tick, output) in armed.enumerate().take_while(|(_, output)| output.state != State::Running)
+    {
+        let torque = f64::from(MID_SCALE) - f64::from(output.code);
         let level = LIMIT / FADING * tick as f64;
         assert!((-0.01..=level + 0.51).contains(&torque), "tick {tick}: {torque} of {level}");
-        assert_eq!((shown.amplifier, shown.state), (true, State::FadingIn));
+        assert_eq!((output.amplifier, output.state), (true, State::FadingIn));
         assert!((tick as f64) < FADING + 1.0, "tick {tick}");
     }
     assert!(hand.last().unwrap().code < MID_SCALE - 200, "{:?}", hand.last());
@@ -205,32 +206,32 @@ fn the_board_boots_in_an_order_in_which_nothing_can_move() {
 fn a_jump_of_the_encoder_and_a_missed_tick_stop_the_motor_until_it_is_armed() {
     let hand = pressed();
     let (world, mut link) = board(&hand, Emulator::boot(&PROGRAM).unwrap());
-    hand.wait("torque", |shown| shown.code < MID_SCALE - 100);
+    hand.wait("torque", |output| output.code < MID_SCALE - 100);
     // The first tick in the wall was a step of 300 counts, which a hand can do.
-    let jumped = Moved { count: 300 + LARGEST_STEP + 1, missed: 0 };
-    let missed = Moved { count: jumped.count, missed: 2 };
-    for (moved, fault) in [
+    let jumped = TickInput { count: 300 + LARGEST_STEP + 1, missed: 0 };
+    let missed = TickInput { count: jumped.count, missed: 2 };
+    for (input, fault) in [
         (jumped, Fault::EncoderJump { counts: LARGEST_STEP + 1, largest: LARGEST_STEP }),
         (missed, Fault::MissedTick { missed: 2, tolerated: 0 }),
     ] {
-        let ticks = hand.provoke(moved);
+        let ticks = hand.provoke(input);
         assert!(!ticks.is_empty());
-        let off = Shown { code: MID_SCALE, amplifier: false, state: State::Faulted };
-        assert!(ticks.iter().all(|(_, shown)| *shown == off), "{ticks:?}");
+        let off = TickOutput { code: MID_SCALE, amplifier: false, state: State::Faulted };
+        assert!(ticks.iter().all(|(_, output)| *output == off), "{ticks:?}");
         let status = link.status().unwrap();
         assert_eq!(status.fault.and_then(|fault| fault.fault()), Some(fault));
         assert_eq!(hand.last(), Some(off));
-        assert_eq!(link.arm().unwrap(), Answer::Done);
-        hand.wait("torque again", |shown| {
-            shown.state == State::Running && shown.amplifier && shown.code < MID_SCALE - 100
+        assert_eq!(link.arm().unwrap(), RequestResult::Done);
+        hand.wait("torque again", |output| {
+            output.state == State::Running && output.amplifier && output.code < MID_SCALE - 100
         });
         assert_eq!(link.status().unwrap().fault, None);
     }
     // The largest step that a hand can do is none of them.
-    let far = Moved { count: jumped.count - LARGEST_STEP, missed: 0 };
-    assert!(hand.provoke(far).iter().all(|(_, shown)| shown.state == State::Running));
-    assert_eq!(link.disarm().unwrap(), Answer::Done);
-    hand.wait("the amplifier is off", |shown| !shown.amplifier && shown.code == MID_SCALE);
+    let far = TickInput { count: jumped.count - LARGEST_STEP, missed: 0 };
+    assert!(hand.provoke(far).iter().all(|(_, output)| output.state == State::Running));
+    assert_eq!(link.disarm().unwrap(), RequestResult::Done);
+    hand.wait("the amplifier is off", |output| !output.amplifier && output.code == MID_SCALE);
     world.end().unwrap().end().unwrap();
 }
 
@@ -241,16 +242,16 @@ fn a_fault_of_the_processor_is_remembered_through_the_reset() {
     let hand = pressed();
     let emulator = Emulator::boot_for_debugger(&PROGRAM).unwrap();
     let (world, link) = board(&hand, emulator);
-    hand.wait("torque", |shown| shown.code < MID_SCALE - 100);
+    hand.wait("torque", |output| output.code < MID_SCALE - 100);
     drop(link);
     let before = hand.ticks.lock().unwrap().len();
     let mut debugger = Debugger::attach(&world.port().with_file_name("debugger")).unwrap();
     // An address at which nothing can be executed.
     debugger.jump(NOWHERE).unwrap();
     debugger.detach().unwrap();
-    hand.wait("it has stopped", |shown| !shown.amplifier);
+    hand.wait("it has stopped", |output| !output.amplifier);
     let mut link = Link::open(&Address::Unix(world.port().to_owned())).unwrap();
-    let remembered = link.remembered().expect("it remembers").fault.fault();
+    let remembered = link.previous_fault().expect("it remembers").fault.fault();
     assert!(
         matches!(remembered, Some(Fault::HardFault { address: NOWHERE, status }) if status != 0),
         "{remembered:?}"
@@ -259,10 +260,10 @@ fn a_fault_of_the_processor_is_remembered_through_the_reset() {
     assert_eq!(status.fault.and_then(|fault| fault.fault()), remembered);
     assert_eq!(status.reset, ResetCause::Software);
     let after = hand.ticks.lock().unwrap()[before..].to_vec();
-    let stopped = after.iter().skip_while(|(_, shown)| shown.amplifier);
-    assert!(stopped.clone().all(|(_, shown)| !shown.amplifier && shown.code == MID_SCALE));
-    assert_eq!(link.arm().unwrap(), Answer::Done);
-    hand.wait("it runs again", |shown| shown.state == State::Running && shown.amplifier);
+    let stopped = after.iter().skip_while(|(_, output)| output.amplifier);
+    assert!(stopped.clone().all(|(_, output)| !output.amplifier && output.code == MID_SCALE));
+    assert_eq!(link.arm().unwrap(), RequestResult::Done);
+    hand.wait("it runs again", |output| output.state == State::Running && output.amplifier);
     world.end().unwrap().end().unwrap();
 }
 

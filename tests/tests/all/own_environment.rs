@@ -56,7 +56,7 @@ where
     let elf = toolchain.build_own_environment(format).unwrap_or_else(|error| panic!("{error}"));
     let mut servo = Servo::<_, N>::new(&CERTIFIED, &TRANSDUCERS).unwrap();
     let mut board = Emulator::boot(&elf).unwrap();
-    board.engage().unwrap();
+    board.arm_and_wait().unwrap();
     let mut least = u16::MAX;
     for (tick, count) in counts().enumerate() {
         let code = board.exchange(count).unwrap_or_else(|error| panic!("tick {tick}: {error}"));

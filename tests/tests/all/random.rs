@@ -14,10 +14,10 @@ use tests::agreement::{check, check_exact};
 use tests::exact::of_f64;
 use tests::poly::Poly;
 use tests::rounding;
-use tests::scenes::{self, Drawn, Poles};
+use tests::scenes::{self, ExactScene, Poles};
 
 /// Judges `count` scenes and returns how many the exact and the paper's rule left open.
-fn judge(count: u64, draw: impl Fn(&mut ChaCha8Rng) -> Drawn) -> (u64, u64) {
+fn judge(count: u64, draw: impl Fn(&mut ChaCha8Rng) -> ExactScene) -> (u64, u64) {
     let (mut exact, mut paper, mut passed) = (0, 0, 0);
     for seed in 0..count {
         let drawn = draw(&mut ChaCha8Rng::seed_from_u64(seed));
@@ -99,7 +99,7 @@ fn a_hair_from_the_line() {
 }
 
 /// Scales the numerator so that the index is `share` of the device's passivity.
-fn scale_to_the_line(drawn: &mut Drawn, share: f64) -> bool {
+fn scale_to_the_line(drawn: &mut ExactScene, share: f64) -> bool {
     let Environment::Rational(mut rational) = drawn.scene.environment else { return false };
     let Some(alpha) = assess(&drawn.scene).alpha else { return false };
     let factor = drawn.scene.device.damping * share / alpha.midpoint();
@@ -182,7 +182,7 @@ fn coefficients_as_they_run() {
     assert!(judged > 300 && refused.iter().chain(&saved).all(|&count| count > 0));
 }
 
-fn is_standard(drawn: &Drawn) -> bool {
+fn is_standard(drawn: &ExactScene) -> bool {
     let Coupling::Spring { stiffness } = drawn.scene.coupling else { return false };
     stiffness == 2.0 * drawn.scene.device.damping / drawn.scene.timing.period
 }

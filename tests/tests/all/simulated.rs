@@ -8,7 +8,7 @@ use analysis::chain::{Chain, Link, Mass};
 use analysis::file::simulation::{HandTorque, Simulation};
 use analysis::file::{Format, Purpose, SceneFile, parse, parse_for, write};
 use analysis::missed::Missed;
-use analysis::simulation::{Experiment, Stride, Trajectory, simulate};
+use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{Verdict, judge};
 use analysis::verdict;
 use firmware::certificate::LoopTransfers;
@@ -129,20 +129,22 @@ fn a_certified_scene_is_stable_and_its_motion_ends() {
         let file = read.unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
         assert_eq!(Ok(&file), parse_for(Purpose::Simulate, "", Format::Toml, &text).as_ref());
         let experiment = Experiment::of(&file, ".".as_ref()).expect("no other file is read");
-        let (scene, stride) = (&file.scene, Stride::default());
+        let (scene, integration) = (&file.scene, Integration::default());
         if verdict::judge("drawn", scene).verdict != verdict::Verdict::Certified {
             refused += 1;
-            let motion = simulate(&experiment, stride);
+            let motion = simulate(&experiment, integration);
             grew += u32::from(!motion.is_ok_and(|motion| is_bounded(scene, &motion)));
             continue;
         }
-        let stability = judge(&experiment, stride).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let stability =
+            judge(&experiment, integration).unwrap_or_else(|why| panic!("{seed}: {why}"));
         match stability.verdict {
             Verdict::Stable => {}
             Verdict::Marginal if stays_anywhere(scene) => marginal += 1,
             _ => panic!("seed {seed}: certified, and {stability:?}\n{text}"),
         }
-        let motion = simulate(&experiment, stride).unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let motion =
+            simulate(&experiment, integration).unwrap_or_else(|why| panic!("{seed}: {why}"));
         assert!(is_bounded(scene, &motion), "seed {seed}: certified, and moves on\n{text}");
         assert!(LoopTransfers::of(scene).is_ok(), "seed {seed}");
         certified[match scene.environment {

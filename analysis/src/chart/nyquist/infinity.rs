@@ -9,11 +9,11 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::Curve;
-use super::judged::Branch;
+use super::nyquist_scene::Branch;
 use crate::chart::dash::Dash;
-use crate::chart::sheet::{Frame, Place, Sheet};
+use crate::chart::plot_area::{DrawingPoint, Frame, PlotArea};
 use crate::chart::{Drawn, anchored, units};
-use crate::circle::{CirclePole, Kind};
+use crate::unit_circle_poles::{Kind, UnitCirclePole};
 
 /// What stands for infinity.
 const FAR: Dash = Dash::new(&[4, 4]);
@@ -29,15 +29,15 @@ const CORNER: f64 = units(14) as f64;
 
 /// Whether the way through infinity is drawn: around several poles at one place it is longer than
 /// a picture's frame.
-pub(super) fn is_drawn(pole: &CirclePole) -> bool {
+pub(super) fn is_drawn(pole: &UnitCirclePole) -> bool {
     matches!(pole.kind, Kind::Simple(_))
 }
 
 /// The frame of each pole of each curve, the later ones inside of the earlier.
-pub(super) fn frames(sheet: &Sheet<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
-    let all = sheet.all();
+pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
+    let all = plot.all();
     let mut level = 0;
-    let mut frame = |_: &CirclePole| {
+    let mut frame = |_: &UnitCirclePole| {
         let [side, above] = [WORDS, ROOM].map(|room| f64::from(room + STEP * level));
         level += 1;
         Frame {
@@ -51,16 +51,20 @@ pub(super) fn frames(sheet: &Sheet<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
 }
 
 /// Draws the ways of one curve through infinity, and gives them back.
-pub(super) fn draw(sheet: &Sheet<'_>, curve: &Curve, frames: &[Frame]) -> Drawn<Vec<Vec<Place>>> {
+pub(super) fn draw(
+    plot: &PlotArea<'_>,
+    curve: &Curve,
+    frames: &[Frame],
+) -> Drawn<Vec<Vec<DrawingPoint>>> {
     let drawn = (0..curve.poles.len()).filter(|&pole| is_drawn(&curve.poles[pole]));
     let way = |pole: usize| {
-        let (from, to) = ends(sheet, curve, pole, &frames[pole])?;
+        let (from, to) = ends(plot, curve, pole, &frames[pole])?;
         Some(around(&frames[pole], from, to))
     };
     let ways: Vec<_> = drawn.filter_map(way).collect();
     for way in &ways {
-        sheet.line(FAR, way, 1)?;
-        sheet.arrow(way, 0.62)?;
+        plot.line(FAR, way, 1)?;
+        plot.arrow(way, 0.62)?;
     }
     Ok(ways)
 }
@@ -68,13 +72,18 @@ pub(super) fn draw(sheet: &Sheet<'_>, curve: &Curve, frames: &[Frame]) -> Drawn<
 /// Where the curve goes to infinity at a pole and where it comes back, with rising angle. At the
 /// pole's conjugate it goes the same way where the residue is real, and the mirrored one where it
 /// is not, which is left out.
-fn ends(sheet: &Sheet<'_>, curve: &Curve, pole: usize, frame: &Frame) -> Option<(Place, Place)> {
+fn ends(
+    plot: &PlotArea<'_>,
+    curve: &Curve,
+    pole: usize,
+    frame: &Frame,
+) -> Option<(DrawingPoint, DrawingPoint)> {
     let branch = |end: usize| curve.branches.iter().find(|b| b.poles[end] == Some(pole));
-    let places = |b: &'_ Branch| b.values.iter().map(|&v| sheet.place(v)).collect::<Vec<_>>();
+    let places = |b: &'_ Branch| b.values.iter().map(|&v| plot.place(v)).collect::<Vec<_>>();
     let from = branch(1).map(places).map(|line| frame.exit(line.into_iter()));
     let to = branch(0).map(places).map(|line| frame.exit(line.into_iter().rev()));
     // At rest and at half the sample rate the other side is the mirrored one.
-    let mirrored = |end: Option<Place>| end.map(|end| frame.nearest(sheet.mirrored(end)));
+    let mirrored = |end: Option<DrawingPoint>| end.map(|end| frame.nearest(plot.mirrored(end)));
     let (from, to) = match (from, to) {
         (None, None) => return None,
         (Some(from), None) => (from?, mirrored(from)?),
@@ -92,7 +101,7 @@ fn ends(sheet: &Sheet<'_>, curve: &Curve, pole: usize, frame: &Frame) -> Option<
 }
 
 /// Along the frame clockwise, with rounded corners.
-fn around(frame: &Frame, from: Place, to: Place) -> Vec<Place> {
+fn around(frame: &Frame, from: DrawingPoint, to: DrawingPoint) -> Vec<DrawingPoint> {
     let [start, mut end] = [from, to].map(|place| way_to(frame, place));
     let (width, height) = (frame.right - frame.left, frame.bottom - frame.top);
     let once = 2.0 * (width + height);
@@ -113,7 +122,7 @@ fn around(frame: &Frame, from: Place, to: Place) -> Vec<Place> {
 }
 
 /// Length of the frame clockwise from its upper left corner to a place on it.
-fn way_to(frame: &Frame, (x, y): Place) -> f64 {
+fn way_to(frame: &Frame, (x, y): DrawingPoint) -> f64 {
     let (width, height) = (frame.right - frame.left, frame.bottom - frame.top);
     let sides = [
         (y - frame.top, x - frame.left),
@@ -126,11 +135,11 @@ fn way_to(frame: &Frame, (x, y): Place) -> f64 {
 }
 
 /// The line with its corners rounded, as far as their neighbours leave room.
-fn rounded(points: &[Place]) -> Vec<Place> {
+fn rounded(points: &[DrawingPoint]) -> Vec<DrawingPoint> {
     let mut line = vec![points[0]];
     for three in points.windows(3) {
         let [before, corner, after] = [three[0], three[1], three[2]];
-        let towards = |other: Place| {
+        let towards = |other: DrawingPoint| {
             let length = (other.0 - corner.0).hypot(other.1 - corner.1);
             let part = if length > 0.0 { (CORNER / length).min(0.5) } else { 0.0 };
             (corner.0 + part * (other.0 - corner.0), corner.1 + part * (other.1 - corner.1))
@@ -149,11 +158,11 @@ fn rounded(points: &[Place]) -> Vec<Place> {
 }
 
 /// Names the ways, once, at a side that one of them takes, above the real axis.
-pub(super) fn name(sheet: &Sheet<'_>, ways: &[Vec<Place>]) -> Drawn<()> {
-    let all = sheet.all();
+pub(super) fn name(plot: &PlotArea<'_>, ways: &[Vec<DrawingPoint>]) -> Drawn<()> {
+    let all = plot.all();
     let passes = |far: bool| {
         let near = |x: f64| if far { x > 0.8 * all.right } else { x < 0.2 * all.right };
-        let tall = |way: &&Vec<Place>| {
+        let tall = |way: &&Vec<DrawingPoint>| {
             way.windows(2).any(|p| near(p[0].0) && (p[1].1 - p[0].1).abs() > 0.5 * all.bottom)
         };
         ways.iter().any(|way| tall(&way))
@@ -165,7 +174,7 @@ pub(super) fn name(sheet: &Sheet<'_>, ways: &[Vec<Place>]) -> Drawn<()> {
     let inwards = if side > 0.0 { -WORDS / 2 } else { WORDS / 2 };
     let place = (side.round() as i32 + inwards, (0.3 * all.bottom).round() as i32);
     let style = anchored(HPos::Center, VPos::Center).transform(FontTransform::Rotate90);
-    sheet.area.draw(&Text::new("at infinity", place, style))
+    plot.area.draw(&Text::new("at infinity", place, style))
 }
 
 #[cfg(test)]

@@ -1,20 +1,20 @@
 //! The paper's Nyquist plots: what is judged of a scene, and the line that it must not cross.
 
 mod infinity;
-mod judged;
-mod key;
+mod legend;
 mod marks;
+mod nyquist_scene;
 
 use firmware::scene::Scene;
 use plotters::prelude::*;
 
 use super::axes::Axes;
 use super::dash::Dash;
-use super::sheet::{Frame, Place, Sheet};
+use super::plot_area::{DrawingPoint, Frame, PlotArea};
 use super::*;
 use crate::quantity::shortened;
 
-pub use judged::{Curve, Judged, Role};
+pub use nyquist_scene::{Curve, NyquistScene, Role};
 
 /// A line that is hardly there.
 const HAIRLINE: Dash = Dash::new(&[1, 7]);
@@ -35,9 +35,9 @@ impl Line<'_> {
 }
 
 /// What is judged takes a pattern each, and what is not that of its scene.
-fn lines(scenes: &[Judged]) -> Vec<Vec<Line<'_>>> {
+fn lines(scenes: &[NyquistScene]) -> Vec<Vec<Line<'_>>> {
     let mut used = 0;
-    let mut of = |scene: &'_ Judged| -> Vec<usize> {
+    let mut of = |scene: &'_ NyquistScene| -> Vec<usize> {
         let first = used;
         let number = |curve: &Curve| match curve.role {
             Role::Alone => first,
@@ -76,20 +76,21 @@ pub fn nyquist(
     let tallest = span(values().map(|value| value.1.abs())).end;
     meets("horizontal", wanted.x.as_ref(), &real)?;
     meets("vertical", wanted.y.as_ref(), &(-tallest..tallest))?;
-    let key = key::height(&scenes);
-    let size = (SIZE.0, SIZE.1 + key as u32 / UNITS);
+    let legend = legend::height(&scenes);
+    let size = (SIZE.0, SIZE.1 + legend as u32 / UNITS);
     draw_sized(size, |area| {
         let area = area
             .margin(units(TOP), 0, 0, 0)
             .titled(&shortened(title, LONGEST_TITLE), text(TITLE))?;
-        let (plot, below) = area.split_vertically(units(size.1 as i32) - key - units(TITLE_ROOM));
+        let (plot, below) =
+            area.split_vertically(units(size.1 as i32) - legend - units(TITLE_ROOM));
         paint(&plot, &scenes, wanted)?;
-        key::write(&below, &scenes)
+        legend::write(&below, &scenes)
     })
 }
 
-fn judged(scenes: &[(String, Scene)]) -> Result<Vec<Judged>, ChartError> {
-    scenes.iter().map(|(name, scene)| Judged::of(name, scene)).collect()
+fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
+    scenes.iter().map(|(name, scene)| NyquistScene::of(name, scene)).collect()
 }
 
 /// The curves as numbers, at rising angles from 0 to the Nyquist frequency.
@@ -98,7 +99,7 @@ fn judged(scenes: &[(String, Scene)]) -> Result<Vec<Judged>, ChartError> {
 /// Where an environment has no transfer function.
 pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
     let rows = judged(scenes)?.into_iter().flat_map(|scene| {
-        let Judged { name, period, curves, limit, bound, .. } = scene;
+        let NyquistScene { name, period, curves, limit, bound, .. } = scene;
         curves.into_iter().flat_map(move |curve| {
             let (name, role) = (name.clone(), curve.role.as_str());
             let line = limit.map(|limit| -limit);
@@ -134,7 +135,7 @@ pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
     ))
 }
 
-fn paint(area: &Area<'_>, scenes: &[Judged], wanted: &Window) -> Drawn<()> {
+fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()> {
     let (x, y) = window(scenes, wanted);
     let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), y.clone())?;
     let criticals = critical_lines(scenes);
@@ -154,26 +155,26 @@ fn paint(area: &Area<'_>, scenes: &[Judged], wanted: &Window) -> Drawn<()> {
     for (line, _) in &shown {
         chart.draw_series(broken([(*line, y.start), (*line, y.end)], 8, 5, 2))?;
     }
-    let sheet = Sheet::of(&chart);
+    let plot = PlotArea::of(&chart);
     let patterns = lines(scenes);
     let through: Vec<_> = scenes.iter().flat_map(|s| &s.curves).collect();
-    let frames = infinity::frames(&sheet, &through);
+    let frames = infinity::frames(&plot, &through);
     let mut ways = Vec::new();
     for (line, frames) in patterns.iter().flatten().zip(&frames) {
-        ways.extend(draw_curve(&sheet, line, frames)?);
+        ways.extend(draw_curve(&plot, line, frames)?);
     }
     draw_bounds(&mut chart, scenes, &x, &y)?;
-    infinity::name(&sheet, &ways)?;
+    infinity::name(&plot, &ways)?;
     let minima = draw_minima(&mut chart, scenes, &x, y.end)?;
-    let inner = frames.iter().flatten().last().copied().unwrap_or(sheet.all());
+    let inner = frames.iter().flatten().last().copied().unwrap_or(plot.all());
     let names = marks::Names { criticals: &shown, minima: &minima, ways: &ways };
-    marks::draw(&sheet, scenes, inner, &names)
+    marks::draw(&plot, scenes, inner, &names)
 }
 
 /// The lines at minus the largest index that passes, each once and from the left, with what they are
 /// called.
-fn critical_lines(scenes: &[Judged]) -> Vec<(f64, &'static str)> {
-    let line = |scene: &Judged| Some((-scene.limit?, scene.limit_name));
+fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
+    let line = |scene: &NyquistScene| Some((-scene.limit?, scene.limit_name));
     let mut lines: Vec<_> = scenes.iter().filter_map(line).collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
     lines.dedup_by_key(|line| line.0);
@@ -184,7 +185,7 @@ fn critical_lines(scenes: &[Judged]) -> Vec<(f64, &'static str)> {
 /// of.
 fn draw_bounds(
     chart: &mut Plane<'_, '_>,
-    scenes: &[Judged],
+    scenes: &[NyquistScene],
     x: &Range<f64>,
     y: &Range<f64>,
 ) -> Drawn<()> {
@@ -197,7 +198,7 @@ fn draw_bounds(
 }
 
 /// Ranges of the axes.
-fn window(scenes: &[Judged], wanted: &Window) -> (Range<f64>, Range<f64>) {
+fn window(scenes: &[NyquistScene], wanted: &Window) -> (Range<f64>, Range<f64>) {
     let curves = || scenes.iter().flat_map(|scene| &scene.curves);
     let is_endless = |curve: &Curve| !curve.poles.is_empty();
     let endless = curves().any(is_endless);
@@ -234,25 +235,29 @@ fn window(scenes: &[Judged], wanted: &Window) -> (Range<f64>, Range<f64>) {
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
 /// direction of rising angles; what it tends to at rest, where it goes to infinity, in a hairline;
 /// and its ways through infinity, which are given back.
-fn draw_curve(sheet: &Sheet<'_>, line: &Line<'_>, frames: &[Frame]) -> Drawn<Vec<Vec<Place>>> {
+fn draw_curve(
+    plot: &PlotArea<'_>,
+    line: &Line<'_>,
+    frames: &[Frame],
+) -> Drawn<Vec<Vec<DrawingPoint>>> {
     let Line { dash, curve } = line;
     let judged = curve.role.is_judged();
     if let Some(re) = curve.asymptote.filter(|_| judged) {
-        let (x, all) = (sheet.place((re, 0.0)).0, sheet.all());
+        let (x, all) = (plot.place((re, 0.0)).0, plot.all());
         if all.left <= x && x <= all.right {
-            sheet.line(HAIRLINE, &[(x, all.top), (x, all.bottom)], 1)?;
+            plot.line(HAIRLINE, &[(x, all.top), (x, all.bottom)], 1)?;
         }
     }
     for branch in &curve.branches {
         let [first, last] = branch.poles.map(|pole| {
             let drawn = pole.filter(|&pole| infinity::is_drawn(&curve.poles[pole]));
-            drawn.map_or(sheet.all(), |pole| frames[pole])
+            drawn.map_or(plot.all(), |pole| frames[pole])
         });
-        let places: Vec<_> = branch.values.iter().map(|&value| sheet.place(value)).collect();
+        let places: Vec<_> = branch.values.iter().map(|&value| plot.place(value)).collect();
         let half = places.len() / 2;
         let frame = |place| if place < half { first } else { last };
         let mirrored: Vec<_> =
-            branch.values.iter().map(|&(re, im)| sheet.place((re, -im))).collect();
+            branch.values.iter().map(|&(re, im)| plot.place((re, -im))).collect();
         for (places, width, arrow) in [(&places, 2, 0.4), (&mirrored, 1, 0.6)] {
             let parts = Frame::clip(places, frame);
             let longest = parts.iter().max_by_key(|part| part.len());
@@ -262,22 +267,22 @@ fn draw_curve(sheet: &Sheet<'_>, line: &Line<'_>, frames: &[Frame]) -> Drawn<Vec
                 if width == 1 {
                     part.reverse();
                 }
-                sheet.arrow(&part, arrow)?;
+                plot.arrow(&part, arrow)?;
             }
             for part in &parts {
-                sheet.line_in(*dash, part, line.ink().stroke_width(width * UNITS))?;
+                plot.line_in(*dash, part, line.ink().stroke_width(width * UNITS))?;
             }
         }
     }
     // What is not judged leaves the frame where it leaves it.
-    if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(sheet, curve, frames) }
+    if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(plot, curve, frames) }
 }
 
 /// Marks the minima, and gives them with what is said about them: about several at one place in a
-/// row, and about a scene alone nothing, for that stands in the key.
+/// row, and about a scene alone nothing, for that stands in the legend.
 fn draw_minima(
     chart: &mut Plane<'_, '_>,
-    scenes: &[Judged],
+    scenes: &[NyquistScene],
     x: &Range<f64>,
     height: f64,
 ) -> Drawn<Vec<((f64, f64), String)>> {

@@ -23,8 +23,8 @@ fn rational(numerator: &[f64], denominator: &[f64], delay: usize) -> Rational {
     Rational { numerator, denominator, delay, unit_zeros: 0 }
 }
 
-fn judged(scene: &Scene) -> Judged {
-    Judged::of("a scene", scene).unwrap()
+fn judged(scene: &Scene) -> NyquistScene {
+    NyquistScene::of("a scene", scene).unwrap()
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn the_drawn_side_of_the_line_is_the_verdict() {
     let (mut passed, mut failed, mut by_role) = (0, 0, std::collections::BTreeMap::new());
     for _ in 0..600 {
         let scene = random(&mut seed);
-        let Ok(found) = Judged::of("random", &scene) else { continue };
+        let Ok(found) = NyquistScene::of("random", &scene) else { continue };
         let clearance = found.clearance();
         let near = found.limit.is_some_and(|limit| clearance.abs() < 1e-4 * limit);
         match assess(&scene).outcome {

@@ -9,12 +9,12 @@ use firmware::encoder::CounterWidth;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
 
-use super::words::{Answered, Simulated, message, text};
-use crate::command::answer::{Answer, CommandError};
-use crate::command::common::ForWhom;
-use crate::command::file_scene::{scene_file, script_of, transducers_of};
-use crate::command::values::positive;
-use crate::hand::Script;
+use super::report::{FormatReport, SimulationMethod, message, text};
+use crate::command::file_scene::{hand_trajectory, scene_file, transducers_of};
+use crate::command::shared_arguments::JsonOption;
+use crate::command::status::{CommandError, CommandStatus};
+use crate::command::value_parsers::positive;
+use crate::hand::HandTrajectory;
 use crate::limits::at_period;
 use crate::program::Program;
 use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
@@ -24,7 +24,7 @@ use crate::studies::tradeoff::{self, simulation};
 
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
-pub struct Wanted {
+pub struct FormatArguments {
     /// Largest torque of a limit cycle at rest in N m, from its lowest to its highest
     #[arg(long = "max-limit-cycle", alias = "hum", value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
           required = false, required_unless_present = "model")]
@@ -65,21 +65,25 @@ const LARGEST_RATE: f64 = 200e3;
 /// Time in s of the motion in which errors are looked for.
 const SECONDS: f64 = 5.0;
 
-/// What is asked about.
-struct Question {
+/// The scene that a format is sought for.
+struct FormatQuery {
     name: String,
     subject: Subject,
-    script: Script,
+    trajectory: HandTrajectory,
 }
 
 /// Looks for the cheapest format. The answer is no where none keeps to the figures, or the encoder
 /// does not.
-pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, CommandError> {
-    let question = question(scene, arguments)?;
-    let scene = &question.subject.scene;
+pub fn run(
+    scene: &str,
+    arguments: &FormatArguments,
+    answer: &JsonOption,
+) -> Result<CommandStatus, CommandError> {
+    let query = query(scene, arguments)?;
+    let scene = &query.subject.scene;
     // A scene that is refused at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let motion = Motion::new(&question.subject, question.script.clone(), SECONDS)?;
+    let motion = Motion::new(&query.subject, query.trajectory.clone(), SECONDS)?;
     let figures = Figures {
         hum: arguments.hum,
         error: arguments.error,
@@ -90,13 +94,13 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
     let look = if arguments.measure { measured } else { kept };
     let advice = look(&motion, &figures)?;
     let is_yes = advice.choice().is_some_and(|choice| !advice.hums(choice));
-    let answered = Answered {
+    let answered = FormatReport {
         format: advice.choice().map(|choice| choice.format),
-        message: message(&question.subject, arguments.hum, &advice),
+        message: message(&query.subject, arguments.hum, &advice),
         simulation: simulated(arguments.verdict)?,
-        scene: question.name,
+        scene: query.name,
         rate: arguments.rate,
-        coupling_stiffness: match question.subject.scene.coupling {
+        coupling_stiffness: match query.subject.scene.coupling {
             Coupling::Rigid => None,
             Coupling::Spring { stiffness } => Some(stiffness),
         },
@@ -104,23 +108,23 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
         formats: advice.candidates,
     };
     answer.print(&answered, text)?;
-    Ok(if is_yes { Answer::Yes } else { Answer::No })
+    Ok(if is_yes { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
 /// The scene at the rate, with its sensor and motor, and what a hand does to it.
-fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
+fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, CommandError> {
     let at_rate = |scene: &Scene| at_period(scene, 1.0 / arguments.rate);
-    let Wanted { counts_per_rev: counts, range, friction, .. } = *arguments;
+    let FormatArguments { counts_per_rev: counts, range, friction, .. } = *arguments;
     Ok(match Program::find(scene) {
         Some(program) => {
             let counts_per_turn = counts.unwrap_or(program.transducers.counts_per_turn);
             let counter = CounterWidth::Bits32;
             let transducers = Transducers { counts_per_turn, counter, ..program.transducers };
             let (scene, steps) = (at_rate(&program.scene), Resolution::of(&transducers, friction));
-            Question {
+            FormatQuery {
                 name: program.name.to_owned(),
                 subject: Subject { scene, transducers, steps, range },
-                script: (program.script)(),
+                trajectory: (program.trajectory)(),
             }
         }
         None => {
@@ -133,9 +137,9 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
                 ..said
             };
             let scene = at_rate(&file.scene);
-            Question {
+            FormatQuery {
                 subject: Subject { scene, transducers, steps, range },
-                script: script_of(&file),
+                trajectory: hand_trajectory(&file),
                 name: file.name,
             }
         }
@@ -160,9 +164,9 @@ fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> 
 }
 
 /// The cheapest method of simulation whose verdict is off by no more than a part.
-fn simulated(bound: f64) -> Result<Option<Simulated>, CommandError> {
+fn simulated(bound: f64) -> Result<Option<SimulationMethod>, CommandError> {
     let table = simulation::kept()?;
-    Ok(simulation::cheapest(&table, bound).map(|method| Simulated {
+    Ok(simulation::cheapest(&table, bound).map(|method| SimulationMethod {
         method: method.family.clone(),
         substeps: method.values[simulation::SUBSTEPS_COLUMN].unwrap_or(f64::NAN),
         samples_per_second: method.cost().unwrap_or(f64::NAN),

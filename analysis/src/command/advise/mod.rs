@@ -2,12 +2,12 @@
 
 mod format;
 mod model;
-mod words;
+mod report;
 
 use clap::Args;
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
 
 /// Arguments of `haptic advise`: about a number format, or about a model of the device.
 #[derive(Debug, Args)]
@@ -21,17 +21,17 @@ pub struct Arguments {
     pub scene: String,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub model: model::Question,
+    pub model: model::ModelArguments,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub format: Option<format::Wanted>,
+    pub format: Option<format::FormatArguments>,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
 }
 
 /// Advises.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     match &arguments.format {
         Some(format) => format::run(&arguments.scene, format, &arguments.answer),
         None => model::run(&arguments.scene, &arguments.model, &arguments.answer),

@@ -2,16 +2,16 @@
 
 use clap::Args;
 
-use crate::command::answer::{Answer, CommandError};
-use crate::command::common::{ForWhom, folder};
+use crate::command::shared_arguments::{JsonOption, folder};
+use crate::command::status::{CommandError, CommandStatus};
 use crate::file::{Purpose, load_for};
-use crate::listing::listing;
 use crate::quantity::significant;
 use crate::studies::model::{Advice, Deviation, Judged, advise, percent};
+use crate::text_table::markdown_table;
 
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
 #[derive(Debug, Args)]
-pub struct Question {
+pub struct ModelArguments {
     /// Find the cheapest model of a scene file's device whose verdict and motion are those of the
     /// fullest: rigid or with its masses, in its hand or in none, with the amplifier's lag or without
     #[arg(long, conflicts_with = "Wanted")]
@@ -31,15 +31,19 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 /// Compares the models of the scene's device.
-pub fn run(scene: &str, question: &Question, answer: &ForWhom) -> Result<Answer, CommandError> {
+pub fn run(
+    scene: &str,
+    arguments: &ModelArguments,
+    answer: &JsonOption,
+) -> Result<CommandStatus, CommandError> {
     let file = load_for(Purpose::Simulate, scene)?;
-    let advice = advise(&file, folder(scene), question.bound)?;
+    let advice = advise(&file, folder(scene), arguments.bound)?;
     answer.print(&advice, text)?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 fn text(advice: &Advice) -> String {
-    let mut table = listing(
+    let mut table = markdown_table(
         [
             "model",
             "states",

@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Window};
-use crate::command::answer::CommandError;
-use crate::command::values::positive_range;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::positive_range;
 use crate::file::{self, Purpose};
 use crate::open_loop::OpenLoop;
 use crate::simulation::Experiment;

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::answer::CommandError;
+use crate::command::status::CommandError;
 use crate::simulation::method::Method;
 use crate::studies::failures::region::{METHODS, Region};
 

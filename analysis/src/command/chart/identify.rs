@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::answer::CommandError;
 use crate::command::identify::{Reading, of_file};
-use crate::command::values::positive;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::positive;
 
 /// Arguments of `haptic chart identify`.
 #[derive(Debug, Args)]

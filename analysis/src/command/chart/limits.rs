@@ -8,14 +8,14 @@ use firmware::scene::Coupling;
 use super::output::OutputArguments;
 use crate::chart::limits::{DelayCurve, Own};
 use crate::chart::{self, Chart, ChartError, Data};
-use crate::command::answer::CommandError;
-use crate::command::common::SceneArgument;
 use crate::command::file_scene::transducers_of;
-use crate::command::values::{number, positive_range};
+use crate::command::shared_arguments::SceneArgument;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::{number, positive_range};
 use crate::limits::{Curves, Limit, Point, at_period, largest_stiffness, with_wall};
-use crate::map::MapError;
 use crate::progress;
 use crate::quantity::{shortened, significant};
+use crate::stability_map::MapError;
 
 /// Arguments of `haptic chart limits`.
 #[derive(Debug, Args)]

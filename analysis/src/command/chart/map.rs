@@ -7,14 +7,14 @@ use clap::Args;
 use super::output::OutputArguments;
 use crate::chart::map::Overlay;
 use crate::chart::{self, Chart, Data};
-use crate::command::answer::CommandError;
-use crate::command::common::SceneArgument;
-use crate::command::values::range;
+use crate::command::shared_arguments::SceneArgument;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::range;
 use crate::file::SceneFile;
-use crate::map::border::closed_form_border;
-use crate::map::{Family, Map, MapError, Region};
 use crate::progress;
 use crate::quantity::{shortened, significant};
+use crate::stability_map::border::closed_form_border;
+use crate::stability_map::{Family, Map, MapError, Region};
 
 /// Arguments of `haptic chart map`.
 #[derive(Debug, Args)]

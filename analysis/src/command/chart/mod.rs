@@ -12,7 +12,7 @@ pub mod tradeoff;
 
 use clap::{Args, Subcommand};
 
-use super::answer::{Answer, CommandError};
+use super::status::{CommandError, CommandStatus};
 use output::OutputArguments;
 
 /// Arguments of `haptic chart`.
@@ -67,7 +67,7 @@ impl Single {
 }
 
 /// Draws the picture and writes it.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let kind = match &arguments.kind {
         Kind::Single(kind) => kind,
         Kind::Tradeoff(arguments) => return tradeoff::run(arguments),
@@ -83,5 +83,5 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         Single::Failures(_) => failures::draw()?,
     };
     files.write(chart)?;
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::output::{OutputArguments, WindowArguments};
 use crate::chart::{self, Chart};
-use crate::command::answer::CommandError;
+use crate::command::status::CommandError;
 use crate::file;
 
 /// Arguments of `haptic chart nyquist`.

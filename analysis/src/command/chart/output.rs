@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::chart::{Chart, ChartError, Output, Window};
-use crate::command::values::range;
+use crate::command::value_parsers::range;
 
 /// Where a picture goes, and its numbers.
 #[derive(Debug, Args)]

@@ -7,10 +7,10 @@ use clap::Args;
 use super::output::{Files, OutputArguments, WindowArguments};
 use crate::chart::trace::{data, drawable, trace};
 use crate::chart::{Chart, ChartError};
-use crate::command::answer::{Answer, CommandError};
-use crate::command::common::folder;
+use crate::command::shared_arguments::folder;
+use crate::command::status::{CommandError, CommandStatus};
 use crate::file::{self, Purpose};
-use crate::recorded::{self, RecordedError};
+use crate::run_csv::{self, RunCsvError};
 use crate::trace::Trace;
 
 /// Arguments of `haptic chart trace`.
@@ -21,10 +21,10 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     pub file: String,
     /// Period of the servo in s, for a .csv that counts ticks
-    #[arg(long, value_name = "SECONDS", value_parser = crate::command::values::positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::command::value_parsers::positive)]
     pub period: Option<f64>,
     /// Torque limit in N m to be drawn; of a scene file it is known
-    #[arg(long, value_name = "N M", value_parser = crate::command::values::positive)]
+    #[arg(long, value_name = "N M", value_parser = crate::command::value_parsers::positive)]
     pub torque_limit: Option<f64>,
     /// Title of the picture; otherwise the scene's or the file's name
     #[arg(long)]
@@ -38,24 +38,24 @@ pub struct Arguments {
 }
 
 /// Draws the run and writes the picture; no, where it cannot show all of it.
-pub fn run(arguments: &Arguments, files: &Files) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments, files: &Files) -> Result<CommandStatus, CommandError> {
     let run = drawable(load(arguments)?);
     let left_out = run.lost.map(|_| CommandError::LeftOut { sample: run.time.len() });
     match (trace(&run, &arguments.window.window()), left_out) {
         (Err(ChartError::TooFewPoints), Some(left_out)) => Err(left_out),
         (drawn, left_out) => {
             files.write(Chart { picture: drawn?, data: data(run) })?;
-            left_out.map_or(Ok(Answer::Yes), Err)
+            left_out.map_or(Ok(CommandStatus::Success), Err)
         }
     }
 }
 
 fn load(arguments: &Arguments) -> Result<Trace, CommandError> {
     let path = Path::new(&arguments.file);
-    let mut drawn = if recorded::is_recorded(path) {
-        recorded::load(path, arguments.period)?
+    let mut drawn = if run_csv::is_run_csv(path) {
+        run_csv::load(path, arguments.period)?
     } else if arguments.period.is_some() {
-        return Err(RecordedError::PeriodKnown { file: arguments.file.clone() }.into());
+        return Err(RunCsvError::PeriodKnown { file: arguments.file.clone() }.into());
     } else {
         let file = file::load_for(Purpose::Simulate, &arguments.file)?;
         Trace::simulated(&file, folder(&arguments.file))?

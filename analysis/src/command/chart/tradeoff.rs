@@ -8,11 +8,11 @@ use clap::{Args, ValueEnum};
 
 use crate::chart::tradeoff::Panels;
 use crate::chart::{self, Output};
-use crate::command::answer::{Answer, CommandError};
+use crate::command::status::{CommandError, CommandStatus};
+use crate::compare_run::{Backend, Input, run_with_backend};
 use crate::program::{self, Program};
 use crate::progress;
 use crate::quantity::significant;
-use crate::scenario::{Beside, Input, play};
 use crate::studies::tradeoff::ticks::{self, Ticks};
 use crate::studies::tradeoff::{
     self, Subject, Tradeoff, certificate, rate, servo, simulation, sine,
@@ -65,7 +65,7 @@ pub enum Topic {
 /// Pixels of a PNG for each pixel of the drawing: the pictures are large, and kept.
 const SCALE: f32 = 1.0;
 /// Ticks of a run on the emulated board.
-const TICKS: usize = 5000;
+const DEFAULT_TICKS: usize = 5000;
 
 /// All but [`Topic::All`].
 const TOPICS: [Topic; 5] =
@@ -103,7 +103,7 @@ impl Topic {
 }
 
 /// Measures, keeps and draws; says which methods are on the fronts.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("pictures/tradeoff");
     let folder = arguments.output.as_ref().unwrap_or(&kept);
     let unwritable = |path: &Path| {
@@ -144,7 +144,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
         }
         write!(io::stdout(), "{}", fronts(&tradeoff))?;
     }
-    Ok(Answer::Yes)
+    Ok(CommandStatus::Success)
 }
 
 /// Draws all panels of a table into a folder, as SVG and as PNG.
@@ -210,8 +210,9 @@ fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
     let mean = |(program, file): (&'static Program, PathBuf)| {
         let mut controller = program.controller(NumberFormat::F32, &program.transducers)?;
         let hand = Input::Hand(Box::new(program.device()));
-        let beside = Some(Beside::Emulator(&file));
-        let board = play(hand, controller.as_mut(), beside, TICKS, || {})?.emulated();
+        let backend = Some(Backend::Emulator(&file));
+        let board =
+            run_with_backend(hand, controller.as_mut(), backend, DEFAULT_TICKS, || {})?.emulated();
         Ok((program, board.map_or(f64::NAN, |board| board.interrupt_instructions.mean)))
     };
     let means = walls.into_iter().zip(files).map(mean).collect();

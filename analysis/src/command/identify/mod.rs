@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
-use super::answer::{Answer, CommandError};
-use super::common::ForWhom;
-use super::values::{bounded, not_negative, positive};
+use super::shared_arguments::JsonOption;
+use super::status::{CommandError, CommandStatus};
+use super::value_parsers::{bounded, not_negative, positive};
 use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
 use crate::link::Address;
 use crate::quantity::significant;
@@ -41,7 +41,7 @@ pub struct Arguments {
     pub reading: Reading,
     #[command(flatten)]
     #[allow(missing_docs)]
-    pub answer: ForWhom,
+    pub answer: JsonOption,
     /// Write the table of the device there, ready for a scene file
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
@@ -119,7 +119,7 @@ struct Report<'a> {
 
 /// Answers with the device; no if it has no passivity that could be certified with, or if a code of
 /// the emulated board differs from this machine's.
-pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let (record, origin, counts_per_turn) = record(arguments)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
     let correction = arguments.reading.correction(counts_per_turn, settle);
@@ -135,7 +135,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     if let Some(difference) = differs {
         eprintln!("{difference}");
     }
-    Ok(if found.passivity().is_some() && differs.is_none() { Answer::Yes } else { Answer::No })
+    Ok(if found.passivity().is_some() && differs.is_none() {
+        CommandStatus::Success
+    } else {
+        CommandStatus::NegativeVerdict
+    })
 }
 
 /// The record of a file, or one that is made, and the counts in a turn.

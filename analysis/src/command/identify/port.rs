@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::command::answer::CommandError;
-use crate::identify::port::Player;
+use crate::command::status::CommandError;
+use crate::identify::port::SweepPort;
 use crate::identify::{IdentifyError, Record, record};
 use crate::link::Address;
 use crate::progress;
@@ -11,16 +11,16 @@ use crate::progress;
 /// Has the board measure its device; gives the record and the counts in a turn. A record that is not
 /// whole is kept too, to be looked at.
 pub fn measure(address: &Address, keep: Option<&Path>) -> Result<(Record, f64), CommandError> {
-    let player = Player::open(address)?;
-    let counts_per_turn = player.description().counts_per_turn;
-    let bar = progress::bar(player.description().ticks, "identify");
-    let recording = player.record(progress::stepper(&bar))?;
+    let port = SweepPort::open(address)?;
+    let counts_per_turn = port.description().counts_per_turn;
+    let bar = progress::bar(port.description().ticks, "identify");
+    let recording = port.record(progress::stepper(&bar))?;
     bar.finish_and_clear();
     if let Some(path) = keep {
         let unwritable = |source| CommandError::Unwritable { path: path.to_owned(), source };
         std::fs::write(path, &recording.text).map_err(unwritable)?;
     }
-    recording.whole()?;
+    recording.check_complete()?;
     let read = record::parse(&address.to_string(), recording.text.as_bytes());
     Ok((read.map_err(IdentifyError::from)?, counts_per_turn))
 }

@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::command::answer::CommandError;
-use crate::command::values::not_negative;
+use crate::command::status::CommandError;
+use crate::command::value_parsers::not_negative;
 use crate::file;
 use crate::identify::measurement::{self, Measurement};
 use crate::identify::rig::{MeasuredDevice, Sensing};
+use crate::lockstep::Difference;
 use crate::program::damper_wall;
 use crate::program::identify::{SWEEP, TRANSDUCERS};
 use crate::progress;
-use crate::rig::Difference;
 use crate::simulation::plant::Plant;
 use crate::toolchain::{self, NumberFormat, Tools};
 

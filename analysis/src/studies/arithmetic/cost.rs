@@ -1,10 +1,10 @@
 //! What a tick takes on the emulated board in a format.
 
 use firmware::number::Arithmetic;
-use firmware_harness::trial::Trial;
+use firmware_harness::bench_request::BenchRequest;
 
 use super::{ArithmeticError, Motion};
-use crate::emulator::Trials;
+use crate::emulator::BenchClient;
 
 /// Instructions of a tick from count to code, on the emulated board.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,16 +21,16 @@ pub struct Cost {
 /// Where the scene cannot be had in this format, the board fails or has no program for it, or a
 /// torque or a code of the board is not to the bit that of this machine.
 pub fn cost(
-    board: &mut Trials,
+    board: &mut BenchClient,
     motion: &Motion,
     arithmetic: Arithmetic,
 ) -> Result<Cost, ArithmeticError> {
     let here = motion.torques(arithmetic)?;
     let units = motion.subject().units(arithmetic);
     let (scene, transducers) = motion.subject().scaled(arithmetic);
-    let trial = Trial::Servo { scene, transducers, arithmetic };
+    let request = BenchRequest::Servo { scene, transducers, arithmetic };
     let counts: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
-    let there = board.compute(&trial, &counts)?;
+    let there = board.compute(&request, &counts)?;
     let bits = |torque: f64, code| (torque.to_bits(), code);
     let mut pairs = here.iter().zip(&there);
     let differs = pairs.position(|(&(torque, code), there)| {

@@ -5,8 +5,8 @@ use firmware::number::Arithmetic;
 
 use super::{ArithmeticError, Subject};
 use crate::controller::controller;
-use crate::hand::Script;
-use crate::rig::{Alone, SimulatedDevice, run};
+use crate::hand::HandTrajectory;
+use crate::lockstep::{NoRemote, SimulatedDevice, run};
 
 /// Counts of a device in a hand, as the servo in `f64` moves it.
 #[derive(Clone, Debug)]
@@ -25,14 +25,18 @@ impl Motion {
     ///
     /// # Errors
     /// Where the scene is refused or cannot be simulated.
-    pub fn new(subject: &Subject, script: Script, seconds: f64) -> Result<Self, ArithmeticError> {
+    pub fn new(
+        subject: &Subject,
+        trajectory: HandTrajectory,
+        seconds: f64,
+    ) -> Result<Self, ArithmeticError> {
         let Subject { scene, transducers, .. } = *subject;
         let period = scene.timing.period;
-        let mut device = SimulatedDevice::new(scene.device, script, period, &transducers)?;
+        let mut device = SimulatedDevice::new(scene.device, trajectory, period, &transducers)?;
         let certified = scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;
-        let Ok(run) = run::<Alone>(&mut device, servo.as_mut(), None, ticks, || {});
+        let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
         let counts = run.ticks.iter().map(|tick| tick.count as i32).collect();
         Ok(Self::recorded(subject, counts))
     }

@@ -6,8 +6,8 @@ use firmware::number::Arithmetic;
 use serde::Serialize;
 
 use super::{ArithmeticError, FormatServo, Subject};
-use crate::device::{Grip, Hand, Motion, SimulatedEncoder};
-use crate::simulation::held::HeldDevice;
+use crate::device::{Hand, HandSetpoint, Motion, SimulatedEncoder};
+use crate::simulation::held_device::HeldDevice;
 
 /// What is left of the motion of a device that is pushed against a wall, or let go in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -127,7 +127,8 @@ impl Settling<'_> {
             };
             torques.add(torque);
             angles.add(angle);
-            self.motion = self.device.step(self.motion, self.push - torque, Grip::default()).0;
+            self.motion =
+                self.device.step(self.motion, self.push - torque, HandSetpoint::default()).0;
         }
         Ok(Rest { hum: torques.length(), cycle: angles.length() })
     }

@@ -5,9 +5,9 @@ use std::path::Path;
 use firmware::certificate::Parameter;
 use thiserror::Error;
 
-use crate::emulator::world::{Still, World};
+use crate::emulator::plant_thread::{FixedCount, PlantThread};
 use crate::emulator::{Emulator, EmulatorError};
-use crate::link::{Address, Answer, Link, LinkError};
+use crate::link::{Address, Link, LinkError, RequestResult};
 
 /// What a set took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +39,14 @@ pub enum LiveError {
 /// Where the board or the way to it fails.
 pub fn live_set(elf: &Path, changes: &[(Parameter, f64)]) -> Result<LiveSet, LiveError> {
     let mut emulator = Emulator::boot(elf)?;
-    emulator.engage()?;
-    let world = World::start(emulator, Still(0));
-    let mut link = Link::open(&Address::Unix(world.port().to_owned()))?;
+    emulator.arm_and_wait()?;
+    let plant = PlantThread::start(emulator, FixedCount(0));
+    let mut link = Link::open(&Address::Unix(plant.port().to_owned()))?;
     let outcome = link.set(changes.iter().copied().collect())?;
     let stack_left = link.status()?.stack_left;
-    let report = world.end()?.finish()?;
+    let report = plant.end()?.finish()?;
     Ok(LiveSet {
-        taken: outcome == Answer::Done,
+        taken: outcome == RequestResult::Done,
         instructions: report.below_instructions.max,
         interrupt: report.interrupt_instructions.max,
         stack_left,

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use crate::map::{Family, Map, MapError};
+use crate::stability_map::{Family, Map, MapError};
 use firmware::certificate::assess;
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::{Coupling, Device, Scene, Timing};

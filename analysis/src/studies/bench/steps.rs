@@ -8,7 +8,7 @@ use firmware::scene::{Coupling, Device, Scene, Timing};
 
 use super::{ROUNDS, median};
 use crate::device::Motion;
-use crate::simulation::{Experiment, Simulator, Stride, Trajectory};
+use crate::simulation::{Experiment, Integration, Simulator, Trajectory};
 
 /// Steps of a run.
 pub const STEPS: usize = 10_000;
@@ -49,7 +49,7 @@ pub fn by_hand(out: &mut Trajectory) {
 /// Median times in nanoseconds of one step on one core: of the exact method on a wall of degree
 /// 1, and of the loop by hand, in turns.
 pub fn step_times() -> (f64, f64) {
-    let mut simulator = Simulator::new(&experiment(0.0, 1, None), Stride::default())
+    let mut simulator = Simulator::new(&experiment(0.0, 1, None), Integration::default())
         .expect("a wall has a difference equation");
     let mut out = Trajectory::of_length(STEPS);
     let time = |run: &mut dyn FnMut(&mut Trajectory), out: &mut Trajectory| {

@@ -7,7 +7,7 @@ use firmware::scene::Scene;
 use serde::Serialize;
 
 use crate::quantity::significant;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues, radius};
 
 /// Does it come to rest?
@@ -76,9 +76,9 @@ impl Claim {
     pub fn eigenvalues(
         by: impl Into<String>,
         experiment: &Experiment,
-        stride: Stride,
+        integration: Integration,
     ) -> Result<Self, SimulationError> {
-        let closed = closed_loop(experiment, stride)?;
+        let closed = closed_loop(experiment, integration)?;
         Ok(Self::modulus(by, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
     }
 

@@ -10,8 +10,8 @@ use super::claim::Claim;
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, coupled, friction_for_rest, trial, wall_of};
 use super::trial::Trial;
-use crate::simulation::drive::Drive;
-use crate::simulation::{Experiment, Stride};
+use crate::simulation::torque_signal::TorqueSignal;
+use crate::simulation::{Experiment, Integration};
 
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
@@ -63,7 +63,7 @@ fn leaning(
 ) -> Trial {
     let mut trial = trial(what, scene, transducers, expected).pushed(0.0, SAMPLES);
     trial.experiment.friction = friction;
-    trial.experiment.drive = Drive::Held(vec![LEANS; SAMPLES]);
+    trial.experiment.hand_torque = TorqueSignal::Held(vec![LEANS; SAMPLES]);
     trial.experiment.encoder_step = Some(std::f64::consts::TAU / transducers.counts_per_turn);
     trial
 }
@@ -73,7 +73,7 @@ fn ideal(scene: &Scene) -> Result<Vec<Claim>, FailureError> {
     let mut smooth = leaning("no steps", scene, PADDLES, End::Rests, 0.0);
     smooth.experiment.encoder_step = None;
     Ok(vec![
-        Claim::eigenvalues("linear analysis", &Experiment::still(scene), Stride::default())?,
+        Claim::eigenvalues("linear analysis", &Experiment::still(scene), Integration::default())?,
         Claim::simulated("simulation in real numbers", &smooth)?,
     ])
 }

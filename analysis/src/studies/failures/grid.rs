@@ -12,7 +12,7 @@ use super::fate::End;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial};
 use crate::device::Hand;
 use crate::response::Response;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// Distance of the resonance's pole from the unit circle.
 const NARROW: f64 = 1e-6;
@@ -34,11 +34,13 @@ pub fn grid() -> Result<Study, FailureError> {
         Claim::new(format!("grid of {points}"), Says::of(alpha < delta), alpha, because)
     });
     let alone = Experiment::still(&scene);
-    let truth = Claim::eigenvalues("exact exponential, in no hand", &alone, Stride::default())?;
+    let truth =
+        Claim::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
     // A spring with which the device resonates where the minimum is.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
     let mut grows = trial("in a hand that resonates there", &scene, PADDLES, End::Grows);
-    grows.experiment.plant = grows.experiment.plant.held(Hand { stiffness, ..Hand::default() });
+    grows.experiment.plant =
+        grows.experiment.plant.with_hand(Hand { stiffness, ..Hand::default() });
     let certificate = Claim::certificate(&scene);
     let trials = vec![grows.pushed(1.0, 300_000)];
     Ok(Study { claims: claims.into(), certificate, truth, trials })

@@ -8,7 +8,7 @@ use super::fate::End;
 use super::setting::{KNOB, KNOBS, coupled, rigid, trial, wall_of};
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
-use crate::simulation::{Experiment, Stride};
+use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
 use crate::studies::tradeoff::simulation;
 
@@ -25,10 +25,10 @@ pub fn explicit_euler() -> Result<Study, FailureError> {
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
     let mut claims = Vec::new();
     for substeps in [1, 20] {
-        let stride = Stride { method: Method::Euler, substeps };
-        claims.push(Claim::eigenvalues(name(Method::Euler, substeps), &experiment, stride)?);
+        let integration = Integration { method: Method::Euler, substeps };
+        claims.push(Claim::eigenvalues(name(Method::Euler, substeps), &experiment, integration)?);
     }
-    let truth = Claim::eigenvalues(Method::Exact.name(), &experiment, Stride::default())?;
+    let truth = Claim::eigenvalues(Method::Exact.name(), &experiment, Integration::default())?;
     let mut certified = trial("the certified wall", &scene, KNOBS, End::Rests).pushed(1.0, 3000);
     certified.experiment.plant = experiment.plant;
     Ok(Study { claims, certificate: Claim::certificate(&scene), truth, trials: vec![certified] })
@@ -91,8 +91,8 @@ fn by_limit(
     substeps: u32,
     stiffness: f64,
 ) -> Result<Claim, FailureError> {
-    let stride = Stride { method, substeps };
-    let limit = critical_stiffness(experiment, stride)?.unwrap_or(f64::INFINITY);
+    let integration = Integration { method, substeps };
+    let limit = critical_stiffness(experiment, integration)?.unwrap_or(f64::INFINITY);
     let says = Says::of(stiffness < limit);
     Ok(Claim::new(name(method, substeps), says, limit, "stable up to {} N m/rad"))
 }

@@ -5,15 +5,15 @@ use firmware::dac::DacCode;
 use firmware::servo::Transducers;
 
 use crate::device::SimulatedEncoder;
-use crate::rig::Plant;
-use crate::simulation::drive::Drive;
+use crate::lockstep::PlantIo;
 use crate::simulation::plant::POSITION;
-use crate::simulation::{Experiment, Machine, SimulationError, Stride};
+use crate::simulation::torque_signal::TorqueSignal;
+use crate::simulation::{Experiment, Integration, Machine, SimulationError};
 
 /// A device that keeps a record of where it was.
 pub struct LoadedDevice {
     machine: Machine,
-    drive: Drive,
+    hand_torque: TorqueSignal,
     encoder: SimulatedEncoder,
     torque_per_code: f64,
     missed: Box<dyn Iterator<Item = bool>>,
@@ -31,16 +31,16 @@ impl LoadedDevice {
         experiment: &Experiment,
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
-        let stride = Stride::default();
+        let integration = Integration::default();
         // Refuses what has no motion.
-        experiment.tick(stride)?;
+        experiment.tick(integration)?;
         let mut missed = experiment.missed.ticks();
         // The first tick is never missed.
         missed.next();
         let full_scale = transducers.full_scale_torque;
         Ok(Self {
-            machine: Machine::new(experiment, stride),
-            drive: experiment.drive.clone(),
+            machine: Machine::new(experiment, integration),
+            hand_torque: experiment.hand_torque.clone(),
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             missed: Box::new(missed),
@@ -59,7 +59,7 @@ impl LoadedDevice {
         let mut before = std::mem::replace(&mut self.torque, torque);
         loop {
             self.positions.push(self.position());
-            self.machine.tick(self.positions.len() - 1, &self.drive, [before, torque]);
+            self.machine.tick(self.positions.len() - 1, &self.hand_torque, [before, torque]);
             before = torque;
             if !self.missed.next().unwrap_or(false) {
                 return;
@@ -68,7 +68,7 @@ impl LoadedDevice {
     }
 }
 
-impl Plant for LoadedDevice {
+impl PlantIo for LoadedDevice {
     fn count(&mut self) -> Option<i32> {
         Some(self.encoder.read(self.position()))
     }

@@ -17,8 +17,8 @@ use super::loaded::LoadedDevice;
 use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial, wall_of};
 use super::trial::Trial;
 use crate::simulation::SimulationError;
-use crate::simulation::drive::Drive;
-use crate::simulation::rendering::PreparedServo;
+use crate::simulation::torque_signal::TorqueSignal;
+use crate::simulation::unquantized_servo::UnquantizedServo;
 
 /// Samples of the trial.
 const SAMPLES: usize = 4000;
@@ -32,7 +32,7 @@ pub fn passivity_observer() -> Result<Study, FailureError> {
     // Slowly in and out, far less than a count a tick.
     let part = |sample: usize| sample as f64 / (SAMPLES / 4) as f64;
     let lean = |sample| LEANS * part(sample).min(2.0 - part(sample)).max(0.0);
-    ours.experiment.drive = Drive::Held((0..SAMPLES).map(lean).collect());
+    ours.experiment.hand_torque = TorqueSignal::Held((0..SAMPLES).map(lean).collect());
     let claims = vec![
         observed(&scene, &ours, "passivity observer", Divide::Always)?,
         observed(&scene, &ours, "the same, not at v = 0", Divide::WhereItMoves)?,
@@ -53,7 +53,7 @@ enum Divide {
 
 /// The wall with the observer around it: what it asks the motor for.
 fn observed(scene: &Scene, trial: &Trial, by: &str, divide: Divide) -> Result<Claim, FailureError> {
-    let mut servo = PreparedServo::new(scene).map_err(SimulationError::from)?;
+    let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;
     let mut device = LoadedDevice::new(&trial.experiment, &PADDLES)?;
     let step = TAU / PADDLES.counts_per_turn;
     let (mut energy, mut last, mut held, mut peak) = (0.0, 0.0, 0.0, 0.0_f64);

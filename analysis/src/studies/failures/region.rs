@@ -3,7 +3,7 @@
 use super::case::FailureError;
 use crate::limits::{Limit, largest_stiffness};
 use crate::simulation::method::Method;
-use crate::simulation::{Experiment, Stride};
+use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
 use crate::studies::tradeoff::simulation;
 
@@ -40,8 +40,8 @@ impl Region {
 
     fn of(device: &'static str, experiment: &Experiment) -> Result<Self, FailureError> {
         let limit = |method, substeps| -> Result<f64, FailureError> {
-            let stride = Stride { method, substeps };
-            Ok(critical_stiffness(experiment, stride)?.unwrap_or(0.0))
+            let integration = Integration { method, substeps };
+            Ok(critical_stiffness(experiment, integration)?.unwrap_or(0.0))
         };
         let Limit::RoundUp3(certified) = largest_stiffness(&experiment.scene) else {
             return Err(FailureError::NoLimit);

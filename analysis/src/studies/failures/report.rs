@@ -7,8 +7,8 @@ use super::claim::{Claim, Failure};
 use super::fate::{End, Fate};
 use super::trial::{Played, Trial};
 use super::walls::{DELAYS, wall};
-use crate::emulator::Player;
-use crate::worst_hand::Held;
+use crate::emulator::ServoClient;
+use crate::worst_hand::HandCase;
 
 /// A case with everything about it.
 #[derive(Clone, Debug, Serialize)]
@@ -58,7 +58,7 @@ pub struct WallReport {
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
     /// The hand in which it oscillates at 1.01 of that.
-    pub hand: Held,
+    pub hand: HandCase,
     /// What was seen.
     pub trials: Vec<Seen>,
 }
@@ -68,7 +68,7 @@ impl Case {
     ///
     /// # Errors
     /// Where a loop cannot be had or run.
-    pub fn report(&self, player: &mut Option<Player>) -> Result<CaseReport, FailureError> {
+    pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, FailureError> {
         let study = self.study()?;
         let truth = study.truth.says;
         let judged = |claim: Claim| Judged { failure: claim.failure(truth), claim };
@@ -87,7 +87,7 @@ impl Case {
 ///
 /// # Errors
 /// Where one has no limit, or cannot be run.
-pub fn walls(player: &mut Option<Player>) -> Result<Vec<WallReport>, FailureError> {
+pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, FailureError> {
     let report = |delay| {
         let wall = wall(delay)?;
         let trials = [&wall.below[..], &[wall.above]].concat();
@@ -97,7 +97,7 @@ pub fn walls(player: &mut Option<Player>) -> Result<Vec<WallReport>, FailureErro
     DELAYS.map(report).collect()
 }
 
-fn seen(trials: &[Trial], player: &mut Option<Player>) -> Result<Vec<Seen>, FailureError> {
+fn seen(trials: &[Trial], player: &mut Option<ServoClient>) -> Result<Vec<Seen>, FailureError> {
     let see = |trial: &Trial| {
         let emulated = player.as_mut().map(|player| trial.emulated(player)).transpose()?;
         let (what, expected) = (trial.what, trial.expected);

@@ -15,8 +15,8 @@ use super::setting::{
 use super::trial::Trial;
 use crate::limits::{Limit, largest_stiffness};
 use crate::response::Response;
-use crate::simulation::closed::transfers;
-use crate::simulation::{Experiment, SimulationError, Stride};
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// Continuous time: a mass, a damper and any spring come to rest.
 pub fn continuous_time() -> Result<Study, FailureError> {
@@ -105,6 +105,7 @@ pub fn damped_rule() -> Result<Study, FailureError> {
 /// A study whose truth is the eigenvalues of the device in no hand.
 fn study(claims: Vec<Claim>, scene: &Scene, trials: Vec<Trial>) -> Result<Study, FailureError> {
     let alone = Experiment::still(scene);
-    let truth = Claim::eigenvalues("exact exponential, in no hand", &alone, Stride::default())?;
+    let truth =
+        Claim::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
     Ok(Study { claims, certificate: Claim::certificate(scene), truth, trials })
 }

@@ -5,7 +5,7 @@ use firmware::environment::Environment;
 use firmware::number::{Arithmetic, InEach, Number, OutOfRange};
 use firmware::scene::{Device, Scene};
 use firmware::servo::{BuildError, Transducers};
-use firmware_harness::play::{Curtain, Play};
+use firmware_harness::loop_request::{LoopRequest, StartReply};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -13,9 +13,9 @@ use super::claim::{Claim, Says};
 use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
 use crate::controller::{Controller, controller};
-use crate::emulator::{EmulatorError, Player};
-use crate::rig::run;
-use crate::simulation::{Experiment, SimulationError, Stride, simulate};
+use crate::emulator::{EmulatorError, ServoClient};
+use crate::lockstep::run;
+use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
 /// Why there is no proof.
 #[derive(Debug, Error)]
@@ -82,7 +82,7 @@ impl Trial {
     /// Where it cannot be simulated.
     pub fn simulated(&self) -> Result<Fate, TrialError> {
         let positions = match self.arithmetic {
-            Arithmetic::F32 => simulate(&self.experiment, Stride::default())?.position,
+            Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
             _ => self.without_converters()?,
         };
         Ok(Fate::of(&positions, self.experiment.samples))
@@ -105,17 +105,17 @@ impl Trial {
     ///
     /// # Errors
     /// Where the board fails, or disagrees with this machine.
-    pub fn emulated(&self, player: &mut Player) -> Result<Played, TrialError> {
-        let play = self.play();
-        let (curtain, here) = (player.open(&play)?, self.certified());
-        let certified = match (curtain, here) {
-            (Curtain::Open, Ok(certified)) => certified,
-            (Curtain::Refused, Err(_)) => return Ok(Played::Refused),
-            (curtain, _) => return Err(TrialError::Disagreement(format!("{curtain:?}"))),
+    pub fn emulated(&self, player: &mut ServoClient) -> Result<Played, TrialError> {
+        let request = self.request();
+        let (reply, here) = (player.start(&request)?, self.certified());
+        let certified = match (reply, here) {
+            (StartReply::Ready, Ok(certified)) => certified,
+            (StartReply::Rejected, Err(_)) => return Ok(Played::Refused),
+            (reply, _) => return Err(TrialError::Disagreement(format!("{reply:?}"))),
         };
         let mut servo = self.controller(&certified)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
-        let ticks = play.ticks as usize;
+        let ticks = request.ticks as usize;
         let run = run(&mut device, servo.as_mut(), Some(player), ticks, || {})?;
         match run.difference {
             Some(difference) => Err(TrialError::Disagreement(difference.to_string())),
@@ -134,8 +134,8 @@ impl Trial {
         self.told().certify().map_err(refused)
     }
 
-    fn play(&self) -> Play {
-        Play {
+    fn request(&self) -> LoopRequest {
+        LoopRequest {
             scene: self.told(),
             transducers: self.transducers,
             arithmetic: self.arithmetic,

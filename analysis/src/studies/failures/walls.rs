@@ -11,7 +11,7 @@ use super::setting::{PADDLE, PADDLES, PERIOD, coupled, rigid, trial, wall_of};
 use super::trial::Trial;
 use crate::chain::Chain;
 use crate::limits::{Limit, largest_stiffness, with_wall};
-use crate::worst_hand::{Held, plant, search};
+use crate::worst_hand::{HandCase, plant, search};
 
 /// Delays in samples.
 pub const DELAYS: std::ops::RangeInclusive<usize> = 0..=4;
@@ -27,7 +27,7 @@ pub struct Wall {
     /// Largest certified stiffness in N m/rad.
     pub limit: f64,
     /// The hand in which it is worst at 1.01 of that.
-    pub hand: Held,
+    pub hand: HandCase,
     /// At 0.99, in no hand and in that one.
     pub below: [Trial; 2],
     /// At 1.01 in that hand.

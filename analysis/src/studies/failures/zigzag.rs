@@ -13,7 +13,7 @@ use super::claim::{Claim, Says};
 use super::fate::End;
 use super::setting::{PADDLE, PADDLES, encoder_friction, rigid, trial, wall_of};
 use crate::simulation::SimulationError;
-use crate::simulation::rendering::PreparedServo;
+use crate::simulation::unquantized_servo::UnquantizedServo;
 
 /// Times to and fro.
 const TIMES: usize = 8;
@@ -51,7 +51,7 @@ pub fn wall() -> Scene {
 /// Where the scene has no law that could run.
 pub fn gained(scene: &Scene, friction: f64) -> Result<f64, FailureError> {
     let step = TAU / PADDLES.counts_per_turn;
-    let mut servo = PreparedServo::new(scene).map_err(SimulationError::from)?;
+    let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;
     let mut work = [0.0; 2];
     for half in 0..2 * TIMES {
         // Below the edge, and on its way up; above it, and on its way down.

@@ -8,10 +8,10 @@ use serde::Serialize;
 
 use super::Model;
 use crate::file::SceneFile;
-use crate::simulation::{Experiment, SimulationError, Stride, Trajectory, simulate};
+use crate::simulation::{Experiment, Integration, SimulationError, Trajectory, simulate};
 use crate::stability;
 use crate::studies::bench::median;
-use crate::verdict::{self, Report};
+use crate::verdict::{self, VerdictReport};
 
 /// What a model says.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,25 +41,25 @@ impl Facts {
         file: &SceneFile,
         run: &Experiment,
     ) -> Result<Self, SimulationError> {
-        let (experiment, stride) =
-            (Experiment { plant: model.plant(file), ..run.clone() }, Stride::default());
+        let (experiment, integration) =
+            (Experiment { plant: model.plant(file), ..run.clone() }, Integration::default());
         let certificate = certificate(model, file);
-        let stability = stability::judge(&experiment, stride)?;
+        let stability = stability::judge(&experiment, integration)?;
         Ok(Self {
-            states: stability::closed_loop(&experiment, stride)?.matrix.nrows(),
+            states: stability::closed_loop(&experiment, integration)?.matrix.nrows(),
             steps_per_second: speed(&experiment)?,
             delta: certificate.as_ref().map(|report| report.delta),
             certificate: certificate.map(|report| report.verdict),
             stability: stability.verdict,
             critical_stiffness: stability.critical_stiffness,
-            motion: simulate(&experiment, stride)?,
+            motion: simulate(&experiment, integration)?,
         })
     }
 }
 
 /// The certificate of the scene on the model's device, if that has any passivity: its own, or what
 /// the file declares where that is less.
-fn certificate(model: Model, file: &SceneFile) -> Option<Report> {
+fn certificate(model: Model, file: &SceneFile) -> Option<VerdictReport> {
     let mut device = model.chain(file).as_rigid().ok()?;
     if let Some(declared) = declared(file) {
         device.passivity = Some(device.passivity.unwrap_or(device.damping).min(declared));
@@ -81,7 +81,7 @@ fn speed(experiment: &Experiment) -> Result<f64, SimulationError> {
     let mut times = Vec::new();
     for _ in 0..ROUNDS {
         let start = Instant::now();
-        black_box(simulate(black_box(&experiment), Stride::default())?);
+        black_box(simulate(black_box(&experiment), Integration::default())?);
         times.push(start.elapsed().as_secs_f64());
     }
     Ok(STEPS as f64 / median(times))

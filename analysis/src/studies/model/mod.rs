@@ -63,7 +63,7 @@ impl Model {
     /// The machine of a file in this model.
     pub fn plant(self, file: &SceneFile) -> Plant {
         let hand = file.hand.filter(|_| self.hand).unwrap_or_default();
-        Plant::of(&self.chain(file)).held(hand)
+        Plant::of(&self.chain(file)).with_hand(hand)
     }
 
     /// In words, what it lacks of another model.

@@ -5,7 +5,7 @@ use firmware::scene::Device;
 use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{self, Format, Purpose};
-use crate::simulation::{Experiment, Stride, Trajectory, simulate};
+use crate::simulation::{Experiment, Integration, Trajectory, simulate};
 use crate::{stability, verdict};
 
 /// A knob on a shaft of steel, at an amplifier that is fast, in a hand.
@@ -72,12 +72,17 @@ fn a_rigid_device_in_its_hand_is_enough_for_a_stiff_shaft() {
     let run = Experiment::of(&file, Path::new("")).unwrap();
     let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
     let motion = |plant: Plant| -> Trajectory {
-        simulate(&Experiment { plant: plant.held(hand), ..run.clone() }, Stride::default()).unwrap()
+        simulate(
+            &Experiment { plant: plant.with_hand(hand), ..run.clone() },
+            Integration::default(),
+        )
+        .unwrap()
     };
     let rigid = motion(Plant::rigid(Device { inertia: 2.2e-5, damping: 0.022, passivity: None }));
     let masses = [Mass { inertia: 1.4e-5, damping: 0.022 }, Mass { inertia: 0.8e-5, damping: 0.0 }];
-    let full =
-        motion(Plant::chain(&masses, &[Link { stiffness: 9000.0, damping: 0.01 }]).lagging(2e-6));
+    let full = motion(
+        Plant::chain(&masses, &[Link { stiffness: 9000.0, damping: 0.01 }]).with_actuator_lag(2e-6),
+    );
     let found = judged(&advice, "rigid, hand").deviation;
     assert!((found.angle - off(&rigid.position, &full.position)).abs() < 1e-9, "{found:?}");
     assert!((found.torque - off(&rigid.torque, &full.torque)).abs() < 1e-9, "{found:?}");

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 pub use error::TradeoffError;
 
-use crate::emulator::Trials;
+use crate::emulator::BenchClient;
 use crate::progress;
 use crate::quantity::significant;
 use crate::table::{Column, Table, TableError};
@@ -254,28 +254,28 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
 ///
 /// # Errors
 /// Where its program cannot be built or the emulator cannot be started.
-pub fn board() -> Result<Trials, TradeoffError> {
-    boot("building the trial of the formats", Toolchain::build_trial)
+pub fn board() -> Result<BenchClient, TradeoffError> {
+    boot("building the trial of the formats", Toolchain::build_bench_programs)
 }
 
 /// One that computes what it is asked to of any scene, whose program takes longer to build.
 ///
 /// # Errors
 /// As of [`board`].
-pub fn any_board() -> Result<Trials, TradeoffError> {
-    boot("building all types of scenes in all formats", Toolchain::build_survey)
+pub fn any_board() -> Result<BenchClient, TradeoffError> {
+    boot("building all types of scenes in all formats", Toolchain::build_bench_all)
 }
 
 fn boot(
     what: &str,
     build: fn(&Toolchain) -> Result<PathBuf, BuildError>,
-) -> Result<Trials, TradeoffError> {
+) -> Result<BenchClient, TradeoffError> {
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
     let spinner = progress::spinner(what);
     let elf = build(&toolchain)?;
     spinner.finish_and_clear();
-    Ok(Trials::boot(&elf)?)
+    Ok(BenchClient::boot(&elf)?)
 }
 
 fn written(value: f64) -> String {

@@ -8,8 +8,8 @@ use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
-use crate::emulator::Trials;
-use crate::hand::Script;
+use crate::emulator::BenchClient;
+use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
 use crate::studies::arithmetic::{self, ArithmeticError, HALF_A_TURN, Losses, Motion, cost};
 use crate::table::{Column, Table, TableError};
@@ -47,7 +47,7 @@ pub struct Case {
     /// The scene with its sensor and motor.
     pub subject: arithmetic::Subject,
     /// What a hand does.
-    pub script: Script,
+    pub trajectory: HandTrajectory,
 }
 
 impl Case {
@@ -57,7 +57,7 @@ impl Case {
         let (scene, range) = (program.scene, HALF_A_TURN);
         let steps = Resolution::of(&transducers, None);
         let subject = arithmetic::Subject { scene, transducers, steps, range };
-        Self { name: program.name, subject, script: (program.script)() }
+        Self { name: program.name, subject, trajectory: (program.trajectory)() }
     }
 
     /// The same in another environment.
@@ -71,7 +71,7 @@ impl Case {
     /// # Errors
     /// Where the scene cannot be simulated.
     pub fn motion(&self) -> Result<Motion, ArithmeticError> {
-        Motion::new(&self.subject, self.script.clone(), SECONDS)
+        Motion::new(&self.subject, self.trajectory.clone(), SECONDS)
     }
 }
 
@@ -118,7 +118,7 @@ pub fn kept() -> Result<Tradeoff, TableError> {
 fn row(
     case: &Case,
     motion: &Motion,
-    board: &mut Trials,
+    board: &mut BenchClient,
     arithmetic: Arithmetic,
 ) -> Result<Method, ArithmeticError> {
     let cost = cost(board, motion, arithmetic)?;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use firmware_harness::bench_request::{BenchRequest, Output};
 use firmware_harness::sines::Sine;
-use firmware_harness::trial::{Output, Trial};
 
 use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
 use crate::table::Column;
@@ -54,7 +54,7 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
     let inputs: Vec<_> = turns().into_iter().map(f32::to_bits).collect();
     let mut methods = Vec::new();
     for sine in Sine::ALL {
-        methods.push(row(sine, &board.compute(&Trial::Sine(sine), &inputs)?));
+        methods.push(row(sine, &board.compute(&BenchRequest::Sine(sine), &inputs)?));
     }
     board.finish()?;
     Ok(Tradeoff { subject: &SUBJECT, methods })

@@ -12,7 +12,7 @@ use firmware::number::Arithmetic;
 
 use super::NUMBER;
 use super::servo::Case;
-use crate::emulator::Trials;
+use crate::emulator::BenchClient;
 use crate::program::Program;
 use crate::studies::arithmetic::{ArithmeticError, cost};
 use crate::table::{Column, Table, TableError};
@@ -45,7 +45,10 @@ impl Ticks {
     ///
     /// # Errors
     /// Where the board fails, or computes something else than this machine.
-    pub fn measure(board: &mut Trials, mut step: impl FnMut()) -> Result<Self, ArithmeticError> {
+    pub fn measure(
+        board: &mut BenchClient,
+        mut step: impl FnMut(),
+    ) -> Result<Self, ArithmeticError> {
         let mut rows = Vec::new();
         for case in cases() {
             let motion = case.motion()?;

@@ -1,16 +1,16 @@
 //! The board's bus: what a program reads and writes there, or why there is no answer.
 
 use super::Board;
-use crate::chip::{Place, Unit};
+use crate::chip::{MapEntry, Unit};
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, WATCH};
+use crate::error::{AccessError, NotModelled};
 use crate::peripheral::Access;
-use crate::peripheral::converter::Converter;
+use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
-use crate::peripheral::pacer::Pacer;
+use crate::peripheral::dac::Dac;
 use crate::peripheral::serial::Serial;
-use crate::trouble::{NotModelled, Why};
 
 /// What an address leads to; where that is registers, with the place behind the first one.
 enum Target {
@@ -21,7 +21,7 @@ enum Target {
     /// The unit with the cycle counter.
     Watch(u32),
     /// A peripheral.
-    Unit(&'static Place, u32),
+    Unit(&'static MapEntry, u32),
 }
 
 impl Target {
@@ -29,13 +29,13 @@ impl Target {
         match self {
             Self::Priorities(_) | Self::System(_) => "the system control space",
             Self::Watch(_) => "the DWT",
-            Self::Unit(place, _) => place.name,
+            Self::Unit(map_entry, _) => map_entry.name,
         }
     }
 }
 
 /// Who has no answer, and why.
-type Fault = (Option<&'static str>, Why);
+type Fault = (Option<&'static str>, AccessError);
 
 impl Board {
     /// Reads for the program.
@@ -58,8 +58,8 @@ impl Board {
             self.stop(fault, address, Some(value));
         }
         self.serial.advance(self.now, self.clock.bus_divider());
-        self.lines();
-        self.look();
+        self.update_interrupt_lines();
+        self.record_pin_events();
     }
 
     /// Whether the bus gives an error there, which is kept for the core.
@@ -81,9 +81,9 @@ impl Board {
             }
             Target::System(offset) => self.system.read(offset, self.now),
             Target::Watch(offset) => self.system.read_watch(offset, self.now),
-            Target::Unit(place, offset) => self.read_unit(place.unit, offset),
+            Target::Unit(map_entry, offset) => self.read_unit(map_entry.unit, offset),
         };
-        value.map_err(|why| (Some(target.name()), Why::Unit(why)))
+        value.map_err(|why| (Some(target.name()), AccessError::Unit(why)))
     }
 
     fn try_write(&mut self, address: u32, size: usize, value: u32) -> Result<(), Fault> {
@@ -97,9 +97,9 @@ impl Board {
             }
             Target::System(offset) => self.system.write(offset, value, self.now),
             Target::Watch(offset) => self.system.write_watch(offset, value, self.now),
-            Target::Unit(place, offset) => self.write_unit(place.unit, offset, value),
+            Target::Unit(map_entry, offset) => self.write_unit(map_entry.unit, offset, value),
         };
-        done.map_err(|why| (Some(target.name()), Why::Unit(why)))
+        done.map_err(|why| (Some(target.name()), AccessError::Unit(why)))
     }
 
     /// What an access of so many bytes leads to.
@@ -111,24 +111,24 @@ impl Board {
         if let Some(offset) = within(address, WATCH) {
             return Ok(Target::Watch(offset));
         }
-        let place = self.place(address)?;
+        let map_entry = self.map_entry(address)?;
         // The serial port's data register may be accessed by bytes.
-        if size == 1 && place.unit != Unit::Serial {
-            return Err((Some(place.name), Why::Width));
+        if size == 1 && map_entry.unit != Unit::Serial {
+            return Err((Some(map_entry.name), AccessError::Width));
         }
-        Ok(Target::Unit(place, address - place.base))
+        Ok(Target::Unit(map_entry, address - map_entry.base))
     }
 
     /// The unit at an address, if it is clocked and not held in reset.
-    fn place(&self, address: u32) -> Result<&'static Place, Fault> {
-        let place = self.chip.at(address).ok_or((None, Why::Nobody))?;
-        match place.clocked {
+    fn map_entry(&self, address: u32) -> Result<&'static MapEntry, Fault> {
+        let map_entry = self.chip.at(address).ok_or((None, AccessError::Nobody))?;
+        match map_entry.clocked {
             Some((clock, reset, bit))
                 if !self.clock.is_set(clock, bit) || self.clock.is_set(reset, bit) =>
             {
-                Err((Some(place.name), Why::Stopped))
+                Err((Some(map_entry.name), AccessError::Stopped))
             }
-            _ => Ok(place),
+            _ => Ok(map_entry),
         }
     }
 
@@ -141,13 +141,13 @@ impl Board {
             Unit::Configuration => self.configuration.read(offset),
             Unit::Debug => self.debug.read(offset),
             Unit::Pins(port) => self.ports[port].read(offset),
-            Unit::Pacer => self.pacer.read(offset),
+            Unit::TickTimer => self.tick_timer.read(offset),
             Unit::FreeClock => self.free_clock.read(offset, now, divider),
             Unit::Encoder => {
                 self.meter.read(now);
                 self.encoder.read(offset, now, divider)
             }
-            Unit::Converter => self.converter.read(offset),
+            Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
         }
@@ -166,12 +166,12 @@ impl Board {
             Unit::Configuration => self.configuration.write(offset, value),
             Unit::Debug => self.debug.write(offset, value),
             Unit::Pins(port) => self.ports[port].write(offset, value),
-            Unit::Pacer => self.pacer.write(offset, value, now, divider),
+            Unit::TickTimer => self.tick_timer.write(offset, value, now, divider),
             Unit::FreeClock => self.free_clock.write(offset, value, now, divider),
             Unit::Encoder => self.encoder.write(offset, value, now, divider),
-            Unit::Converter => {
+            Unit::Dac => {
                 self.meter.write(now);
-                self.converter.write(offset, value)
+                self.dac.write(offset, value)
             }
             Unit::Serial => self.serial.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
@@ -180,12 +180,12 @@ impl Board {
 
     /// Resets the units whose bits are set in the register of resets at `offset`.
     fn reset_units(&mut self, offset: u32) {
-        for place in self.chip.map {
-            if let Some((_, reset, bit)) = place.clocked
+        for map_entry in self.chip.map {
+            if let Some((_, reset, bit)) = map_entry.clocked
                 && reset == offset
                 && self.clock.is_set(reset, bit)
             {
-                self.reset_unit(place.unit);
+                self.reset_unit(map_entry.unit);
             }
         }
     }
@@ -198,19 +198,20 @@ impl Board {
             Unit::Configuration => self.configuration = (self.chip.configuration)(),
             Unit::Debug => self.debug = (self.chip.debug)(),
             Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
-            Unit::Pacer => self.pacer = Pacer::new(),
+            Unit::TickTimer => self.tick_timer = BasicTimer::new(),
             Unit::FreeClock => self.free_clock = Counter::new(32),
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
-            Unit::Converter => self.converter = Converter::new(self.chip.converter),
-            Unit::Serial => self.serial = Serial::new(self.chip.face),
+            Unit::Dac => self.dac = Dac::new(self.chip.dac),
+            Unit::Serial => self.serial = Serial::new(self.chip.usart),
         }
     }
 
     /// Takes down the first access that has no answer, which ends the run.
     fn stop(&mut self, (unit, why): Fault, address: u32, written: Option<u32>) {
         let chip = self.chip();
-        let place = chip.at(address);
-        let register = place.and_then(|place| (chip.names)(place.unit, address - place.base));
+        let map_entry = chip.at(address);
+        let register =
+            map_entry.and_then(|map_entry| (chip.names)(map_entry.unit, address - map_entry.base));
         self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
     }
 }

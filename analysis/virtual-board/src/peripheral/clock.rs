@@ -2,7 +2,7 @@
 //! test keeps one from starting; the clock that follows from it; and who is clocked and reset.
 
 use super::Access;
-use super::plain::Plain;
+use super::inert_registers::InertRegisters;
 
 /// What differs between the families.
 #[derive(Debug)]
@@ -86,7 +86,7 @@ pub(super) const LOW_POWER: u32 = PIN | 1 << 31;
 #[derive(Clone, Debug)]
 pub struct Clock {
     layout: &'static Layout,
-    registers: Plain,
+    registers: InertRegisters,
     crystal: u64,
     /// Whether the crystal runs when it is switched on.
     pub crystal_runs: bool,
@@ -95,7 +95,7 @@ pub struct Clock {
 impl Clock {
     /// Out of reset, with a crystal of so many Hz.
     pub fn new(layout: &'static Layout, crystal: u64, cause: Cause) -> Self {
-        let registers = Plain::new(layout.registers);
+        let registers = InertRegisters::new(layout.registers);
         let mut clock = Self { layout, registers, crystal, crystal_runs: true };
         clock.remember((layout.flags)(cause));
         clock

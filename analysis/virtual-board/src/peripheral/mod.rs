@@ -1,15 +1,15 @@
 //! Peripherals at register level: of each only what the programs use. What is not here is an error
 //! that names the register, never a silent zero.
 
+pub mod basic_timer;
 pub mod clock;
 pub mod clock_f4;
 pub mod clock_g4;
-pub mod converter;
 pub mod counter;
+pub mod dac;
 pub mod flash;
-pub mod pacer;
+pub mod inert_registers;
 pub mod pins;
-pub mod plain;
 pub mod power;
 pub mod serial;
 pub mod watchdog;

@@ -1,15 +1,15 @@
 //! A serial port: a byte takes as long as on a line, and one that is not read in time is lost.
 //!
-//! Two faces of it: the G4's with a queue of eight bytes each way (RM0440, 37.8), the F405's with
+//! Two variants of it: the G4's with a queue of eight bytes each way (RM0440, 37.8), the F405's with
 //! one (RM0090, 30.6).
 
 use std::collections::VecDeque;
 
 use super::{Access, Unmodelled, only};
 
-/// Which registers it has.
+/// Variant of the USART, by its registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Face {
+pub enum UsartVariant {
     /// The G4's.
     G4,
     /// The F405's.
@@ -41,7 +41,7 @@ const FRAME: u64 = 10;
 /// The port.
 #[derive(Clone, Debug)]
 pub struct Serial {
-    face: Face,
+    variant: UsartVariant,
     control: [u32; 3],
     rate: u32,
     prescaler: u32,
@@ -65,9 +65,9 @@ pub struct Serial {
 
 impl Serial {
     /// Out of reset.
-    pub fn new(face: Face) -> Self {
+    pub fn new(variant: UsartVariant) -> Self {
         Self {
-            face,
+            variant,
             control: [0; 3],
             rate: 0,
             prescaler: 0,
@@ -164,8 +164,8 @@ impl Serial {
 
     /// Reads.
     pub fn read(&mut self, offset: u32) -> Access<u32> {
-        use Face::{F405, G4};
-        Ok(match (self.face, offset) {
+        use UsartVariant::{F405, G4};
+        Ok(match (self.variant, offset) {
             (G4, 0x00 | 0x04 | 0x08) => self.control[offset as usize / 4],
             (G4, 0x0C) => self.rate,
             (G4, 0x1C) => self.status() | ENABLED,
@@ -185,8 +185,8 @@ impl Serial {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        use Face::{F405, G4};
-        match (self.face, offset) {
+        use UsartVariant::{F405, G4};
+        match (self.variant, offset) {
             (G4, 0x00) => {
                 only(value, ON_G4 | BOTH_WAYS | INTERRUPTS | QUEUES)?;
                 self.control[0] = value;
@@ -236,13 +236,13 @@ impl Serial {
 
     /// Bytes that each of its queues holds.
     fn depth(&self) -> usize {
-        if self.control[0] & QUEUES != 0 && self.face == Face::G4 { 8 } else { 1 }
+        if self.control[0] & QUEUES != 0 && self.variant == UsartVariant::G4 { 8 } else { 1 }
     }
 
     fn on(&self) -> u32 {
-        match self.face {
-            Face::G4 => ON_G4,
-            Face::F405 => ON_F405,
+        match self.variant {
+            UsartVariant::G4 => ON_G4,
+            UsartVariant::F405 => ON_F405,
         }
     }
 }
@@ -257,11 +257,11 @@ mod tests {
     const BYTE: u64 = 10 * 91 * 4;
 
     /// Receives and sends, with the interrupt of what was received.
-    fn open(face: Face) -> Serial {
-        let mut port = Serial::new(face);
-        let setup: &[(u32, u32)] = match face {
-            Face::G4 => &[(0x0C, RATE), (0x00, ON_G4 | BOTH_WAYS | RECEIVED | QUEUES)],
-            Face::F405 => &[(0x08, RATE), (0x0C, ON_F405 | BOTH_WAYS | RECEIVED)],
+    fn open(variant: UsartVariant) -> Serial {
+        let mut port = Serial::new(variant);
+        let setup: &[(u32, u32)] = match variant {
+            UsartVariant::G4 => &[(0x0C, RATE), (0x00, ON_G4 | BOTH_WAYS | RECEIVED | QUEUES)],
+            UsartVariant::F405 => &[(0x08, RATE), (0x0C, ON_F405 | BOTH_WAYS | RECEIVED)],
         };
         for &(register, value) in setup {
             port.write(register, value).unwrap();
@@ -270,22 +270,22 @@ mod tests {
     }
 
     fn received(port: &mut Serial) -> u32 {
-        port.read(if port.face == Face::G4 { 0x24 } else { 0x04 }).unwrap()
+        port.read(if port.variant == UsartVariant::G4 { 0x24 } else { 0x04 }).unwrap()
     }
 
     #[test]
     fn a_byte_takes_its_time_on_the_line() {
-        for face in [Face::G4, Face::F405] {
-            let mut port = open(face);
+        for variant in [UsartVariant::G4, UsartVariant::F405] {
+            let mut port = open(variant);
             port.send(b"ab");
             port.advance(100, DIVIDER);
             assert_eq!(port.due(), Some(100 + BYTE));
             port.advance(100 + BYTE - 1, DIVIDER);
-            assert!(!port.line(), "{face:?}");
+            assert!(!port.line(), "{variant:?}");
             port.advance(100 + BYTE, DIVIDER);
-            assert!(port.line(), "{face:?}");
+            assert!(port.line(), "{variant:?}");
             assert_eq!(received(&mut port), b'a'.into());
-            assert!(!port.line(), "{face:?}");
+            assert!(!port.line(), "{variant:?}");
             port.advance(100 + 2 * BYTE, DIVIDER);
             assert_eq!(received(&mut port), b'b'.into());
         }
@@ -293,61 +293,62 @@ mod tests {
 
     #[test]
     fn what_is_not_read_in_time_is_lost_and_told() {
-        for (face, room) in [(Face::G4, 8), (Face::F405, 1)] {
-            let mut port = open(face);
+        for (variant, room) in [(UsartVariant::G4, 8), (UsartVariant::F405, 1)] {
+            let mut port = open(variant);
             let bytes: Vec<u8> = (1..=room + 3).collect();
             port.send(&bytes);
             port.advance(0, DIVIDER);
             let end = BYTE * u64::from(room + 3);
             port.advance(end, DIVIDER);
-            assert_eq!(port.lost(), 3, "{face:?}");
+            assert_eq!(port.lost(), 3, "{variant:?}");
             // What was there stays, and what came in vain is gone.
-            let status = port.read(if face == Face::G4 { 0x1C } else { 0x00 }).unwrap();
-            assert_eq!(status & OVERRUN, OVERRUN, "{face:?}");
+            let status = port.read(if variant == UsartVariant::G4 { 0x1C } else { 0x00 }).unwrap();
+            assert_eq!(status & OVERRUN, OVERRUN, "{variant:?}");
             for byte in 1..=room {
-                assert_eq!(received(&mut port), byte.into(), "{face:?}");
+                assert_eq!(received(&mut port), byte.into(), "{variant:?}");
             }
             // By its flag on one chip, and by having read status and data on the other.
-            if face == Face::G4 {
+            if variant == UsartVariant::G4 {
                 assert!(port.line());
                 port.write(0x20, OVERRUN).unwrap();
             }
-            assert!(!port.line(), "{face:?}");
+            assert!(!port.line(), "{variant:?}");
             port.send(b"z");
             port.advance(end, DIVIDER);
             port.advance(end + 2 * BYTE, DIVIDER);
-            assert_eq!(received(&mut port), b'z'.into(), "{face:?}");
+            assert_eq!(received(&mut port), b'z'.into(), "{variant:?}");
         }
     }
 
     #[test]
     fn silence_behind_a_byte_is_told_once() {
-        for face in [Face::G4, Face::F405] {
-            let mut port = open(face);
-            let status = if face == Face::G4 { 0x1C } else { 0x00 };
+        for variant in [UsartVariant::G4, UsartVariant::F405] {
+            let mut port = open(variant);
+            let status = if variant == UsartVariant::G4 { 0x1C } else { 0x00 };
             port.send(b"a");
             port.advance(0, DIVIDER);
             port.advance(BYTE, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & IDLE, 0, "{face:?}");
+            assert_eq!(port.read(status).unwrap() & IDLE, 0, "{variant:?}");
             port.advance(2 * BYTE, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & IDLE, IDLE, "{face:?}");
-            assert_eq!(port.due(), None, "{face:?}");
+            assert_eq!(port.read(status).unwrap() & IDLE, IDLE, "{variant:?}");
+            assert_eq!(port.due(), None, "{variant:?}");
         }
     }
 
     #[test]
     fn what_is_sent_leaves_byte_by_byte() {
-        for face in [Face::G4, Face::F405] {
-            let mut port = open(face);
-            let (data, status) = if face == Face::G4 { (0x28, 0x1C) } else { (0x04, 0x00) };
+        for variant in [UsartVariant::G4, UsartVariant::F405] {
+            let mut port = open(variant);
+            let (data, status) =
+                if variant == UsartVariant::G4 { (0x28, 0x1C) } else { (0x04, 0x00) };
             port.write(data, b'x'.into()).unwrap();
             port.advance(0, DIVIDER);
-            assert_eq!(port.read(status).unwrap() & SENT, 0, "{face:?}");
+            assert_eq!(port.read(status).unwrap() & SENT, 0, "{variant:?}");
             port.advance(BYTE - 1, DIVIDER);
-            assert_eq!(port.take_sent(), b"", "{face:?}");
+            assert_eq!(port.take_sent(), b"", "{variant:?}");
             port.advance(BYTE, DIVIDER);
-            assert_eq!(port.take_sent(), b"x", "{face:?}");
-            assert_eq!(port.read(status).unwrap() & SENT, SENT, "{face:?}");
+            assert_eq!(port.take_sent(), b"x", "{variant:?}");
+            assert_eq!(port.read(status).unwrap() & SENT, SENT, "{variant:?}");
         }
     }
 }

@@ -46,7 +46,7 @@ impl Watchdog {
             0x00 => match value {
                 RELOAD | START => {
                     if value == START || self.bites.is_some() {
-                        self.bites = Some(now + self.patience(clock));
+                        self.bites = Some(now + self.timeout(clock));
                     }
                     self.open = false;
                 }
@@ -65,7 +65,7 @@ impl Watchdog {
     }
 
     /// Core clocks in which it counts down, by the prescaler of 4 that it has out of reset.
-    fn patience(&self, clock: u64) -> u64 {
+    fn timeout(&self, clock: u64) -> u64 {
         4 * (u64::from(self.reload) + 1) * clock / OSCILLATOR
     }
 }

@@ -11,12 +11,12 @@ use analysis::program::Program;
 use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
 use firmware::dac::DacCode;
 use firmware::wire::message::{
-    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, Remembered, Status, ToBoard,
+    LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
-use virtual_board::device::{Device, Still};
+use virtual_board::device::{Device, FixedDevice};
 use virtual_board::machine::Machine;
 use virtual_board::peripheral::pins::Level;
 
@@ -95,7 +95,7 @@ impl Bench {
     pub fn running(chip: &'static Chip, name: &'static str) -> Self {
         /// More than the tenth of a second in which it opens.
         const OPEN: u64 = 110;
-        let mut bench = Self::boot(chip, name, Still);
+        let mut bench = Self::boot(chip, name, FixedDevice);
         bench.armed();
         bench.run(OPEN);
         bench
@@ -110,23 +110,23 @@ impl Bench {
     /// the timer can pace it.
     pub fn period(&self) -> u64 {
         let board = self.machine.board();
-        board.pacer.period(board.clock.timer_divider())
+        board.tick_timer.period(board.clock.timer_divider())
     }
 
     /// Runs so many samples.
     pub fn run(&mut self, samples: u64) {
-        self.machine.run_samples(samples).unwrap_or_else(|trouble| panic!("{trouble}"));
+        self.machine.run_samples(samples).unwrap_or_else(|error| panic!("{error}"));
     }
 
     /// Runs so many instructions.
     pub fn run_for(&mut self, instructions: u64) {
-        self.machine.run_for(instructions).unwrap_or_else(|trouble| panic!("{trouble}"));
+        self.machine.run_for(instructions).unwrap_or_else(|error| panic!("{error}"));
     }
 
     /// Runs to the next update of the pacing timer, which comes before the next instruction.
     pub fn run_to_update(&mut self) {
         let board = self.machine.board();
-        let due = board.pacer.due().unwrap();
+        let due = board.tick_timer.due().unwrap();
         self.run_for(due - board.now);
     }
 
@@ -184,10 +184,10 @@ impl Bench {
     /// Asks, and runs until the board gives an answer that is wanted.
     pub fn ask<T>(&mut self, question: &ToBoard, wanted: impl Fn(Message) -> Option<T>) -> T {
         /// Samples: a second.
-        const PATIENCE: u32 = 1000;
+        const TIMEOUT: u32 = 1000;
         self.hear();
         self.say(question);
-        for _ in 0..PATIENCE {
+        for _ in 0..TIMEOUT {
             self.run(1);
             if let Some(answer) = self.hear().into_iter().find_map(&wanted) {
                 return answer;
@@ -224,16 +224,16 @@ impl Bench {
     }
 
     /// What the board says that stopped it before it was last started.
-    pub fn remembered(&mut self) -> Option<Remembered> {
+    pub fn previous_fault(&mut self) -> Option<PreviousFault> {
         // What comes behind it tells that there is none.
-        let mut remembered = None;
+        let mut previous_fault = None;
         self.say(&ToBoard::Hello);
         for _ in 0..20 {
             self.run(1);
             for message in self.hear() {
                 match message {
-                    Message::Remembered(record) => remembered = Some(record),
-                    Message::Board(_) => return remembered,
+                    Message::PreviousFault(record) => previous_fault = Some(record),
+                    Message::Board(_) => return previous_fault,
                     _ => {}
                 }
             }

@@ -3,10 +3,10 @@
 
 use std::num::NonZeroU32;
 
-use analysis::hand::Script;
+use analysis::hand::HandTrajectory;
 use analysis::link::Message;
+use analysis::lockstep::SimulatedDevice;
 use analysis::program::Program;
-use analysis::rig::SimulatedDevice;
 use firmware::certificate::Parameter;
 use firmware::servo_loop::State;
 use firmware::wire::message::{Outcome, Status, ToBoard};
@@ -14,7 +14,7 @@ use virtual_board::chip::Chip;
 use virtual_board::device::Device;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
-use crate::device::{InHand, Sample};
+use crate::device::{HandHeldDevice, Sample};
 
 /// Samples of the servo in a minute.
 const MINUTE: u64 = 60_000;
@@ -24,7 +24,7 @@ const MINUTES: u64 = 60;
 /// A device in a hand that does the same over and over; and once a minute the encoder is spun away
 /// from the wall and back, far enough for a counter of 16 bits to wrap.
 struct Spun {
-    hand: InHand,
+    hand: HandHeldDevice,
     /// Samples so far.
     sample: u64,
 }
@@ -35,11 +35,12 @@ const WAY: u64 = 200;
 
 impl Spun {
     fn of(program: &Program, minutes: u64) -> Self {
-        let script = Script::push_and_let_go().over_and_over(60.0 * (minutes + 1) as f64);
+        let trajectory =
+            HandTrajectory::push_and_let_go().repeated_until(60.0 * (minutes + 1) as f64);
         let (scene, transducers) = (&program.scene, &program.transducers);
         let period = scene.timing.period;
-        let device = SimulatedDevice::new(scene.device, script, period, transducers).unwrap();
-        Self { hand: InHand::with(device), sample: 0 }
+        let device = SimulatedDevice::new(scene.device, trajectory, period, transducers).unwrap();
+        Self { hand: HandHeldDevice::with(device), sample: 0 }
     }
 }
 

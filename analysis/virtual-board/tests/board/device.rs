@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
+use analysis::lockstep::{PlantIo, SimulatedDevice};
 use analysis::program::Program;
-use analysis::rig::{Plant, SimulatedDevice};
 use virtual_board::device::Device;
 
 use crate::bench::MID_SCALE;
@@ -11,7 +11,7 @@ use crate::bench::MID_SCALE;
 /// What one sample was at the pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// What the converter put out during it.
+    /// What the DAC put out during it.
     pub code: Option<u16>,
     /// Whether the amplifier was on at its end.
     pub amplifier: bool,
@@ -57,14 +57,14 @@ impl Device for Pins {
 }
 
 /// A simulated device in a hand that follows its script once the amplifier is on.
-pub struct InHand {
+pub struct HandHeldDevice {
     device: SimulatedDevice,
     /// The encoder's position in counts.
     count: i32,
     begun: bool,
 }
 
-impl InHand {
+impl HandHeldDevice {
     /// A program's device, in the hand that shows it, at rest at zero.
     pub fn of(program: &Program) -> Self {
         Self::with(program.device())
@@ -76,7 +76,7 @@ impl InHand {
     }
 }
 
-impl Device for InHand {
+impl Device for HandHeldDevice {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         self.begun |= amplifier;
         if !self.begun {

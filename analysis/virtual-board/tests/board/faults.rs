@@ -6,7 +6,7 @@ use firmware::servo_loop::State;
 use firmware::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
-use virtual_board::chip::{Chip, PACER_INTERRUPT, Unit};
+use virtual_board::chip::{Chip, TICK_INTERRUPT, Unit};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
 use virtual_board::peripheral::pins::Level;
 
@@ -19,7 +19,7 @@ const INTO: i32 = 300;
 /// counts a turn, and an edge.
 const LARGEST_STEP: u32 = 978;
 /// Periods after which the watchdog resets the board: eight, and two counts of its clock of 8 kHz.
-const PATIENCE: f64 = 8.25;
+const TIMEOUT: f64 = 8.25;
 /// Periods for which interrupts are masked.
 const MASKED: u64 = 3;
 
@@ -95,10 +95,10 @@ const CASES: &[Case] = &[
         fault: "watchdog",
         cause: "the servo's interrupt is disabled",
         program: "damper_wall",
-        bound: PATIENCE,
+        bound: TIMEOUT,
         provoke: |bench| {
             let board = bench.machine.board_mut();
-            board.system.exceptions.enable(FIRST_INTERRUPT + PACER_INTERRUPT, false);
+            board.system.exceptions.enable(FIRST_INTERRUPT + TICK_INTERRUPT, false);
             board.now
         },
         resets: true,
@@ -108,7 +108,7 @@ const CASES: &[Case] = &[
         fault: "watchdog",
         cause: "all interrupts are masked for ever",
         program: "damper_wall",
-        bound: PATIENCE,
+        bound: TIMEOUT,
         provoke: |bench| {
             let instructions = 100 * bench.period();
             hold_up(bench, instructions, Masks::All)
@@ -167,10 +167,10 @@ const CASES: &[Case] = &[
     },
     Case {
         fault: "hard-fault",
-        cause: "the bus has an error at the converter's register, also for the fault's handler",
+        cause: "the bus has an error at the DAC's register, also for the fault's handler",
         program: "damper_wall",
         bound: 1.0,
-        provoke: |bench| breaks_in_a_tick(bench, Register::Converter),
+        provoke: |bench| breaks_in_a_tick(bench, Register::Dac),
         resets: true,
         expected: None,
     },
@@ -203,8 +203,8 @@ const CASES: &[Case] = &[
 pub enum Register {
     /// The encoder's counter.
     Encoder,
-    /// The converter's, where codes are written.
-    Converter,
+    /// The DAC's, where codes are written.
+    Dac,
 }
 
 impl Register {
@@ -212,7 +212,7 @@ impl Register {
     pub fn address(self, chip: &Chip) -> u32 {
         let (unit, offset) = match self {
             Self::Encoder => (Unit::Encoder, 0x24),
-            Self::Converter => (Unit::Converter, 0x08),
+            Self::Dac => (Unit::Dac, 0x08),
         };
         chip.map.iter().find(|place| place.unit == unit).unwrap().base + offset
     }
@@ -251,7 +251,7 @@ impl Case {
         assert_ne!(bench.pins().samples.last().unwrap().code, Some(MID_SCALE), "{what}");
         let period = bench.period();
         let began = (self.provoke)(&mut bench);
-        while bench.machine.board().now < began + (PATIENCE.ceil() as u64 + 2) * period {
+        while bench.machine.board().now < began + (TIMEOUT.ceil() as u64 + 2) * period {
             bench.run_for(1000);
             if !bench.machine.resets().is_empty() {
                 // What was broken is repaired before it is used again.
@@ -287,8 +287,8 @@ impl Case {
         assert_eq!(status.state, state, "{what}");
         let reset = if self.resets { ResetCause::IndependentWatchdog } else { ResetCause::PowerOn };
         assert_eq!(status.reset, reset, "{what}");
-        let remembered = bench.remembered().and_then(|record| record.fault.fault());
-        assert_eq!(remembered, self.resets.then_some(told), "{what}");
+        let previous_fault = bench.previous_fault().and_then(|record| record.fault.fault());
+        assert_eq!(previous_fault, self.resets.then_some(told), "{what}");
         let log = bench.log();
         let says = |line: &String| line.contains("not armed") && line.contains(told.as_str());
         assert_eq!(log.iter().any(says), self.resets, "{what}: {log:?}");

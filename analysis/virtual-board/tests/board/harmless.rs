@@ -6,12 +6,12 @@ use firmware::servo_loop::State;
 use firmware::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
+use virtual_board::error::BoardError;
 use virtual_board::peripheral::pins::Level;
-use virtual_board::trouble::Trouble;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
-use crate::device::InHand;
+use crate::device::HandHeldDevice;
 use crate::faults::{Register, coefficient};
 use crate::stub::{Masks, hold_up};
 
@@ -86,8 +86,11 @@ fn what_masks_the_servo_between_two_ticks_makes_no_tick_late() {
 #[test]
 fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
     on_both(|chip| {
-        let mut bench =
-            Bench::boot(chip, "damper_wall", InHand::of(Program::find("damper_wall").unwrap()));
+        let mut bench = Bench::boot(
+            chip,
+            "damper_wall",
+            HandHeldDevice::of(Program::find("damper_wall").unwrap()),
+        );
         bench.armed();
         // In the wall, where the hand rests.
         bench.run(1700);
@@ -106,26 +109,26 @@ fn an_encoder_that_is_unplugged_leaves_a_constant_torque_within_the_limit() {
 #[test]
 fn a_crystal_that_does_not_start_leaves_every_pin_alone() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.machine.board_mut().clock.crystal_runs = false;
         // Ten times what it takes to be ready otherwise.
         bench.run_for(3_000_000);
         assert!(bench.events().is_empty(), "{}: {:?}", chip.name, bench.events());
-        assert!(!bench.machine.board().pacer.runs(), "{}", chip.name);
+        assert!(!bench.machine.board().tick_timer.runs(), "{}", chip.name);
     });
 }
 
 #[test]
 fn a_peripheral_that_is_broken_at_power_on_leaves_the_amplifier_off() {
     on_both(|chip| {
-        for register in [Register::Encoder, Register::Converter] {
-            let mut bench = Bench::boot(chip, "damper_wall", Still);
+        for register in [Register::Encoder, Register::Dac] {
+            let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
             bench.machine.board_mut().broken = Some(register.address(chip));
             let end = bench.machine.run_for(3_000_000);
             let what = format!("{}, {register:?}: {end:?}", chip.name);
-            // The handler of faults wants the converter, too.
-            let locked_up = matches!(end, Err(Trouble::LockedUp { .. }));
-            assert_eq!(locked_up, register == Register::Converter, "{what}");
+            // The handler of faults wants the DAC, too.
+            let locked_up = matches!(end, Err(BoardError::LockedUp { .. }));
+            assert_eq!(locked_up, register == Register::Dac, "{what}");
             assert_eq!(bench.machine.board().amplifier(), Level::Low, "{what}");
             assert_eq!(bench.amplifier_on(), None, "{what}");
         }
@@ -146,7 +149,7 @@ fn a_record_outlives_a_reset_and_a_flipped_bit_makes_it_none() {
             }
             bench.machine.board_mut().system.reset_requested = true;
             bench.run(150);
-            let told = bench.remembered().and_then(|record| record.fault.fault());
+            let told = bench.previous_fault().and_then(|record| record.fault.fault());
             let was_jump = matches!(told, Some(Fault::EncoderJump { counts: 10_000, .. }));
             let state = bench.status().state;
             let expected = (!is_flipped, State::Disarmed);

@@ -4,7 +4,7 @@
 use unicorn_engine::RegisterARM;
 use virtual_board::chip::Chip;
 use virtual_board::core::exceptions::{Number, PEND_SV, SYS_TICK};
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
 use virtual_board::image::Image;
 use virtual_board::machine::Machine;
 
@@ -159,7 +159,7 @@ impl Interrupted {
         let vectors = vectors.into_iter().flat_map(u32::to_le_bytes);
         let program: Vec<u8> = vectors.chain(parts.concat()).collect();
         let image = Image { pieces: vec![(FLASH, program)], file: Vec::new() };
-        let mut machine = Machine::power_on(image, chip, Box::new(Still)).unwrap();
+        let mut machine = Machine::power_on(image, chip, Box::new(FixedDevice)).unwrap();
         machine.core_mut().set_memory(COUNTS, &[0; 8]);
         machine.run_for(ALL).unwrap();
         Self { machine, body }

@@ -6,7 +6,7 @@ use firmware::servo_loop::State;
 use firmware::wire::message::FaultCode;
 use virtual_board::chip::{Chip, FREEZE, STM32F405, WATCHDOG_FREEZES};
 use virtual_board::core::exceptions::NON_MASKABLE;
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::clock::Cause;
 use virtual_board::peripheral::pins::Level;
 
@@ -71,7 +71,7 @@ fn every_cause_of_a_reset_is_told_and_none_arms_the_servo() {
 #[test]
 fn a_supply_that_was_off_is_told_from_one_that_was_low_and_arms_nothing() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         check_off(&mut bench, ResetCause::PowerOn, chip.name);
         bench.armed();
         bench.machine.power_cycle();
@@ -85,7 +85,7 @@ fn a_supply_that_was_off_is_told_from_one_that_was_low_and_arms_nothing() {
 #[test]
 fn of_two_causes_the_watchdog_is_named() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.run_for(10);
         bench.machine.reset(Cause::Software);
         bench.machine.reset(Cause::Watchdog);
@@ -142,7 +142,7 @@ const PREFETCH: u32 = 1 << 8;
 #[test]
 fn flash_is_read_through_its_caches() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.run(3);
         let access = bench.machine.board().flash.get(ACR);
         let (caches, wait_states) = match chip.name {
@@ -160,7 +160,7 @@ fn flash_is_read_through_its_caches() {
 #[test]
 fn the_first_revision_does_not_prefetch() {
     for identity in [0x1000_6413, 0x2000_6411] {
-        let mut bench = Bench::boot(&STM32F405, "damper_wall", Still);
+        let mut bench = Bench::boot(&STM32F405, "damper_wall", FixedDevice);
         bench.machine.board_mut().debug.set(0x00, identity);
         bench.run(3);
         let access = bench.machine.board().flash.get(ACR);
@@ -177,7 +177,7 @@ fn a_brown_out_level_that_is_too_low_is_said_with_the_way_to_set_it() {
             _ => (0b11 << 2, 0),
         };
         for is_enough in [false, true] {
-            let mut bench = Bench::boot(chip, "damper_wall", Still);
+            let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
             if is_enough {
                 let options = bench.machine.board().flash.get(chip.options) & !field | enough;
                 bench.machine.board_mut().flash.set(chip.options, options);
@@ -194,7 +194,7 @@ fn a_brown_out_level_that_is_too_low_is_said_with_the_way_to_set_it() {
 #[test]
 fn the_watchdog_runs_on_at_a_breakpoint() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.machine.board_mut().debug.set(FREEZE, WATCHDOG_FREEZES);
         bench.run(3);
         assert_eq!(bench.machine.board().debug.get(FREEZE), 0, "{}", chip.name);

@@ -13,14 +13,14 @@ use tests::replica::Replica;
 use virtual_board::chip::Chip;
 
 use crate::bench::{Bench, on_both};
-use crate::device::{InHand, Sample};
+use crate::device::{HandHeldDevice, Sample};
 
 /// Samples of a hand's whole script.
 const SAMPLES: u64 = 5000;
 /// Samples within which the clamp is open.
 const OPEN: usize = 110;
 
-/// Free mode as the boards run it: as late as their converter.
+/// Free mode as the boards run it: as late as their DAC.
 const FREE_MODE: Scene<FreeMode<1>> = Scene {
     device: free_mode::SCENE.device,
     timing: free_mode::SCENE.timing,
@@ -52,7 +52,7 @@ where
     E: Tunable<f32> + SupportsTiming<Latched>,
 {
     let program = Program::find(name).unwrap();
-    let mut bench = Bench::boot(chip, name, InHand::of(program));
+    let mut bench = Bench::boot(chip, name, HandHeldDevice::of(program));
     let armed = bench.armed();
     // What a tick computes is put out in the sample behind the next one.
     bench.run(SAMPLES + 2);
@@ -65,7 +65,7 @@ where
     }
     let moved = samples.iter().filter(|sample| sample.code != samples[2].code).count();
     assert!(moved > 1000, "{}, {name}: no torque but in {moved} samples", chip.name);
-    // And the converter's latch is the sample by which the scene is late.
+    // And the DAC's latch is the sample by which the scene is late.
     let mut controller = program.controller(NumberFormat::F32, transducers).unwrap();
     for (tick, sample) in samples[..SAMPLES as usize].iter().enumerate() {
         let code = controller.tick(sample.count).code;

@@ -2,7 +2,7 @@
 
 use virtual_board::board::Event;
 use virtual_board::chip::{B_G431B_ESC1, STM32F405};
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, build, on_both};
@@ -17,11 +17,11 @@ const OPENING: f64 = LIMIT / 100.0;
 #[test]
 fn nothing_is_driven_before_the_amplifier_is_off_and_that_is_on_only_once_it_is_armed() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.pins().turns.push_back(DEEP);
         bench.run(300);
         let events: Vec<_> = bench.events().iter().map(|&(_, event)| event).collect();
-        // The converter is at mid-scale from the first moment on in which it drives its pin.
+        // The DAC is at mid-scale from the first moment on in which it drives its pin.
         let order = [Event::Amplifier(Level::Low), Event::Torque(Some(MID_SCALE))];
         assert_eq!(events, order, "{}", chip.name);
         assert!(bench.machine.board().watchdog.due().is_some(), "{}", chip.name);
@@ -30,8 +30,8 @@ fn nothing_is_driven_before_the_amplifier_is_off_and_that_is_on_only_once_it_is_
         assert_eq!(event, Event::Amplifier(Level::High), "{}", chip.name);
         // In a tick, and in none of the program's other moments.
         let most = bench.machine.board().meter.interrupt().most;
-        let since =
-            bench.period() - (bench.machine.board().pacer.due().unwrap() - on) % bench.period();
+        let since = bench.period()
+            - (bench.machine.board().tick_timer.due().unwrap() - on) % bench.period();
         assert!(since <= most, "{}: {since} of {most}", chip.name);
     });
 }
@@ -39,13 +39,13 @@ fn nothing_is_driven_before_the_amplifier_is_off_and_that_is_on_only_once_it_is_
 #[test]
 fn where_the_encoder_stands_at_power_on_is_zero() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         // Turned while the driver has set the counter up and the servo does not run yet.
         while !bench.machine.board().encoder.counts_encoder() {
             bench.run_for(100);
         }
         assert_eq!(bench.machine.board().samples, 0, "{}", chip.name);
-        bench.machine.board_mut().turn(12_345);
+        bench.machine.board_mut().turn_encoder(12_345);
         bench.armed();
         bench.run(200);
         assert_eq!(bench.status().count, 0, "{}", chip.name);
@@ -56,7 +56,7 @@ fn where_the_encoder_stands_at_power_on_is_zero() {
 #[test]
 fn the_clamp_opens_step_by_step() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         // The device is pushed into the wall in the first sample and held there.
         bench.pins().turns.push_back(DEEP);
         bench.run(2);
@@ -86,7 +86,7 @@ const C: usize = 2;
 #[test]
 fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
     let file = build(&B_G431B_ESC1, &["damper_wall"]).remove(0);
-    let mut bench = Bench::boot_file(&B_G431B_ESC1, &file, Still);
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, &file, FixedDevice);
     while bench.machine.board().torque().is_none() {
         bench.run_for(10);
     }
@@ -104,7 +104,7 @@ fn the_power_stage_of_an_esc_is_off_before_its_torque_pin_is_driven() {
 
 #[test]
 fn a_vesc_holds_its_power_on_and_its_power_stage_off() {
-    let mut bench = Bench::boot(&STM32F405, "damper_wall", Still);
+    let mut bench = Bench::boot(&STM32F405, "damper_wall", FixedDevice);
     while bench.machine.board().amplifier() == Level::Floating {
         // Nothing is driven before the power is held.
         let (hold, gates) = (bench.machine.board().level(C, 5), bench.machine.board().level(B, 5));
@@ -127,7 +127,7 @@ fn the_encoders_inputs_are_filtered_as_its_edges_allow_and_pulled_where_they_bea
     const CLOCKS: [u32; 16] = [0, 2, 4, 8, 12, 16, 24, 32, 48, 64, 80, 96, 128, 160, 192, 256];
     let count = std::f64::consts::TAU / 61_440.0 / 100.0;
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, "damper_wall", Still);
+        let mut bench = Bench::boot(chip, "damper_wall", FixedDevice);
         bench.run(3);
         let board = bench.machine.board();
         let clock = (chip.core / board.clock.timer_divider()) as f64;

@@ -9,11 +9,11 @@ use firmware::wire::message::{FaultCode, Outcome};
 use tests::replica::Replica;
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
-use crate::device::{InHand, Sample};
+use crate::device::{HandHeldDevice, Sample};
 use crate::scenes::width;
 
 /// Samples of silence after which the host counts as lost.
@@ -26,7 +26,7 @@ const NOW_AND_THEN: u64 = 200;
 #[test]
 fn a_host_that_falls_silent_lets_the_device_go() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, SUPERVISED.name, Still);
+        let mut bench = Bench::boot(chip, SUPERVISED.name, FixedDevice);
         bench.armed();
         // Beside the spring's rest, so that it pushes.
         bench.pins().turns.push_back(300);
@@ -69,7 +69,7 @@ fn check_release(bench: &Bench, chip: &Chip, heard: usize) {
 #[test]
 fn damping_is_injected_where_there_is_a_deficit() {
     on_both(|chip| {
-        let mut bench = Bench::boot(chip, SUPERVISED.name, InHand::of(&SUPERVISED));
+        let mut bench = Bench::boot(chip, SUPERVISED.name, HandHeldDevice::of(&SUPERVISED));
         let on = bench.armed();
         let mut worst = 0;
         for _ in 0..15 {

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use firmware::excitation::{SILENCE, SweepEnd, byte};
 use virtual_board::chip::{Chip, STM32F405};
-use virtual_board::device::Still;
+use virtual_board::device::FixedDevice;
 use virtual_board::peripheral::pins::Level;
 
 use crate::bench::{Bench, MID_SCALE, build};
@@ -20,7 +20,7 @@ fn file() -> (&'static Chip, &'static Path) {
 /// A board whose sweep was begun so many samples ago, with a host that listens.
 fn playing(samples: u64) -> Bench {
     let (chip, file) = file();
-    let mut bench = Bench::boot_file(chip, file, Still);
+    let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(5);
     bench.machine.board_mut().send(&[byte::BEGIN]);
     bench.run(samples);
@@ -54,7 +54,7 @@ fn assert_ended(bench: &mut Bench, end: SweepEnd, what: &str) {
 #[test]
 fn nothing_moves_before_the_host_begins_and_the_board_says_what_it_would_play() {
     let (chip, file) = file();
-    let mut bench = Bench::boot_file(chip, file, Still);
+    let mut bench = Bench::boot_file(chip, file, FixedDevice);
     bench.run(50);
     bench.machine.board_mut().send(&[byte::DESCRIBE, byte::LISTENING, byte::STOP]);
     assert_eq!(lines(&mut bench), ["identify,1,0.001,61440,52500,0.7,85"]);

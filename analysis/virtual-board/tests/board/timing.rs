@@ -25,14 +25,14 @@ fn the_pacing_timer_s_period_is_the_scene_s() {
 }
 
 #[test]
-fn a_count_reaches_the_converter_within_its_sample_and_the_motor_exactly_at_the_next() {
+fn a_count_reaches_the_dac_within_its_sample_and_the_motor_exactly_at_the_next() {
     on_both(|chip| {
         let mut bench = Bench::running(chip, "damper_wall");
         bench.pins().turns.push_back(INTO);
         bench.run(SETTLING);
         let codes = |bench: &Bench| {
-            let converter = &bench.machine.board().converter;
-            (converter.held(), converter.output().unwrap())
+            let dac = &bench.machine.board().dac;
+            (dac.held(), dac.output().unwrap())
         };
         let (held, output) = codes(&bench);
         assert_eq!(held, output, "{}: at rest", chip.name);
@@ -86,13 +86,13 @@ fn a_count_that_comes_after_it_was_read_waits_for_the_next_sample() {
 
 /// Whether a step that comes so many instructions after an update is in the code of that tick.
 fn counts_in_this_tick(bench: &mut Bench, after: u64) -> bool {
-    let held = |bench: &Bench| bench.machine.board().converter.held();
+    let held = |bench: &Bench| bench.machine.board().dac.held();
     bench.run(SETTLING);
     bench.run_to_update();
     let before = held(bench);
     bench.run_for(after);
     let into = if before < DEEP { -STEP } else { STEP };
-    bench.machine.board_mut().turn(into);
+    bench.machine.board_mut().turn_encoder(into);
     bench.run_for(1000);
     let counted = held(bench) != before;
     bench.run(1);

@@ -1,5 +1,5 @@
-//! The emulated board's answers: questions come by the pipe `counts`, answers go by `codes`.
+//! The servers on the emulated board: requests come by the pipe `counts`, replies go by `codes`.
 
-pub mod judge;
-pub mod player;
-pub mod trial;
+pub mod bench;
+pub mod certify;
+pub mod servo;

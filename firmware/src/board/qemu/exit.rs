@@ -10,7 +10,7 @@ pub const EXIT_REFUSED: i32 = 1;
 /// Ends a program that cannot start. Where this machine refuses a scene that passed when it was compiled,
 /// the host has the words for it: `haptic certify`.
 #[cold]
-pub(super) fn refuse(reason: &'static str) -> ! {
+pub(super) fn halt_with(reason: &'static str) -> ! {
     lines::stop();
     #[cfg(feature = "log")]
     defmt::error!("refused by {=str}", reason);

@@ -1,5 +1,5 @@
 //! The emulated board's lines to the world: where other chips have registers of an encoder's
-//! counter, of a converter and of a pin, this one has words of memory, which the
+//! counter, of a DAC and of a pin, this one has words of memory, which the
 //! [lockstep](super::lockstep) takes to and from the host around each tick.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -9,7 +9,7 @@ use crate::encoder::RawCount;
 
 /// The encoder's counter.
 static COUNT: AtomicU32 = AtomicU32::new(0);
-/// What the converter holds.
+/// What the DAC holds.
 static CODE: AtomicU32 = AtomicU32::new(DacCode::MID_SCALE.get() as u32);
 /// Whether the amplifier is on.
 static AMPLIFIER: AtomicBool = AtomicBool::new(false);
@@ -25,7 +25,7 @@ pub fn set_count(count: u32) {
     COUNT.store(count, Ordering::Relaxed);
 }
 
-/// Writes a code to the converter.
+/// Writes a code to the DAC.
 #[inline(always)]
 pub fn write(code: DacCode) {
     CODE.store(u32::from(code.get()), Ordering::Relaxed);
@@ -37,7 +37,7 @@ pub fn amplifier(on: bool) {
     AMPLIFIER.store(on, Ordering::Relaxed);
 }
 
-/// What the converter holds, and whether the amplifier is on.
+/// What the DAC holds, and whether the amplifier is on.
 pub fn outputs() -> (u16, bool) {
     (CODE.load(Ordering::Relaxed) as u16, AMPLIFIER.load(Ordering::Relaxed))
 }

@@ -2,7 +2,7 @@
 //!
 //! Each tick the host writes what has become of the encoder into the pipe `counts`, and the board
 //! writes what became of its lines into the pipe `codes`; both are in the folder where the
-//! emulator was started, and [`shown`](crate::board::shown) says what the bytes are. The board
+//! emulator was started, and [`output`](crate::board::output) says what the bytes are. The board
 //! waits for its count, so host and board cannot drift apart. The host ends the run by closing
 //! `counts`.
 
@@ -16,7 +16,7 @@ use semihosting::io::{Read, Write};
 
 use super::lines;
 use crate::board::isr_cell::IsrCell;
-use crate::board::shown::{Moved, Shown};
+use crate::board::lockstep_protocol::{TickInput, TickOutput};
 use crate::servo_loop::State;
 
 /// The host's end could not be opened.
@@ -32,7 +32,7 @@ struct Pipes {
 static PIPES: IsrCell<Pipes> = IsrCell::empty();
 /// What the host has said last. In memory of its own, so that a fault at whatever instruction finds
 /// there what was read.
-static HEARD: [AtomicU8; Moved::BYTES] = [const { AtomicU8::new(0) }; Moved::BYTES];
+static LATEST_INPUT: [AtomicU8; TickInput::BYTES] = [const { AtomicU8::new(0) }; TickInput::BYTES];
 /// Number of the last tick that was shown.
 static SHOWN: AtomicU16 = AtomicU16::new(0);
 /// Whether the next count is to be the encoder's zero.
@@ -73,7 +73,7 @@ pub(super) unsafe fn open() -> Result<(), NoHost> {
 }
 
 /// Where the device is at the next tick is the encoder's zero.
-pub(super) fn zero() {
+pub(super) fn zero_count() {
     ZEROING.store(true, Ordering::Relaxed);
 }
 
@@ -86,11 +86,12 @@ pub(super) unsafe fn receive() -> Option<u32> {
     // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
     let mut counts = unsafe { &PIPES.borrow().counts };
     // SAFETY: the bytes of the atomics, which nobody else looks at meanwhile.
-    let bytes = unsafe { from_raw_parts_mut(HEARD.as_ptr().cast_mut().cast(), HEARD.len()) };
+    let bytes =
+        unsafe { from_raw_parts_mut(LATEST_INPUT.as_ptr().cast_mut().cast(), LATEST_INPUT.len()) };
     if counts.read_exact(bytes).is_err() {
         return None;
     }
-    let (Moved { count, missed }, _) = heard();
+    let (TickInput { count, missed }, _) = latest_input();
     if ZEROING.swap(false, Ordering::Relaxed) {
         ZERO.store(count, Ordering::Relaxed);
     }
@@ -99,8 +100,8 @@ pub(super) unsafe fn receive() -> Option<u32> {
 }
 
 /// What the host has said last, and the number of that tick.
-fn heard() -> (Moved, u16) {
-    Moved::from_bytes(HEARD.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
+fn latest_input() -> (TickInput, u16) {
+    TickInput::from_bytes(LATEST_INPUT.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
 }
 
 /// Shows the host the board's lines, if it waits for that. A host that has gone away ends the run
@@ -109,12 +110,12 @@ fn heard() -> (Moved, u16) {
 /// # Safety
 /// The pipes must be open if a host has asked.
 pub(super) unsafe fn show(state: State) {
-    let (_, number) = heard();
+    let (_, number) = latest_input();
     if number != SHOWN.load(Ordering::Relaxed) {
         let (code, amplifier) = lines::outputs();
-        let shown = Shown { code, amplifier, state };
+        let output = TickOutput { code, amplifier, state };
         // SAFETY: as in `receive`.
-        let _ = unsafe { &PIPES.borrow().codes }.write_all(&shown.to_bytes(number));
+        let _ = unsafe { &PIPES.borrow().codes }.write_all(&output.to_bytes(number));
         SHOWN.store(number, Ordering::Relaxed);
     }
 }

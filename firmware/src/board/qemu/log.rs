@@ -7,8 +7,8 @@ use heapless::spsc::{Consumer, Producer, Queue};
 use static_cell::StaticCell;
 
 use super::exit::EXIT_DONE;
+use super::instruction_stats::InstructionStats;
 use super::meter::{Scale, now};
-use super::spread::Spread;
 use crate::board::isr_cell::IsrCell;
 use crate::certificate::Assessment;
 use crate::encoder::RawCount;
@@ -104,10 +104,10 @@ pub struct Log<P> {
     scale: Scale,
     parts: P,
     total: u32,
-    interrupt: Spread,
-    lockstep: Spread,
+    interrupt: InstructionStats,
+    lockstep: InstructionStats,
     /// What is done below the interrupt at a time.
-    below: Spread,
+    below: InstructionStats,
 }
 
 impl<P: Parts> Log<P> {
@@ -120,7 +120,7 @@ impl<P: Parts> Log<P> {
         let (push, ticks) = QUEUE.init(Queue::new()).split();
         // SAFETY: nobody uses the place yet, as the caller promises.
         unsafe { TICKS.init(push) };
-        let [interrupt, lockstep, below] = [Spread::EMPTY; 3];
+        let [interrupt, lockstep, below] = [InstructionStats::EMPTY; 3];
         Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
     }
 

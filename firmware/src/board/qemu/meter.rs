@@ -21,7 +21,7 @@ use crate::servo::{BuildError, Servo, Transducers};
 /// # Errors
 /// Where the scene or the transducers cannot be had in this number format.
 #[doc(hidden)]
-pub fn judged_elsewhere<E: Discretize<N>, N: Number>(
+pub fn uncertified_servo<E: Discretize<N>, N: Number>(
     scene: &Scene<E>,
     transducers: &Transducers,
 ) -> Result<Servo<E, N>, BuildError> {

@@ -9,6 +9,8 @@
 //! F405 needs never returns there.
 
 mod exit;
+#[cfg(feature = "log")]
+mod instruction_stats;
 pub mod lines;
 pub mod lockstep;
 #[cfg(feature = "log")]
@@ -19,8 +21,6 @@ pub mod meter;
 mod parts;
 pub mod registers;
 pub mod serial;
-#[cfg(feature = "log")]
-mod spread;
 mod start;
 pub(super) mod stop;
 mod sweep;
@@ -28,8 +28,8 @@ pub mod tick;
 pub mod tick_timer;
 
 pub use exit::{EXIT_DONE, EXIT_REFUSED};
-pub use start::{Mode, Places, run};
-pub use sweep::{SweepPlace, measure};
+pub use start::{Mode, Statics, run};
+pub use sweep::{SweepCell, measure};
 
 /// All interrupts but SysTick's arrive here, since the program brings no table of the chip's names.
 #[cortex_m_rt::exception]
@@ -50,15 +50,15 @@ macro_rules! board_program {
             $crate::board::qemu::Mode,
         > = $certified.timing_checked::<$crate::board::qemu::Mode>();
 
-        static PLACES: $crate::board::qemu::Places<$environment, $number> =
-            $crate::board::qemu::Places::empty();
+        static STATICS: $crate::board::qemu::Statics<$environment, $number> =
+            $crate::board::qemu::Statics::empty();
 
         /// What other boards have as their timer's interrupt.
         #[inline(never)]
         extern "C" fn tick() {
             // SAFETY: called by the handler of the interrupt that `run` enables once it has filled
             // the place, and no interrupt interrupts itself.
-            unsafe { PLACES.isr.borrow_mut() }.tick();
+            unsafe { STATICS.isr.borrow_mut() }.tick();
         }
 
         /// A tick, with the world around it.
@@ -66,9 +66,9 @@ macro_rules! board_program {
         unsafe extern "C" fn sys_tick() {
             // SAFETY: the place is filled before the interrupt is enabled, and these are called
             // before and after a tick, when nobody holds what is in it.
-            let state = || unsafe { PLACES.isr.borrow_mut() }.servo_loop.state();
+            let state = || unsafe { STATICS.isr.borrow_mut() }.servo_loop.state();
             // SAFETY: as above.
-            let lose = |missed| unsafe { PLACES.isr.borrow_mut() }.hardware.lose(missed);
+            let lose = |missed| unsafe { STATICS.isr.borrow_mut() }.hardware.lose(missed);
             // SAFETY: the pipes are open before the interrupt is enabled.
             unsafe { $crate::board::qemu::tick::with(tick, state, lose) };
         }
@@ -77,7 +77,7 @@ macro_rules! board_program {
         fn main() -> ! {
             let program = $crate::boot::Program { scene: *TIMED.scene(), ..$program };
             let compiler = $certified.assessment();
-            $crate::board::qemu::run(env!("CARGO_BIN_NAME"), program, compiler, &PLACES)
+            $crate::board::qemu::run(env!("CARGO_BIN_NAME"), program, compiler, &STATICS)
         }
     };
 }
@@ -88,14 +88,15 @@ macro_rules! board_program {
 macro_rules! board_sweep {
     // A simulated device keeps within all limits.
     ($sweep:ident, $transducers:ident, $limits:ident) => {
-        static PLACE: $crate::board::qemu::SweepPlace = $crate::board::isr_cell::IsrCell::empty();
+        static ISR_STATE: $crate::board::qemu::SweepCell =
+            $crate::board::isr_cell::IsrCell::empty();
 
         /// What other boards have as their timer's interrupt.
         #[inline(never)]
         extern "C" fn tick() {
             // SAFETY: called by the handler of the interrupt that `measure` enables once it has
             // filled the place, and no interrupt interrupts itself.
-            $crate::board::qemu::lines::write(unsafe { PLACE.borrow_mut() }.next().code);
+            $crate::board::qemu::lines::write(unsafe { ISR_STATE.borrow_mut() }.next().code);
         }
 
         /// A tick, with the world around it.
@@ -110,7 +111,7 @@ macro_rules! board_sweep {
 
         #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            $crate::board::qemu::measure(&$sweep, &PLACE)
+            $crate::board::qemu::measure(&$sweep, &ISR_STATE)
         }
     };
 }

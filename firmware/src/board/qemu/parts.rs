@@ -6,10 +6,10 @@
 
 use core::hint::black_box;
 
-use super::exit::refuse;
+use super::exit::halt_with;
+use super::instruction_stats::InstructionStats;
 use super::log::{Measured, Parts};
 use super::meter::{Scale, measure};
-use super::spread::Spread;
 use crate::board::servo_isr::FRAMES;
 use crate::boot::Program;
 use crate::dac::DacCode;
@@ -26,10 +26,10 @@ pub struct CycleParts<E: Tunable<N>, N: Number, M> {
     servo: Servo<E, N>,
     energy: EnergyMonitor,
     last: Option<(u16, u32)>,
-    contact: Spread,
-    free: Spread,
-    energy_cost: Spread,
-    frame_cost: Spread,
+    contact: InstructionStats,
+    free: InstructionStats,
+    energy_cost: InstructionStats,
+    frame_cost: InstructionStats,
     mode: core::marker::PhantomData<M>,
 }
 
@@ -38,8 +38,8 @@ impl<E: Tunable<N>, N: Number, M: OutputMode> CycleParts<E, N, M> {
     /// where it cannot be built.
     pub fn new(program: &Program<E>) -> Self {
         let built = Servo::build(&program.scene, &program.transducers);
-        let servo = built.unwrap_or_else(|_| refuse(Step::Servo.as_str()));
-        let [contact, free, energy_cost, frame_cost] = [Spread::EMPTY; 4];
+        let servo = built.unwrap_or_else(|_| halt_with(Step::Servo.as_str()));
+        let [contact, free, energy_cost, frame_cost] = [InstructionStats::EMPTY; 4];
         let (energy, mode) = (EnergyMonitor::default(), core::marker::PhantomData);
         Self { servo, energy, last: None, contact, free, energy_cost, frame_cost, mode }
     }

@@ -2,7 +2,7 @@
 
 use super::tick_timer::{Period, TickTimer};
 use super::{lines, lockstep};
-use crate::board::retained;
+use crate::board::fault_memory;
 use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
@@ -64,25 +64,25 @@ impl Hardware for Registers {
     fn feed_watchdog(&mut self) {}
 
     fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
-        retained::keep(record);
+        fault_memory::store(record);
     }
 }
 
 impl Startup for Registers {
-    fn zero(&mut self) {
-        lockstep::zero();
+    fn zero_encoder(&mut self) {
+        lockstep::zero_count();
     }
 
     /// The emulator has no watchdog.
-    fn guard(&mut self) {}
+    fn start_watchdog(&mut self) {}
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
-        retained::kept()
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
+        fault_memory::stored()
     }
 
     /// Nothing but its own program resets the emulated board.
     fn reset_cause(&mut self) -> ResetCause {
-        if retained::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
+        if fault_memory::power_stayed() { ResetCause::Software } else { ResetCause::PowerOn }
     }
 
     fn period(&self) -> u32 {

@@ -3,7 +3,7 @@
 use cortex_m::peripheral::SYST;
 use static_cell::StaticCell;
 
-use super::exit::refuse;
+use super::exit::halt_with;
 use super::lockstep;
 use super::registers::Registers;
 use super::serial::{self, Serial};
@@ -33,7 +33,7 @@ use super::{
 pub type Mode = crate::servo::Simultaneous;
 
 /// A program's places in memory, which have its scene's types.
-pub struct Places<E: Tunable<N>, N: Number> {
+pub struct Statics<E: Tunable<N>, N: Number> {
     /// Where the servo's interrupt finds its state.
     pub isr: IsrCell<ServoIsr<Registers, E, N, Mode>>,
     mailbox: MailboxCell<E, N, Mode>,
@@ -42,7 +42,7 @@ pub struct Places<E: Tunable<N>, N: Number> {
     log: StaticCell<Log<CycleParts<E, N, Mode>>>,
 }
 
-impl<E: Tunable<N>, N: Number> Places<E, N> {
+impl<E: Tunable<N>, N: Number> Statics<E, N> {
     /// Empty places.
     pub const fn empty() -> Self {
         Self {
@@ -60,25 +60,25 @@ pub fn run<E, N>(
     name: &'static str,
     program: Program<E>,
     compiler: &Assessment,
-    places: &'static Places<E, N>,
+    statics: &'static Statics<E, N>,
 ) -> !
 where
     E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
-    let timer = begin();
+    let timer = start_timer();
     let period = period(program.scene.timing.period);
     #[cfg(feature = "log")]
     let log = {
         let scale = calibrate();
         judge::<E, N>(&program, compiler);
         // SAFETY: the interrupt is not enabled yet.
-        places.log.init_with(|| unsafe { Log::open(scale, CycleParts::new(&program)) })
+        statics.log.init_with(|| unsafe { Log::open(scale, CycleParts::new(&program)) })
     };
     #[cfg(not(feature = "log"))]
     let _ = compiler;
-    let link = prepare(name, program, period, places);
-    connect();
+    let link = prepare(name, program, period, statics);
+    open_pipes();
     tick_timer::start(timer, period);
     // Does not sleep: with WFI the emulator's time runs on by two periods of SysTick at a time.
     loop {
@@ -101,36 +101,48 @@ fn prepare<E, N>(
     name: &'static str,
     program: Program<E>,
     period: Period,
-    places: &'static Places<E, N>,
+    statics: &'static Statics<E, N>,
 ) -> &'static mut Link<Serial, E, N, Mode>
 where
     E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
     let mut hardware = Registers::new(period);
-    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(&places.mailbox);
-    let Booted { servo_loop, margin, reset, left, .. } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
+    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(&statics.mailbox);
+    let Booted { servo_loop, margin, reset, previous_fault, .. } =
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
     #[cfg(feature = "log")]
     defmt::info!("reset={=str}", reset.as_str());
     #[cfg(feature = "log")]
-    if let Some(left) = left {
-        let (code, [a, b]) = left.fault.encode();
-        defmt::warn!("left={=str} code={} numbers={},{}", left.fault.as_str(), code, a, b);
+    if let Some(previous_fault) = previous_fault {
+        let (code, [a, b]) = previous_fault.fault.encode();
+        defmt::warn!(
+            "left={=str} code={} numbers={},{}",
+            previous_fault.fault.as_str(),
+            code,
+            a,
+            b
+        );
     }
     hardware.start();
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.isr.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
+    unsafe { statics.isr.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     let timer_counts = period.clock_counts();
-    let facts = BoardInfo { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
-    places.link.init_with(|| Link {
+    let info = BoardInfo {
+        name,
+        timer_counts,
+        reset,
+        previous_fault,
+        stack_left: || Some(stack::unused()),
+    };
+    statics.link.init_with(|| Link {
         port: serial::open(),
-        session: Session::new(program, margin, facts, requests, frame_reader),
+        session: Session::new(program, margin, info, requests, frame_reader),
     })
 }
 
 /// Clock and interrupts. To be called once.
-pub(super) fn begin() -> SYST {
+pub(super) fn start_timer() -> SYST {
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     tick_timer::start_clock();
     // SysTick stays above, with the priority that it has out of reset.
@@ -140,14 +152,14 @@ pub(super) fn begin() -> SYST {
 
 /// A period, or an end.
 pub(super) fn period(seconds: f64) -> Period {
-    Period::of(seconds).unwrap_or_else(|_| refuse("the timer cannot pace its period"))
+    Period::of(seconds).unwrap_or_else(|_| halt_with("the timer cannot pace its period"))
 }
 
 /// Opens the pipes to the host. The interrupt that uses them must not be enabled yet.
-pub(super) fn connect() {
+pub(super) fn open_pipes() {
     // SAFETY: called before the pacing starts.
     if unsafe { lockstep::open() }.is_err() {
-        refuse("no host holds the pipes");
+        halt_with("no host holds the pipes");
     }
 }
 
@@ -170,9 +182,9 @@ fn judge<E: Tunable<N>, N: Number>(program: &Program<E>, compiler: &Assessment) 
     let start = meter::now();
     let judged = crate::certificate::certify_scene(scene, N::FORMAT);
     let time = meter::now().wrapping_sub(start);
-    let certified = judged.unwrap_or_else(|_| refuse(Step::Certificate.as_str()));
+    let certified = judged.unwrap_or_else(|_| halt_with(Step::Certificate.as_str()));
     log::certificate("compiler", compiler);
     log::certificate("board", certified.assessment());
-    let (size, left) = (stack::size(), stack::left());
-    defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - left, size);
+    let (size, unused) = (stack::size(), stack::unused());
+    defmt::info!("certify_time={} stack_used={} stack_size={}", time, size - unused, size);
 }

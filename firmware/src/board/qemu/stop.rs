@@ -1,7 +1,7 @@
 //! What a fault leaves behind on this board.
 
 use super::{lines, lockstep};
-use crate::board::retained;
+use crate::board::fault_memory;
 use crate::fault::Fault;
 use crate::servo_loop::State;
 
@@ -10,7 +10,7 @@ use crate::servo_loop::State;
 pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
     lines::stop();
-    retained::keep_fault(fault);
+    fault_memory::store_fault(fault);
     // SAFETY: a host that has asked has done so through the pipes, so they are open.
     unsafe { lockstep::show(State::Faulted) };
     cortex_m::peripheral::SCB::sys_reset()

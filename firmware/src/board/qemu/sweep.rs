@@ -1,6 +1,6 @@
 //! From reset to a measurement: the same codes as on the host, one a tick, from the first tick on.
 
-use super::start::{begin, connect, period};
+use super::start::{open_pipes, period, start_timer};
 use super::{lines, tick_timer};
 use crate::board::isr_cell::IsrCell;
 use crate::excitation::{Exciter, Sweep};
@@ -12,18 +12,18 @@ use super::{
 };
 
 /// Where a sweep's interrupt finds what it plays.
-pub type SweepPlace = IsrCell<Exciter<'static>>;
+pub type SweepCell = IsrCell<Exciter<'static>>;
 
 /// Plays a sweep.
-pub fn measure<const N: usize>(sweep: &'static Sweep<N>, place: &'static SweepPlace) -> ! {
-    let timer = begin();
+pub fn measure<const N: usize>(sweep: &'static Sweep<N>, cell: &'static SweepCell) -> ! {
+    let timer = start_timer();
     #[cfg(feature = "log")]
     // SAFETY: the interrupt is not enabled yet.
     let mut log = unsafe { Log::open(calibrate(), NoParts) };
     let period = period(sweep.period());
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.init(Exciter::new(sweep)) };
-    connect();
+    unsafe { cell.init(Exciter::new(sweep)) };
+    open_pipes();
     lines::amplifier(true);
     tick_timer::start(timer, period);
     loop {

@@ -39,7 +39,7 @@ pub fn keep_watchdog_running() {
 }
 
 /// Warns of a brown-out level below what the board works with. The core itself may run at 170 MHz
-/// down to the lowest level, but the converter's buffer only down to 1.8 V (DS12288).
+/// down to the lowest level, but the DAC's buffer only down to 1.8 V (DS12288).
 pub fn check_brown_out() {
     let level = FLASH.optr().read().bor_lev();
     if level == 0 {

@@ -3,16 +3,16 @@
 //!
 //! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
 
+#[cfg(feature = "fast-memory")]
+mod ccm_sram;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 pub mod clock_170;
-pub mod converter;
+pub mod dac;
 #[cfg(feature = "stm32f405")]
 mod f4;
-#[cfg(feature = "fast-memory")]
-mod fast;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 mod g4;
-pub mod line;
+pub mod output_pin;
 pub mod quadrature;
 pub mod registers;
 mod reset;
@@ -37,15 +37,16 @@ pub use super::stm32f405 as wiring;
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
-    HostLink, LinkPlace, Places, ServoPlace, Task, begin, connect, fitted, period, run, width,
+    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, period, run, start_timer, width,
+    with_board_counter,
 };
-pub use sweep::{Setup, SweepPlace, measure};
+pub use sweep::{Setup, SweepCell, measure};
 
 /// When a torque reaches the motor.
 pub type Mode = crate::servo::Latched;
 
 /// What a board gives besides its registers.
-pub struct Connected {
+pub struct BoardPeripherals {
     /// The port to the host.
     pub serial: serial::Serial,
 }

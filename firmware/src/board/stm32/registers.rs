@@ -5,9 +5,9 @@ use embassy_stm32::pac::iwdg::vals::Key;
 
 use super::quadrature::Counter;
 use super::tick_timer::{Period, TickTimer};
-use super::wiring::{AMPLIFIER, CONVERTER, ENCODER};
+use super::wiring::{AMPLIFIER, DAC, ENCODER};
 use super::{family, reset};
-use crate::board::retained;
+use crate::board::fault_memory;
 use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
@@ -42,7 +42,7 @@ impl Hardware for Registers {
 
     #[inline(always)]
     fn write(&mut self, code: DacCode) {
-        CONVERTER.write(code);
+        DAC.write(code);
     }
 
     #[inline(always)]
@@ -66,17 +66,17 @@ impl Hardware for Registers {
     }
 
     fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
-        retained::keep(record);
+        fault_memory::store(record);
     }
 }
 
 impl Startup for Registers {
-    fn zero(&mut self) {
+    fn zero_encoder(&mut self) {
         ENCODER.zero();
     }
 
-    fn guard(&mut self) {
-        // While the core is halted the converter holds its last code: what takes that away shall not
+    fn start_watchdog(&mut self) {
+        // While the core is halted the DAC holds its last code: what takes that away shall not
         // be halted with it.
         family::keep_watchdog_running();
         // A count more makes up for what the cast rounds down.
@@ -86,8 +86,8 @@ impl Startup for Registers {
         pac::IWDG.rlr().write(|w| w.set_rl(counts as u16));
     }
 
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
-        retained::kept()
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
+        fault_memory::stored()
     }
 
     fn reset_cause(&mut self) -> ResetCause {

@@ -3,7 +3,7 @@
 use embassy_stm32::pac::RCC;
 
 use super::family::{BROWN_OUT, OPTION_BYTES, POWER_ON};
-use crate::board::retained;
+use crate::board::fault_memory;
 use crate::reset::ResetCause;
 
 /// Flags of RCC_CSR that the F4's and the G4's have in common (RM0090, 7.3.21; RM0440, 7.4.30), the
@@ -19,7 +19,7 @@ const LOW_POWER: u32 = 1 << 31;
 pub fn cause() -> ResetCause {
     let flags = RCC.csr().read().0;
     RCC.csr().modify(|w| w.set_rmvf(true));
-    of_flags(flags, retained::power_stayed())
+    of_flags(flags, fault_memory::power_stayed())
 }
 
 /// What resets a chip later than its supply is named first, and the supply itself before the pin.

@@ -13,8 +13,8 @@ use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
 use super::tick_timer::Period;
-use super::wiring::{self, CONVERTER, ENCODER};
-use super::{Connected, Mode, family};
+use super::wiring::{self, DAC, ENCODER};
+use super::{BoardPeripherals, Mode, family};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
@@ -32,26 +32,26 @@ use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Session};
 
 /// Where the servo's interrupt finds its state.
-pub type ServoPlace<E, N> = IsrCell<ServoIsr<Registers, E, N, Mode>>;
+pub type ServoCell<E, N> = IsrCell<ServoIsr<Registers, E, N, Mode>>;
 
 /// The host's end of the board, for the task below the servo.
 pub type HostLink<E, N> = Link<Serial, E, N, Mode>;
 
 /// Where that link is: in a place of its own, since a task would keep a copy for each step that
 /// passes it on.
-pub type LinkPlace<E, N> = StaticCell<HostLink<E, N>>;
+pub type LinkCell<E, N> = StaticCell<HostLink<E, N>>;
 
 /// A program's task that serves its [`HostLink`].
 pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The static places of a program, whose types are its scene's.
-pub struct Places<E: Discretize<N> + 'static, N: Number> {
+pub struct Statics<E: Discretize<N> + 'static, N: Number> {
     /// What the servo's interrupt works with.
-    pub servo: &'static ServoPlace<E, N>,
+    pub servo: &'static ServoCell<E, N>,
     /// Where it meets the task below.
     pub mailbox: &'static MailboxCell<E, N, Mode>,
     /// That task's end of the host's link.
-    pub link: &'static LinkPlace<E, N>,
+    pub link: &'static LinkCell<E, N>,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
 }
@@ -60,19 +60,19 @@ pub struct Places<E: Discretize<N> + 'static, N: Number> {
 pub fn run<E, N, S>(
     name: &'static str,
     program: Program<E>,
-    places: Places<E, N>,
+    statics: Statics<E, N>,
     task: Task<E, N, S>,
 ) -> !
 where
     E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
-    let link = install(name, program, places);
+    let link = bring_up(name, program, statics);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init_with(Executor::new).run(|spawner| match task(link) {
         Ok(token) => spawner.spawn(token),
         // A task's place is taken only where it was spawned before, which nothing here does.
-        Err(_) => refuse("the task of the host's link runs already"),
+        Err(_) => halt_with("the task of the host's link runs already"),
     })
 }
 
@@ -82,7 +82,7 @@ where
 /// # Panics
 /// Where the counter would wrap unseen; in a constant that is the compile error.
 #[track_caller]
-pub const fn fitted<E: Copy>(program: Program<E>) -> Program<E> {
+pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
     let transducers = Transducers { counter: width(ENCODER), ..program.transducers };
     Program { transducers, ..program }.checked()
 }
@@ -93,32 +93,38 @@ pub const fn fitted<E: Copy>(program: Program<E>) -> Program<E> {
 /// stack, and must not find what was only needed here below itself.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
-fn install<E, N>(
+fn bring_up<E, N>(
     name: &'static str,
     program: Program<E>,
-    places: Places<E, N>,
+    statics: Statics<E, N>,
 ) -> &'static mut HostLink<E, N>
 where
     E: Tunable<N> + SupportsTiming<Mode>,
     N: Number,
 {
-    let port = connect(places.filter).serial;
+    let port = init_chip(statics.filter).serial;
     let period = period(program.scene.timing.period);
     let mut hardware = Registers::new(period);
     let timer_counts = hardware.period();
-    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(places.mailbox);
-    let Booted { servo_loop, margin, reset, left, arms_because } =
-        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| refuse(step.as_str()));
-    begin(&mut hardware);
+    let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
+    let Booted { servo_loop, margin, reset, previous_fault, arms_because } =
+        boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
+    start_timer(&mut hardware);
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { places.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
+    unsafe { statics.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
-    greet(name);
-    log_reset(reset, left, arms_because);
-    let facts = BoardInfo { name, timer_counts, reset, left, stack_left: || Some(stack::left()) };
-    let session = Session::new(program, margin, facts, requests, frame_reader);
-    places.link.init(Link { port, session })
+    log_banner(name);
+    log_reset(reset, previous_fault, arms_because);
+    let info = BoardInfo {
+        name,
+        timer_counts,
+        reset,
+        previous_fault,
+        stack_left: || Some(stack::unused()),
+    };
+    let session = Session::new(program, margin, info, requests, frame_reader);
+    statics.link.init(Link { port, session })
 }
 
 impl<E: Tunable<N> + SupportsTiming<Mode>, N: Number> HostLink<E, N> {
@@ -138,30 +144,30 @@ pub fn period(seconds: f64) -> Period {
     Period::of(seconds).unwrap_or_else(|_| {
         let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
         defmt::error!("the period of {} s is not between {} and {} s", seconds, shortest, longest);
-        refuse("its period")
+        halt_with("its period")
     })
 }
 
-/// Latches the converter where that is its mode, and begins to pace. The servo's interrupt is to be
+/// Latches the DAC where that is its mode, and begins to pace. The servo's interrupt is to be
 /// enabled within a period.
-pub fn begin(hardware: &mut Registers) {
+pub fn start_timer(hardware: &mut Registers) {
     if Mode::TIMING == OutputTiming::Latched {
-        CONVERTER.latch();
+        DAC.latch();
     }
     hardware.start();
 }
 
 /// The first words to a debug probe.
-fn greet(name: &str) {
-    let (free, size) = (stack::left(), stack::size());
+fn log_banner(name: &str) {
+    let (free, size) = (stack::unused(), stack::size());
     defmt::info!("{=str} on {=str}, stack: {} of {} bytes left", name, wiring::NAME, free, size);
     family::check_brown_out();
 }
 
 /// Why the board was reset, and what comes of it.
-fn log_reset(reset: ResetCause, left: Option<FaultRecord>, arms_because: Option<Reason>) {
+fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_because: Option<Reason>) {
     defmt::info!("last reset: {=str}", reset.as_str());
-    if let Some(FaultRecord { fault, tick, .. }) = left {
+    if let Some(FaultRecord { fault, tick, .. }) = previous_fault {
         let (_, [a, b]) = fault.encode();
         defmt::warn!("not armed: {=str} ({}, {}) in tick {}", fault.as_str(), a, b, tick);
     }
@@ -170,19 +176,19 @@ fn log_reset(reset: ResetCause, left: Option<FaultRecord>, arms_because: Option<
     }
 }
 
-/// Clocks, interrupts and pins. The amplifier is off and the converter at mid-scale.
-pub fn connect(filter: InputFilter) -> Connected {
+/// Clocks, interrupts and pins. The amplifier is off and the DAC at mid-scale.
+pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
     family::cache();
     // From here on a crystal that stops is a fault, and not a core that stands still.
     pac::RCC.cr().modify(|w| w.set_csson(true));
     #[cfg(feature = "fast-memory")]
-    super::fast::load();
+    super::ccm_sram::load();
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     critical::lower_all(&mut core.NVIC);
     interrupt::TIM6_DAC.set_priority(Priority::P0);
-    let connected = wiring::connect(chip);
-    CONVERTER.stop();
+    let connected = wiring::connect_pins(chip);
+    DAC.stop();
     ENCODER.complete(filter);
     connected
 }
@@ -195,7 +201,7 @@ pub const fn width<C: Counter>(_: C) -> crate::encoder::CounterWidth {
 /// Ends a program that cannot start. The amplifier has never been on. Where this machine refuses a scene
 /// that passed when it was compiled, the host has the words for it: `haptic certify`.
 #[cold]
-pub(super) fn refuse(reason: &'static str) -> ! {
+pub(super) fn halt_with(reason: &'static str) -> ! {
     stop();
     defmt::error!("refused by {=str}", reason);
     loop {
@@ -225,16 +231,17 @@ macro_rules! board_program {
 
         $crate::board_filter!($program.transducers);
 
-        /// The scene, as late as the board's converter: where it is not, this does not compile.
+        /// The scene, as late as the board's DAC: where it is not, this does not compile.
         const TIMED: $crate::certificate::TimingChecked<
             $crate::scene::Scene<$environment>,
             $crate::board::stm32::Mode,
         > = $certified.timing_checked::<$crate::board::stm32::Mode>();
 
         /// What this board runs.
-        const FITTED: $crate::boot::Program<$environment> = $crate::board::stm32::fitted($program);
+        const BOARD_PROGRAM: $crate::boot::Program<$environment> =
+            $crate::board::stm32::with_board_counter($program);
 
-        static PLACE: $crate::board::stm32::ServoPlace<$environment, $number> =
+        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number> =
             $crate::board::isr_cell::IsrCell::empty();
         static MAILBOX: $crate::board::servo_isr::MailboxCell<
             $environment,
@@ -242,7 +249,7 @@ macro_rules! board_program {
             $crate::board::stm32::Mode,
         > = $crate::__private::static_cell::StaticCell::new();
 
-        static LINK: $crate::board::stm32::LinkPlace<$environment, $number> =
+        static LINK: $crate::board::stm32::LinkCell<$environment, $number> =
             $crate::__private::static_cell::StaticCell::new();
 
         $crate::board_tick!();
@@ -257,15 +264,15 @@ macro_rules! board_program {
 
         #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            let program = $crate::boot::Program { scene: *TIMED.scene(), ..FITTED };
+            let program = $crate::boot::Program { scene: *TIMED.scene(), ..BOARD_PROGRAM };
             let name = env!("CARGO_BIN_NAME");
-            let places = $crate::board::stm32::Places {
-                servo: &PLACE,
+            let statics = $crate::board::stm32::Statics {
+                servo: &ISR_STATE,
                 mailbox: &MAILBOX,
                 link: &LINK,
                 filter: FILTER,
             };
-            $crate::board::stm32::run(name, program, places, serve)
+            $crate::board::stm32::run(name, program, statics, serve)
         }
     };
 }
@@ -298,7 +305,7 @@ macro_rules! board_filter {
     };
 }
 
-/// The handler of the pacing timer's interrupt, for what is in the place `PLACE`.
+/// The handler of the pacing timer's interrupt, for what is in the place `ISR_STATE`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_tick {
@@ -309,7 +316,7 @@ macro_rules! board_tick {
             unsafe extern "C" fn TIM6_DAC() {
                 // SAFETY: this is the handler of the interrupt that is enabled once the place is
                 // filled, and no interrupt interrupts itself.
-                unsafe { PLACE.borrow_mut() }.tick();
+                unsafe { ISR_STATE.borrow_mut() }.tick();
             }
         }
     };

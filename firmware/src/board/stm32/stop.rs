@@ -2,14 +2,14 @@
 //! the watchdog, which resets the board.
 
 use super::family;
-use super::wiring::{AMPLIFIER, CONVERTER};
-use crate::board::retained;
+use super::wiring::{AMPLIFIER, DAC};
+use crate::board::fault_memory;
 use crate::fault::Fault;
 
 /// Takes the torque away, by registers alone: it works with whatever is left of the program.
 pub fn stop() {
     AMPLIFIER.set(false);
-    CONVERTER.stop();
+    DAC.stop();
 }
 
 /// Ends the program because of a non-maskable interrupt: an error of the flash memory, of RAM, or of the
@@ -25,10 +25,10 @@ pub fn end_non_maskable() -> ! {
 /// is, for a person to look at.
 pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
-    // The record before the converter: a register that does not answer ends all that is behind it.
+    // The record before the DAC: a register that does not answer ends all that is behind it.
     AMPLIFIER.set(false);
-    retained::keep_fault(fault);
-    CONVERTER.stop();
+    fault_memory::store_fault(fault);
+    DAC.stop();
     loop {
         cortex_m::asm::nop();
     }

@@ -14,7 +14,7 @@ use static_cell::StaticCell;
 
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{begin, connect, period, width};
+use super::start::{init_chip, period, start_timer, width};
 use super::wiring::ENCODER;
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
@@ -31,7 +31,7 @@ use crate::text::ShortF64;
 use crate::torque::LimitReason;
 
 /// Where the sweep's interrupt finds what it works with.
-pub type SweepPlace = IsrCell<Player>;
+pub type SweepCell = IsrCell<SweepIsr>;
 
 /// What a sweep's device is measured with, and kept within.
 pub struct Setup {
@@ -60,7 +60,7 @@ static LISTENING: AtomicU32 = AtomicU32::new(0);
 static ENDED: AtomicU32 = AtomicU32::new(0);
 
 /// What the sweep's interrupt works with.
-pub struct Player {
+pub struct SweepIsr {
     beginning: Exciter<'static>,
     exciter: Exciter<'static>,
     /// Samples of the sweep, and those that are still to come.
@@ -72,7 +72,7 @@ pub struct Player {
     /// The position at the sweep's beginning, and in the last tick.
     start: i32,
     last: i32,
-    /// What the converter has held since this tick's update.
+    /// What the DAC has held since this tick's update.
     held: DacCode,
     hardware: Registers,
     rows: Frames<'static, ROWS>,
@@ -80,7 +80,7 @@ pub struct Player {
     dropped: u32,
 }
 
-impl Player {
+impl SweepIsr {
     /// One tick: the sweep's next sample while it is wanted, none while it is not.
     #[inline(always)]
     pub fn tick(&mut self) {
@@ -146,18 +146,18 @@ fn tell_end(end: SweepEnd) {
 pub fn measure<const N: usize>(
     sweep: &'static Sweep<N>,
     setup: &Setup,
-    place: &'static SweepPlace,
+    cell: &'static SweepCell,
 ) -> ! {
-    let mut serial = connect(setup.filter).serial;
+    let mut serial = init_chip(setup.filter).serial;
     let mut hardware = Registers::new(period(sweep.period()));
-    hardware.zero();
+    hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
-    hardware.guard();
-    begin(&mut hardware);
-    let player = Player {
+    hardware.start_watchdog();
+    start_timer(&mut hardware);
+    let player = SweepIsr {
         beginning: exciter.clone(),
         exciter,
         samples: sweep.ticks(),
@@ -173,7 +173,7 @@ pub fn measure<const N: usize>(
         dropped: 0,
     };
     // SAFETY: the interrupt that uses the place is not enabled yet.
-    unsafe { place.init(player) };
+    unsafe { cell.init(player) };
     // SAFETY: its handler finds its place filled.
     unsafe { interrupt::TIM6_DAC.enable() };
     let step = sweep.full_scale_torque() / f64::from(DacCode::CODES_TO_FULL_SCALE);
@@ -287,13 +287,14 @@ macro_rules! board_sweep {
             filter: FILTER,
         };
 
-        static PLACE: $crate::board::stm32::SweepPlace = $crate::board::isr_cell::IsrCell::empty();
+        static ISR_STATE: $crate::board::stm32::SweepCell =
+            $crate::board::isr_cell::IsrCell::empty();
 
         $crate::board_tick!();
 
         #[$crate::__private::cortex_m_rt::entry]
         fn main() -> ! {
-            $crate::board::stm32::measure(&$sweep, &SETUP, &PLACE)
+            $crate::board::stm32::measure(&$sweep, &SETUP, &ISR_STATE)
         }
     };
 }

@@ -1,5 +1,5 @@
 //! When a tick is due: a basic timer whose update starts the servo's interrupt and latches the
-//! converter, and beside it a clock that never stops, which tells how late the servo is.
+//! DAC, and beside it a clock that never stops, which tells how late the servo is.
 //!
 //! Both count the same clock, so that a period is a whole number of the clock's counts and the two
 //! cannot drift apart.
@@ -18,7 +18,7 @@ use crate::period;
 use crate::servo_loop::{BEGAN_LATE, READ_WITHIN};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
-/// these chips' converters can take.
+/// these chips' DACs can take.
 const TIMER: pac::timer::TimBasic = pac::TIM6;
 
 /// A period as the timer counts it.
@@ -100,7 +100,7 @@ impl TickTimer {
         rcc::enable_and_reset::<peripherals::TIM6>();
         TIMER.psc().write_value((period.prescale - 1) as u16);
         TIMER.arr().write(|w| w.set_arr((period.counts - 1) as u16));
-        // The update is what the converter is triggered by.
+        // The update is what the DAC is triggered by.
         TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
         // Prescaler and period are taken over at an update; this one shall be no tick.
         TIMER.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));

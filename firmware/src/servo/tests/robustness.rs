@@ -6,7 +6,7 @@ use super::*;
 fn the_limit_and_its_reason_belong_together() {
     let spring = scene(DelayedSpring::<1> { stiffness: 22.0 });
     for (torque_limit, reason, far) in [
-        (None, LimitReason::Converter, 1791),
+        (None, LimitReason::DacRange, 1791),
         (Some(1.0), LimitReason::Torque, 1791),
         (Some(0.5), LimitReason::Torque, 896),
     ] {
@@ -23,7 +23,7 @@ fn the_limit_and_its_reason_belong_together() {
 }
 
 #[test]
-fn an_encoder_and_a_converter_meet_in_one_call() {
+fn an_encoder_and_a_dac_in_one_call() {
     struct Counter(i16);
     struct Held(Option<DacCode>);
     impl Encoder for Counter {
@@ -142,7 +142,7 @@ where
     let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
     for raw in raw {
         let output = servo.tick(RawCount::from(*raw));
-        // What is beyond it, no board's converter puts out.
+        // What is beyond it, no board's DAC puts out.
         assert!(output.code.offset().unsigned_abs() <= DacCode::CODES_TO_FULL_SCALE);
         assert!(servo.torque_nm().abs() <= largest);
         if output.limit == LimitReason::NotANumber {

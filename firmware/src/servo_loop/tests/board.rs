@@ -27,7 +27,7 @@ pub struct Board {
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
-    pub kept: [u32; FaultRecord::WORDS],
+    pub stored: [u32; FaultRecord::WORDS],
     pub reset: ResetCause,
 }
 
@@ -38,7 +38,7 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
-            kept: FaultRecord::NOTHING,
+            stored: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
         }
     }
@@ -82,20 +82,20 @@ impl Hardware for Board {
         self.events.push(Event::Feed);
     }
     fn store_fault(&mut self, record: &[u32; FaultRecord::WORDS]) {
-        self.kept = *record;
+        self.stored = *record;
     }
 }
 
 impl Startup for Board {
-    fn zero(&mut self) {
+    fn zero_encoder(&mut self) {
         self.events.push(Event::Zero);
         self.count = 0;
     }
-    fn guard(&mut self) {
+    fn start_watchdog(&mut self) {
         self.events.push(Event::Guard);
     }
-    fn kept(&mut self) -> [u32; FaultRecord::WORDS] {
-        self.kept
+    fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {
+        self.stored
     }
     fn reset_cause(&mut self) -> ResetCause {
         self.reset
@@ -114,7 +114,7 @@ pub struct Bench<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub frames: Frames<'static, 8>,
     pub seen: FrameReader<'static, 8>,
     pub reset: ResetCause,
-    pub left: Option<FaultRecord>,
+    pub previous_fault: Option<FaultRecord>,
     pub arms_because: Option<Reason>,
 }
 
@@ -123,9 +123,19 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
     pub fn boot(program: &Program<E>, mut board: Board) -> Result<Self, Step> {
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, seen) = Box::leak(Box::new(FrameQueue::<8>::new())).split();
-        let Booted { servo_loop, reset, left, arms_because, .. } =
+        let Booted { servo_loop, reset, previous_fault, arms_because, .. } =
             boot(program, &mut board, &requests)?;
-        Ok(Self { board, servo_loop, inbox, requests, frames, seen, reset, left, arms_because })
+        Ok(Self {
+            board,
+            servo_loop,
+            inbox,
+            requests,
+            frames,
+            seen,
+            reset,
+            previous_fault,
+            arms_because,
+        })
     }
 
     /// Boots the board and asks for it to be armed.
@@ -156,7 +166,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
 
     /// The status, a tick later.
     pub fn status(&mut self) -> Status {
-        self.requests.ask_status();
+        self.requests.request_status();
         self.tick(self.board.count);
         let status = self.notices().into_iter().rev().find_map(|notice| match notice {
             Notice::Status(status) => Some(status),

@@ -10,8 +10,8 @@ fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
     assert!(!bench.board.is_on());
     assert_eq!(bench.board.codes().last(), Some(&2048));
     assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
-    let kept = FaultRecord::decode(&bench.board.kept).unwrap();
-    assert_eq!((kept.fault, kept.count), (fault, bench.board.count));
+    let stored = FaultRecord::decode(&bench.board.stored).unwrap();
+    assert_eq!((stored.fault, stored.count), (fault, bench.board.count));
     // It stays so, and there is no torque whatever the device does.
     bench.board.events.clear();
     bench.stand(bench.board.count, 50);
@@ -26,7 +26,7 @@ fn assert_armed_again(bench: &mut Bench<Spring, f32, Latched>) {
     assert_eq!(bench.notices(), [Notice::Armed]);
     assert_eq!((bench.servo_loop.state(), bench.servo_loop.fault()), (State::Running, None));
     assert!(bench.board.is_on());
-    assert_eq!(bench.board.kept, FaultRecord::NOTHING);
+    assert_eq!(bench.board.stored, FaultRecord::NOTHING);
 }
 
 #[test]
@@ -183,19 +183,19 @@ fn what_was_left_from_before_a_reset_is_reported_and_must_be_cleared() {
     let panicked = FaultRecord { fault: Fault::Panic { line: 12, column: 5 }, tick: 77, count: -3 };
     let watchdog = FaultRecord { fault: Fault::Watchdog, tick: 0, count: 0 };
     let by_watchdog = ResetCause::IndependentWatchdog;
-    for (kept, reset, left) in [
+    for (stored, reset, previous_fault) in [
         (panicked.encode(), by_watchdog, panicked),
         (panicked.encode(), ResetCause::Software, panicked),
         (FaultRecord::NOTHING, by_watchdog, watchdog),
     ] {
-        let board = Board { kept, reset, ..Board::new() };
+        let board = Board { stored, reset, ..Board::new() };
         let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, board).unwrap();
-        assert_eq!(bench.left, Some(left));
+        assert_eq!(bench.previous_fault, Some(previous_fault));
         bench.stand(300, 200);
         assert!(!bench.board.is_on() && bench.board.codes().iter().all(|code| *code == 2048));
         assert_eq!(bench.notices(), []);
         let status = bench.status();
-        assert_eq!((status.state, status.fault), (State::Disarmed, Some(left.fault)));
+        assert_eq!((status.state, status.fault), (State::Disarmed, Some(previous_fault.fault)));
         assert_armed_again(&mut bench);
     }
 }
@@ -208,7 +208,7 @@ fn with_link(link: LinkPolicy) -> Program<Spring> {
 fn a_host_that_falls_silent_lets_the_device_go() {
     let mut bench = running(&with_link(LinkPolicy::Release), 500);
     for _ in 0..10 {
-        bench.requests.heard();
+        bench.requests.host_alive();
         bench.stand(500, 199);
         assert_eq!(bench.servo_loop.state(), State::Running);
     }
@@ -228,7 +228,7 @@ fn a_host_that_falls_silent_lets_the_device_go() {
     bench.requests.arm();
     bench.tick(500);
     assert!(matches!(bench.notices()[..], [Notice::NotArmed(Fault::LinkLost { .. })]));
-    bench.requests.heard();
+    bench.requests.host_alive();
     assert_armed_again(&mut bench);
 }
 
@@ -239,7 +239,7 @@ fn a_host_that_falls_silent_may_also_be_missed_in_silence() {
         bench.stand(500, 500);
         assert_eq!(bench.servo_loop.state(), State::Running);
         assert_eq!(bench.status().link_lost, lost);
-        bench.requests.heard();
+        bench.requests.host_alive();
         assert!(!bench.status().link_lost);
     }
 }

@@ -125,10 +125,10 @@ fn a_program_that_says_so_is_armed_at_power_on_and_after_no_other_reset() {
 /// RAM may keep a record through a supply that was off for a moment.
 #[test]
 fn a_fault_that_was_kept_is_armed_at_no_power_on() {
-    let kept = FaultRecord { fault: Fault::ClockLost, tick: 0, count: 0 }.encode();
+    let stored = FaultRecord { fault: Fault::ClockLost, tick: 0, count: 0 }.encode();
     let options = Options::DEFAULT.armed_at_power_on("nobody can reach it");
     let program = Program { options, ..SPRING };
-    let board = Board { kept, ..Board::new() };
+    let board = Board { stored, ..Board::new() };
     let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&program, board).unwrap();
     bench.stand(0, 300);
     assert!(!bench.board.is_on());

@@ -28,8 +28,8 @@ use super::decoder::Decoder;
 use super::description::Description;
 use super::frame::CHECKSUM;
 use super::message::{
-    Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Running, Status, ToBoard,
-    ToHost,
+    ActiveParameters, Board, Changes, FaultCode, Id, LONGEST_TO_BOARD, Outcome, Refusal, Status,
+    ToBoard, ToHost,
 };
 use crate::boot::Program;
 use crate::certificate::scene_data;
@@ -52,7 +52,7 @@ pub struct BoardInfo {
     /// Cause of the last reset.
     pub reset: ResetCause,
     /// The fault that stopped it before that reset.
-    pub left: Option<FaultRecord>,
+    pub previous_fault: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
 }
@@ -69,7 +69,7 @@ struct Set<E> {
 
 /// The board's end of the wire; `LENGTH` is that of the servo's queue of frames.
 pub struct Session<'a, E: Discretize<N>, N: Number, M, const LENGTH: usize> {
-    facts: BoardInfo,
+    info: BoardInfo,
     program: Program<E>,
     requests: Requests<'a, PreparedServo<E, N, M>>,
     frames: FrameReader<'a, LENGTH>,
@@ -98,12 +98,12 @@ where
     pub fn new(
         program: Program<E>,
         margin: Option<f64>,
-        facts: BoardInfo,
+        info: BoardInfo,
         requests: Requests<'a, PreparedServo<E, N, M>>,
         frames: FrameReader<'a, LENGTH>,
     ) -> Self {
         Self {
-            facts,
+            info,
             requests,
             frames,
             decoder: Decoder::new(),
@@ -122,7 +122,7 @@ where
     pub fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(message) = self.decoder.push(byte) {
-                self.requests.heard();
+                self.requests.host_alive();
                 self.on_message(message);
             }
         }
@@ -164,7 +164,7 @@ where
             ToBoard::Hello => self.replies.greet(),
             ToBoard::Get => self.replies.parameters = true,
             ToBoard::Describe => self.replies.description = true,
-            ToBoard::Status => self.requests.ask_status(),
+            ToBoard::Status => self.requests.request_status(),
             ToBoard::Stream(every) => self.stream.set(every),
             ToBoard::Arm { id } => {
                 if self.replies.arm(id) {
@@ -210,7 +210,7 @@ where
         } else if let Some(status) = self.replies.status.take() {
             self.outbox.put(&ToHost::Status(self.status(&status)));
         } else if core::mem::take(&mut self.replies.parameters) {
-            self.outbox.put(&ToHost::Running(self.parameters()));
+            self.outbox.put(&ToHost::ActiveParameters(self.parameters()));
         } else if core::mem::take(&mut self.replies.description) {
             self.outbox.put(&ToHost::Described(self.description()));
         }
@@ -223,12 +223,12 @@ where
     }
 
     fn greet(&mut self, part: Greeting) {
-        let message = match (part, self.facts.left) {
+        let message = match (part, self.info.previous_fault) {
             (Greeting::Welcome, _) => {
-                ToHost::Welcome { protocol: PROTOCOL, program: self.facts.name }
+                ToHost::Welcome { protocol: PROTOCOL, program: self.info.name }
             }
-            (Greeting::Remembered, Some(record)) => ToHost::Remembered(record.into()),
-            (Greeting::Remembered, None) => return self.send_reply(),
+            (Greeting::PreviousFault, Some(record)) => ToHost::PreviousFault(record.into()),
+            (Greeting::PreviousFault, None) => return self.send_reply(),
             (Greeting::Board, _) => ToHost::Board(self.board()),
         };
         self.outbox.put(&message);
@@ -258,7 +258,7 @@ where
         let period = self.program.scene.timing.period;
         Board {
             period,
-            timer_counts: self.facts.timer_counts,
+            timer_counts: self.info.timer_counts,
             counts_per_turn: transducers.counts_per_turn,
             full_scale_torque: transducers.full_scale_torque,
             energy_step: transducers.energy_unit(),
@@ -272,11 +272,11 @@ where
         Description { scene, transducers, rendering, format, timing }
     }
 
-    fn parameters(&self) -> Running {
+    fn parameters(&self) -> ActiveParameters {
         let Set { scene, margin } = &self.active;
         let named = |parameter| tuning::get(scene, parameter).map(|value| (parameter, value));
         let values = tuning::parameters(scene).iter().filter_map(named).collect();
-        Running { sets: self.revision, margin: *margin, values }
+        ActiveParameters { sets: self.revision, margin: *margin, values }
     }
 
     fn status(&self, servo: &servo_loop::Status) -> Status {
@@ -294,8 +294,8 @@ where
             dropped: servo.dropped,
             thinned: self.stream.thinned(),
             discarded: self.decoder.discarded(),
-            stack_left: (self.facts.stack_left)(),
-            reset: self.facts.reset,
+            stack_left: (self.info.stack_left)(),
+            reset: self.info.reset,
         }
     }
 }

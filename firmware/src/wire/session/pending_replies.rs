@@ -29,7 +29,7 @@ pub(super) struct PendingReplies {
 #[derive(Clone, Copy)]
 pub(super) enum Greeting {
     Welcome,
-    Remembered,
+    PreviousFault,
     Board,
 }
 
@@ -43,8 +43,8 @@ impl PendingReplies {
     pub(super) fn greeting(&mut self) -> Option<Greeting> {
         let part = self.greeting?;
         self.greeting = match part {
-            Greeting::Welcome => Some(Greeting::Remembered),
-            Greeting::Remembered => Some(Greeting::Board),
+            Greeting::Welcome => Some(Greeting::PreviousFault),
+            Greeting::PreviousFault => Some(Greeting::Board),
             Greeting::Board => None,
         };
         Some(part)

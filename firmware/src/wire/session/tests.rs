@@ -82,7 +82,7 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(left: Option<FaultRecord>) -> Self {
+    fn new(previous_fault: Option<FaultRecord>) -> Self {
         let program = program();
         let (requests, inbox) = Box::leak(Box::new(Mailbox::new())).split();
         let (frames, queue) = Box::leak(Box::new(FrameQueue::<FRAMES>::new())).split();
@@ -91,10 +91,15 @@ impl Bench {
             tuning::prepare::<_, f32, Latched>(scene, &[], transducers, rendering).unwrap();
         let servo_loop = ServoLoop::new(prepared.rendering, options, 1000, None);
         let reset = ResetCause::Pin;
-        let facts =
-            BoardInfo { name: "wall", timer_counts: 1000, reset, left, stack_left: || Some(77) };
+        let info = BoardInfo {
+            name: "wall",
+            timer_counts: 1000,
+            reset,
+            previous_fault,
+            stack_left: || Some(77),
+        };
         requests.arm();
-        let session = Session::new(program, prepared.margin, facts, requests, queue);
+        let session = Session::new(program, prepared.margin, info, requests, queue);
         let hardware = Still { code: DacCode::MID_SCALE };
         Self { session, servo_loop, hardware, inbox, frames, ear: Decoder::new() }
     }
@@ -145,9 +150,9 @@ impl Bench {
         description.explain(has, changes).unwrap_err().to_string()
     }
 
-    fn running(&mut self) -> Running {
+    fn running(&mut self) -> ActiveParameters {
         match self.ask(&ToBoard::Get).as_slice() {
-            [ToHost::Running(running)] => running.clone(),
+            [ToHost::ActiveParameters(running)] => running.clone(),
             other => panic!("{other:?}"),
         }
     }
@@ -210,14 +215,17 @@ fn greets_with_what_its_numbers_mean() {
     let said = bench.ask(&ToBoard::Hello);
     let [
         ToHost::Welcome { protocol: PROTOCOL, program },
-        ToHost::Remembered(left),
+        ToHost::PreviousFault(previous_fault),
         ToHost::Board(board),
     ] = said.as_slice()
     else {
         panic!("{said:?}")
     };
     assert_eq!(program, "wall");
-    assert_eq!((left.fault.fault(), left.tick, left.count), (Some(fault), 7, -8));
+    assert_eq!(
+        (previous_fault.fault.fault(), previous_fault.tick, previous_fault.count),
+        (Some(fault), 7, -8)
+    );
     assert_eq!((board.period, board.timer_counts), (0.001, 1000));
     let said = Bench::new(None).ask(&ToBoard::Hello);
     assert!(matches!(said.as_slice(), [ToHost::Welcome { .. }, ToHost::Board(_)]), "{said:?}");
@@ -372,7 +380,11 @@ fn every_message_fits_its_frame() {
     for message in [
         Said::Telemetry(batch),
         ToHost::Answer { id: u16::MAX, outcome },
-        ToHost::Running(Running { sets: u32::MAX, margin: Some(1.0), values: changes }),
+        ToHost::ActiveParameters(ActiveParameters {
+            sets: u32::MAX,
+            margin: Some(1.0),
+            values: changes,
+        }),
         ToHost::Described(largest_description()),
     ] {
         assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");

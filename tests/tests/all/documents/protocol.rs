@@ -56,10 +56,10 @@ fn every_field_of_every_message_is_there_in_order() {
     let document = read(DOCUMENT);
     for (path, name) in [
         (MESSAGES, "Board"),
-        (MESSAGES, "Running"),
+        (MESSAGES, "ActiveParameters"),
         (MESSAGES, "Status"),
         (MESSAGES, "FaultCode"),
-        (MESSAGES, "Remembered"),
+        (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),
         ("firmware/src/wire/description.rs", "Description"),
         ("firmware/src/scene.rs", "Scene"),

@@ -32,7 +32,7 @@ pub fn cases() -> [Case; 2] {
     let case = |name, plant| Case { name, experiment: released(plant, device) };
     [
         case("mass and damper", Plant::rigid(device)),
-        case("two masses in a hand", Plant::chain(&masses, &links).held(hand)),
+        case("two masses in a hand", Plant::chain(&masses, &links).with_hand(hand)),
     ]
 }
 

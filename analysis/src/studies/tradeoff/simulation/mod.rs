@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use super::{Axis, Method as Row, NUMBER, Subject, Tradeoff, fastest};
 use crate::simulation::method::Method;
-use crate::simulation::{SimulationError, Stride, Trajectory, simulate};
+use crate::simulation::{Integration, SimulationError, Trajectory, simulate};
 use crate::stability::critical_stiffness;
 use crate::table::{Column, Table, TableError};
 
@@ -74,23 +74,23 @@ pub fn measure() -> Result<Tradeoff, SimulationError> {
     for case in cases() {
         let truth = Truth::of(&case)?;
         let strides = strides();
-        let work = |&stride: &Stride| {
-            let run = runner(&case, stride);
+        let work = |&integration: &Integration| {
+            let run = runner(&case, integration);
             move || drop(black_box(run(black_box(SAMPLES))))
         };
         let times = fastest(ROUNDS, &mut strides.iter().map(work).collect::<Vec<_>>());
-        for (stride, time) in strides.into_iter().zip(times) {
-            methods.push(truth.row(&case, stride, time)?);
+        for (integration, time) in strides.into_iter().zip(times) {
+            methods.push(truth.row(&case, integration, time)?);
         }
     }
     Ok(Tradeoff { subject: &SUBJECT, methods })
 }
 
 /// What is measured of each case.
-fn strides() -> Vec<Stride> {
+fn strides() -> Vec<Integration> {
     let of = |method| {
         let substeps = if method == Method::Exact { &SUBSTEPS[..1] } else { &SUBSTEPS[..] };
-        substeps.iter().map(move |&substeps| Stride { method, substeps })
+        substeps.iter().map(move |&substeps| Integration { method, substeps })
     };
     Method::ALL.into_iter().flat_map(of).collect()
 }
@@ -103,29 +103,34 @@ struct Truth {
 
 impl Truth {
     fn of(case: &Case) -> Result<Self, SimulationError> {
-        let exact = Stride::default();
+        let exact = Integration::default();
         let motion = simulate(&case.experiment, exact)?;
         Ok(Self { motion, critical: critical_stiffness(&case.experiment, exact)? })
     }
 
     /// A method's figures, of which the time in s for all samples is given.
-    fn row(&self, case: &Case, stride: Stride, time: f64) -> Result<Row, SimulationError> {
-        let critical = critical_stiffness(&case.experiment, stride)?;
+    fn row(
+        &self,
+        case: &Case,
+        integration: Integration,
+        time: f64,
+    ) -> Result<Row, SimulationError> {
+        let critical = critical_stiffness(&case.experiment, integration)?;
         let verdict = match (critical, self.critical) {
             (Some(found), Some(truth)) => (found / truth - 1.0).abs(),
             _ => f64::INFINITY,
         };
-        let (family, short) = (stride.method.name(), short(stride.method));
-        let name = match stride.method {
+        let (family, short) = (integration.method.name(), short(integration.method));
+        let name = match integration.method {
             Method::Exact => short.to_owned(),
-            _ => format!("{short}, {}", stride.substeps),
+            _ => format!("{short}, {}", integration.substeps),
         };
-        let angles = runner(case, stride)(SAMPLES);
+        let angles = runner(case, integration)(SAMPLES);
         let figures = [
             Some(SAMPLES as f64 / time),
             Some(self.angle_error(&angles)),
             Some(verdict),
-            Some(f64::from(stride.substeps)),
+            Some(f64::from(integration.substeps)),
             critical,
         ];
         Ok(Row { values: figures.to_vec(), ..Row::new(case.name, family, name, &[]) })
@@ -155,10 +160,10 @@ fn short(method: Method) -> &'static str {
 }
 
 /// What gives the angles at so many samples; what can be computed beforehand has been.
-fn runner(case: &Case, stride: Stride) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
+fn runner(case: &Case, integration: Integration) -> Box<dyn Fn(usize) -> Vec<f64> + '_> {
     match case.experiment.plant.order() {
-        2 => Stepper::<2>::new(case, stride).into_runner(case),
-        _ => Stepper::<4>::new(case, stride).into_runner(case),
+        2 => Stepper::<2>::new(case, integration).into_runner(case),
+        _ => Stepper::<4>::new(case, integration).into_runner(case),
     }
 }
 

@@ -7,13 +7,13 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::cases::{Case, STIFFNESS};
-use crate::simulation::Stride;
+use crate::simulation::Integration;
 use crate::simulation::method::{Method, step};
 use crate::simulation::plant::{Input, POSITION};
 
 /// Steps of one method on a device with `N` states.
 pub(super) struct Stepper<const N: usize> {
-    stride: Stride,
+    integration: Integration,
     /// `A` and the motor's column of `B`.
     rates: (SMatrix<f64, N, N>, SVector<f64, N>),
     /// The step as a matrix and the motor's column, for methods that are known by it.
@@ -24,10 +24,10 @@ pub(super) struct Stepper<const N: usize> {
 
 impl<const N: usize> Stepper<N> {
     /// Of a device that has `N` states.
-    pub(super) fn new(case: &Case, stride: Stride) -> Self {
+    pub(super) fn new(case: &Case, integration: Integration) -> Self {
         let plant = &case.experiment.plant;
-        let h = case.experiment.scene.timing.period / f64::from(stride.substeps);
-        let matrix = step(plant, stride.method, 0.0, h);
+        let h = case.experiment.scene.timing.period / f64::from(integration.substeps);
+        let matrix = step(plant, integration.method, 0.0, h);
         let rates = (
             SMatrix::from_fn(|i, j| plant.rates()[(i, j)]),
             SVector::from_fn(|i, _| plant.inputs()[(i, Input::Motor as usize)]),
@@ -36,7 +36,7 @@ impl<const N: usize> Stepper<N> {
             SMatrix::from_fn(|i, j| matrix[(i, j)]),
             SVector::from_fn(|i, _| matrix[(i, N + Input::Motor as usize)]),
         );
-        Self { stride, rates, step, h }
+        Self { integration, rates, step, h }
     }
 
     /// What runs the case.
@@ -47,13 +47,13 @@ impl<const N: usize> Stepper<N> {
     /// The angles at the samples, from the start of the case.
     fn run(&self, case: &Case, samples: usize) -> Vec<f64> {
         let start = case.experiment.start;
-        let moving = case.experiment.plant.moving(start.position, start.velocity);
+        let moving = case.experiment.plant.state_at(start.position, start.velocity);
         let mut state = SVector::<f64, N>::from_fn(|i, _| moving[i]);
         let mut angles = Vec::with_capacity(samples);
         for _ in 0..samples {
             angles.push(state[POSITION]);
             let torque = -STIFFNESS * state[POSITION];
-            state = match self.stride.method {
+            state = match self.integration.method {
                 Method::Exact | Method::Tustin => self.repeat(state, |x| self.known(x, torque)),
                 Method::Euler => self.repeat(state, |x| x + self.rate(x, torque) * self.h),
                 Method::SemiImplicit => self.repeat(state, |x| self.semi_implicit(x, torque)),
@@ -68,7 +68,7 @@ impl<const N: usize> Stepper<N> {
         state: SVector<f64, N>,
         step: impl Fn(SVector<f64, N>) -> SVector<f64, N>,
     ) -> SVector<f64, N> {
-        (0..self.stride.substeps).fold(state, |state, _| step(state))
+        (0..self.integration.substeps).fold(state, |state, _| step(state))
     }
 
     fn rate(&self, state: SVector<f64, N>, torque: f64) -> SVector<f64, N> {

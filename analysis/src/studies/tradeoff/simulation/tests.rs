@@ -1,20 +1,20 @@
 use super::*;
 use crate::table::Table;
 
-fn stride(method: Method, substeps: u32) -> Stride {
-    Stride { method, substeps }
+fn integration(method: Method, substeps: u32) -> Integration {
+    Integration { method, substeps }
 }
 
 /// What is timed is what the program's own simulation computes.
 #[test]
 fn steps_on_the_stack_are_the_programs_own() {
     for case in cases() {
-        for stride in strides().into_iter().filter(|stride| stride.substeps <= 5) {
-            let Ok(found) = simulate(&case.experiment, stride) else { continue };
-            let angles = runner(&case, stride)(SAMPLES);
+        for integration in strides().into_iter().filter(|integration| integration.substeps <= 5) {
+            let Ok(found) = simulate(&case.experiment, integration) else { continue };
+            let angles = runner(&case, integration)(SAMPLES);
             // Where the motion grows so does what rounding made of it.
             for (is, should) in angles.iter().zip(&found.position) {
-                assert!((is - should).abs() <= 1e-9 * should.abs().max(1e-3), "{stride:?}");
+                assert!((is - should).abs() <= 1e-9 * should.abs().max(1e-3), "{integration:?}");
             }
         }
     }
@@ -26,7 +26,7 @@ fn steps_on_the_stack_are_the_programs_own() {
 fn apparent_limits_are_those_of_theory() {
     let [rigid, chain] = cases();
     let limit = |case: &Case, method, substeps| {
-        critical_stiffness(&case.experiment, stride(method, substeps)).unwrap()
+        critical_stiffness(&case.experiment, integration(method, substeps)).unwrap()
     };
     for substeps in SUBSTEPS {
         let (b, t) = (0.5, 1e-3);
@@ -67,8 +67,8 @@ fn the_kept_errors_are_those_that_are_found() {
     let mut kept = kept.methods.iter();
     for case in cases() {
         let truth = Truth::of(&case).unwrap();
-        for stride in strides() {
-            let (found, kept) = (truth.row(&case, stride, 1.0).unwrap(), kept.next().unwrap());
+        for integration in strides() {
+            let (found, kept) = (truth.row(&case, integration, 1.0).unwrap(), kept.next().unwrap());
             let words = |row: &Row| [row.case.clone(), row.family.clone(), row.name.clone()];
             assert_eq!(words(kept), words(&found));
             for (error, axis) in SUBJECT.errors.iter().enumerate() {

@@ -1,23 +1,23 @@
 //! Certificates: intervals in software double precision, of scenes that pass, that do not, and that
 //! are none.
 
-use analysis::emulator::Judge;
+use analysis::emulator::CertifyClient;
 use firmware::certificate::assess;
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware_harness::question::{Ends, Reply};
+use firmware_harness::scene_codec::{CertifyReply, IntervalBits};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::{floats, scenes, vectors};
 
-use super::{TOOLCHAIN, Virtual};
+use super::{TOOLCHAIN, VirtualGuest};
 
 /// Random scenes of each kind.
 const EACH: u64 = 24;
 /// Of the reference cases, every one of so many.
 const PART: usize = 3;
 
-fn bits(index: Option<Interval>) -> Ends {
+fn bits(index: Option<Interval>) -> IntervalBits {
     index.map(|index| (index.lo().to_bits(), index.hi().to_bits()))
 }
 
@@ -34,8 +34,11 @@ fn broken(rng: &mut ChaCha8Rng) -> Scene {
 
 #[test]
 fn certificates_are_equal() {
-    let elf = TOOLCHAIN.build_judge().unwrap_or_else(|error| panic!("{error}"));
-    let mut boards = [Judge::over(Virtual::boot(&elf)), Judge::boot(&elf).unwrap()];
+    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let mut boards = [
+        CertifyClient::with_transport(VirtualGuest::boot(&elf)),
+        CertifyClient::boot(&elf).unwrap(),
+    ];
     let mut asked: Vec<_> = vectors::all().iter().step_by(PART).map(|case| case.scene()).collect();
     let drawn = (0..EACH).map(ChaCha8Rng::seed_from_u64);
     asked.extend(drawn.flat_map(|mut rng| [scenes::any(&mut rng).scene, broken(&mut rng)]));
@@ -43,9 +46,9 @@ fn certificates_are_equal() {
     for scene in &asked {
         let found = assess(scene);
         certified += usize::from(found.outcome.is_ok());
-        let replies = boards.each_mut().map(|board| board.judge(scene).unwrap());
+        let replies = boards.each_mut().map(|board| board.certify(scene).unwrap());
         assert_eq!(replies[0], replies[1], "{scene:?}");
-        let expected = Reply {
+        let expected = CertifyReply {
             alpha: bits(found.alpha),
             alpha_coupled: bits(found.alpha_coupled),
             paper: found.paper,

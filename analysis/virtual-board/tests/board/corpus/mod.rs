@@ -6,7 +6,7 @@
 //! another, and so is its compiler's back end.
 
 mod certificates;
-mod plays;
+mod closed_loops;
 mod sines;
 mod ticks;
 
@@ -27,9 +27,9 @@ static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
 });
 
 /// A program on the virtual board.
-struct Virtual(Guest);
+struct VirtualGuest(Guest);
 
-impl Virtual {
+impl VirtualGuest {
     fn boot(elf: &Path) -> Self {
         let guest = Guest::boot(elf, &NETDUINO_PLUS_2, ["counts", "codes"]);
         Self(guest.unwrap_or_else(|error| panic!("{error}")))
@@ -40,7 +40,7 @@ fn failed(error: CallError) -> EmulatorError {
     EmulatorError::Transport(error.into())
 }
 
-impl Transport for Virtual {
+impl Transport for VirtualGuest {
     fn exchange(&mut self, question: &[u8], answer: &mut [u8]) -> Result<(), EmulatorError> {
         self.0.exchange(question, answer).map_err(failed)
     }

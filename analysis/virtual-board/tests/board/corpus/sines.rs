@@ -1,12 +1,12 @@
 //! Sines of any number at all: conversions that saturate, subnormals, infinities, long reductions.
 
-use analysis::emulator::Trials;
+use analysis::emulator::BenchClient;
+use firmware_harness::bench_request::BenchRequest;
 use firmware_harness::sines::Sine;
-use firmware_harness::trial::Trial;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::{TOOLCHAIN, Virtual};
+use super::{TOOLCHAIN, VirtualGuest};
 
 /// Random numbers of each kind.
 const EACH: usize = 640;
@@ -47,13 +47,15 @@ fn bits(value: f64) -> u64 {
 
 #[test]
 fn sines_are_equal() {
-    let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
-    let mut boards = [Trials::over(Virtual::boot(&elf)), Trials::boot(&elf).unwrap()];
+    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let mut boards =
+        [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let inputs = inputs();
     let words: Vec<_> = inputs.iter().map(|turn| turn.to_bits()).collect();
     for sine in Sine::ALL {
-        let [here, qemu] =
-            boards.each_mut().map(|board| board.compute(&Trial::Sine(sine), &words).unwrap());
+        let [here, qemu] = boards
+            .each_mut()
+            .map(|board| board.compute(&BenchRequest::Sine(sine), &words).unwrap());
         for ((turn, here), qemu) in inputs.iter().zip(here).zip(qemu) {
             let name = format!("{} of {turn:e}, {:08x}", sine.name(), turn.to_bits());
             // Between the two boards there is no choice.

@@ -1,14 +1,14 @@
 //! Ticks of the scenes that have a program, in every number format.
 
-use analysis::emulator::Trials;
+use analysis::emulator::BenchClient;
 use analysis::studies::arithmetic::{Motion, Subject, Units};
 use analysis::studies::tradeoff::servo;
 use firmware::number::Arithmetic;
-use firmware_harness::trial::Trial;
+use firmware_harness::bench_request::BenchRequest;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::{TOOLCHAIN, Virtual, counts};
+use super::{TOOLCHAIN, VirtualGuest, counts};
 
 /// Ticks of each scene in each format and unit.
 const TICKS: usize = 448;
@@ -28,11 +28,15 @@ fn scaled(subject: Subject, (angle, torque): (i32, i32)) -> Subject {
 
 /// Has the host and both boards follow a motion; gives the ticks with the largest torque of all,
 /// which are many where it is a limit. None where the format does not hold the scene in its unit.
-fn compare(boards: &mut [Trials; 2], motion: &Motion, arithmetic: Arithmetic) -> Option<usize> {
+fn compare(
+    boards: &mut [BenchClient; 2],
+    motion: &Motion,
+    arithmetic: Arithmetic,
+) -> Option<usize> {
     let here = motion.torques(arithmetic).ok()?;
     let (scene, transducers) = motion.subject().scaled(arithmetic);
     let unit = motion.subject().units(arithmetic).torque;
-    let trial = Trial::Servo { scene, transducers, arithmetic };
+    let trial = BenchRequest::Servo { scene, transducers, arithmetic };
     let inputs: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
     let there = boards.each_mut().map(|board| board.compute(&trial, &inputs).unwrap());
     assert!(there[0] == there[1], "the boards' instructions differ: {trial:?}");
@@ -50,8 +54,9 @@ fn compare(boards: &mut [Trials; 2], motion: &Motion, arithmetic: Arithmetic) ->
 
 #[test]
 fn ticks_are_equal() {
-    let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
-    let mut boards = [Trials::over(Virtual::boot(&elf)), Trials::boot(&elf).unwrap()];
+    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let mut boards =
+        [BenchClient::with_transport(VirtualGuest::boot(&elf)), BenchClient::boot(&elf).unwrap()];
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let mut limited = Vec::new();
     for case in servo::cases() {

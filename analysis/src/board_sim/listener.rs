@@ -1,0 +1,237 @@
+//! The socket of a simulated board.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{TcpListener, TcpStream};
+#[cfg(unix)]
+use std::os::unix::fs::FileTypeExt;
+#[cfg(unix)]
+use std::os::unix::net::{UnixListener, UnixStream};
+#[cfg(unix)]
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use firmware::number::Number;
+use firmware::servo::{OutputMode, SupportsTiming};
+use firmware::tuning::Tunable;
+use firmware::wire::Session;
+
+use crate::link::Address;
+
+/// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
+const BYTES: usize = 256;
+
+/// What is wrong with an address that is none of a socket.
+const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH; at a serial port there is a real board";
+
+/// Frames that are sent at a time at most.
+const FRAMES: usize = 16;
+
+/// A stream of bytes that does not wait.
+trait Stream: Read + Write + Send {}
+
+impl<S: Read + Write + Send> Stream for S {}
+
+/// A socket, and who has connected to it: one at a time, as on a serial line.
+pub(super) struct Listener {
+    socket: Socket,
+    client: Option<Box<dyn Stream>>,
+    next: Option<(Instant, Box<dyn Stream>)>,
+}
+
+/// Time after which a second client is rejected. Until then the first may turn out to have left.
+const QUEUE_TIMEOUT: Duration = Duration::from_millis(100);
+
+enum Socket {
+    Tcp(TcpListener),
+    #[cfg(unix)]
+    Unix(UnixListener, PathBuf),
+}
+
+impl Listener {
+    /// Listens there; gives the address with the port that the system chose where it was to.
+    pub(super) fn bind(address: &Address) -> io::Result<(Self, Address)> {
+        let (socket, address) = match address {
+            Address::Tcp(address) => {
+                let listener = TcpListener::bind(address)?;
+                listener.set_nonblocking(true)?;
+                let address = listener.local_addr()?.to_string();
+                (Socket::Tcp(listener), Address::Tcp(address))
+            }
+            #[cfg(unix)]
+            Address::Unix(path) => {
+                let listener = bind_unix(path)?;
+                listener.set_nonblocking(true)?;
+                (Socket::Unix(listener, path.clone()), address.clone())
+            }
+            _ => return Err(io::Error::new(ErrorKind::Unsupported, NO_SOCKET)),
+        };
+        Ok((Self { socket, client: None, next: None }, address))
+    }
+
+    /// Carries bytes between the session and whoever is connected; gives whether there were any.
+    pub(super) fn exchange<E, N, M, const LENGTH: usize>(
+        &mut self,
+        session: &mut Session<'_, E, N, M, LENGTH>,
+    ) -> bool
+    where
+        E: Tunable<N> + SupportsTiming<M>,
+        N: Number,
+        M: OutputMode,
+    {
+        self.reject_other_clients();
+        let Some(client) = &mut self.client else {
+            session.poll();
+            // Nobody listens: as on a serial line, what is sent is gone.
+            session.sent(session.outgoing().len());
+            self.client = self.accept();
+            return false;
+        };
+        match carry(client.as_mut(), session) {
+            Ok(was_busy) => was_busy,
+            Err(_) => {
+                self.client = None;
+                false
+            }
+        }
+    }
+
+    /// Sends what the stream takes of these bytes, and gives what has come in.
+    pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
+        self.reject_other_clients();
+        let Some(client) = &mut self.client else {
+            // Nobody listens: as on a serial line, what is sent is gone.
+            outgoing.clear();
+            self.client = self.accept();
+            return Vec::new();
+        };
+        let mut bytes = [0; BYTES];
+        let carried = received(client.as_mut(), &mut bytes).map(<[u8]>::to_vec).and_then(|bytes| {
+            outgoing.drain(..send(client.as_mut(), outgoing)?);
+            Ok(bytes)
+        });
+        carried.unwrap_or_else(|_| {
+            self.client = None;
+            Vec::new()
+        })
+    }
+}
+
+/// A socket of this machine, also where a program that was killed has left its own behind.
+#[cfg(unix)]
+fn bind_unix(path: &Path) -> io::Result<UnixListener> {
+    let taken = |why: &str| io::Error::new(ErrorKind::AddrInUse, why);
+    match UnixListener::bind(path) {
+        Err(error) if error.kind() == ErrorKind::AddrInUse => {}
+        bound => return bound,
+    }
+    if !std::fs::symlink_metadata(path)?.file_type().is_socket() {
+        return Err(taken("a file of that name is there, and is no socket"));
+    }
+    match UnixStream::connect(path) {
+        Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
+            std::fs::remove_file(path)?;
+            UnixListener::bind(path)
+        }
+        _ => Err(taken("another program listens there")),
+    }
+}
+
+impl Listener {
+    /// Whoever is next.
+    fn accept(&mut self) -> Option<Box<dyn Stream>> {
+        self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
+    }
+
+    /// Closes the connection of a second client: a serial port cannot be opened twice either, and the
+    /// client should see that.
+    fn reject_other_clients(&mut self) {
+        if self.client.is_none() {
+            return;
+        }
+        self.next.take_if(|(since, _)| since.elapsed() > QUEUE_TIMEOUT);
+        if self.next.is_none() {
+            self.next = self.socket.accept().map(|next| (Instant::now(), next));
+        }
+    }
+}
+
+/// What has come in; [`ErrorKind::UnexpectedEof`] once the other end is closed.
+fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a [u8]> {
+    match client.read(bytes) {
+        Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+        Ok(read) => Ok(&bytes[..read]),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(&[]),
+        Err(error) => Err(error),
+    }
+}
+
+fn carry<E, N, M, const LENGTH: usize>(
+    client: &mut dyn Stream,
+    session: &mut Session<'_, E, N, M, LENGTH>,
+) -> io::Result<bool>
+where
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let mut bytes = [0; BYTES];
+    let bytes = received(client, &mut bytes)?;
+    session.receive(bytes);
+    let (read, mut all) = (bytes.len(), 0);
+    for _ in 0..FRAMES {
+        session.poll();
+        let written = send(client, session.outgoing())?;
+        session.sent(written);
+        all += written;
+        if written == 0 {
+            break;
+        }
+    }
+    Ok(read + all > 0)
+}
+
+/// Sends what the stream takes. Nothing is not sent: to a stream that was closed at the other end
+/// that would be an error, and what came before would be lost.
+fn send(client: &mut dyn Stream, bytes: &[u8]) -> io::Result<usize> {
+    if bytes.is_empty() {
+        return Ok(0);
+    }
+    match client.write(bytes) {
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(0),
+        written => written,
+    }
+}
+
+impl Socket {
+    fn accept(&self) -> Option<Box<dyn Stream>> {
+        match self {
+            Self::Tcp(listener) => listener.accept().ok().and_then(|(stream, _)| tcp(stream).ok()),
+            #[cfg(unix)]
+            Self::Unix(listener, _) => {
+                listener.accept().ok().and_then(|(stream, _)| unix(stream).ok())
+            }
+        }
+    }
+}
+
+fn tcp(stream: TcpStream) -> io::Result<Box<dyn Stream>> {
+    stream.set_nonblocking(true)?;
+    stream.set_nodelay(true)?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(unix)]
+fn unix(stream: UnixStream) -> io::Result<Box<dyn Stream>> {
+    stream.set_nonblocking(true)?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(unix)]
+impl Drop for Socket {
+    fn drop(&mut self) {
+        if let Self::Unix(_, path) = self {
+            // Somebody may have removed it already.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}

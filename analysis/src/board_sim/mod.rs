@@ -1,0 +1,210 @@
+//! A simulated board with a simulated device, behind a socket: a thread with the same
+//! cycle and the same wire as a real one, or a virtual board with what is flashed.
+//!
+//! Its time is that of its ticks, of which it does as many as a real board would, or all that it
+//! can. A tick is never late here; what may make a real one late is another matter.
+
+mod listener;
+mod plant_hardware;
+mod virtual_board_server;
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use firmware::board::sim_hardware::SimHardware;
+use firmware::boot::{self, Program};
+use firmware::number::Number;
+use firmware::servo::{OutputMode, Step, SupportsTiming};
+use firmware::servo_loop::{FrameQueue, Mailbox};
+use firmware::tuning::{self, RenderError, Tunable};
+use firmware::wire::{BoardInfo, Session};
+
+use self::listener::Listener;
+use self::plant_hardware::PlantHardware;
+use crate::link::Address;
+use crate::lockstep::PlantIo;
+use crate::virtual_board::{VirtualBoard, VirtualBoardError};
+
+/// Timer counts in a period: a 170 MHz timer at 1 kHz.
+const TIMER_COUNTS: u32 = 170_000;
+/// Frames that wait for the wire.
+const FRAMES: usize = 64;
+/// Longest time between two polls of the socket.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
+
+/// How fast a simulated board's time passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pacing {
+    /// As a real board's.
+    RealTime,
+    /// As fast as it can.
+    Unthrottled,
+}
+
+/// A board that is a thread; ends when dropped.
+#[derive(Debug)]
+pub struct SimulatedBoard {
+    address: Address,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Result<(), SimulatedBoardError>>>,
+}
+
+/// Why a simulated board has ended before it was asked to.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulatedBoardError {
+    /// Its program could not start, and why.
+    #[error("refused by its {}: {reason}", .step.as_str())]
+    Render {
+        /// The step that refused it.
+        step: Step,
+        /// The reason.
+        reason: Box<RenderError>,
+    },
+    /// Its program could not start, though nothing is wrong with its scene.
+    #[error("refused by its {}", .0.as_str())]
+    Start(Step),
+    /// The virtual board that it is has stopped.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
+}
+
+impl SimulatedBoard {
+    /// Boots a program and listens there.
+    ///
+    /// # Errors
+    /// Where the address cannot be listened at.
+    pub fn start<E, N, M>(
+        name: &'static str,
+        program: Program<E>,
+        plant: Box<dyn PlantIo + Send>,
+        address: &Address,
+        pacing: Pacing,
+    ) -> io::Result<Self>
+    where
+        E: Tunable<N> + SupportsTiming<M> + Send + 'static,
+        N: Number,
+        M: OutputMode,
+    {
+        let (listener, address) = Listener::bind(address)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        let over = ended.clone();
+        let thread = thread::spawn(move || {
+            let board = SimHardware::new(PlantHardware::new(plant, M::TIMING), TIMER_COUNTS);
+            serve::<E, N, M>(name, program, board, listener, pacing, &over)
+        });
+        Ok(Self { address, ended, thread: Some(thread) })
+    }
+
+    /// Listens there for a virtual board that has been switched on, whose servo has this period in s.
+    ///
+    /// # Errors
+    /// Where the address cannot be listened at.
+    pub fn from_virtual_board(
+        board: VirtualBoard,
+        plant: Box<dyn PlantIo + Send>,
+        address: &Address,
+        pacing: Pacing,
+        period: f64,
+    ) -> io::Result<Self> {
+        let (listener, address) = Listener::bind(address)?;
+        let ended = Arc::new(AtomicBool::new(false));
+        let over = ended.clone();
+        let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
+        let thread = thread::spawn(move || {
+            Ok(virtual_board_server::serve(board, plant, listener, period, &over)?)
+        });
+        Ok(Self { address, ended, thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> &Address {
+        &self.address
+    }
+
+    /// Whether it has ended by itself: [`Self::end`] says why.
+    pub fn has_ended(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// Where its program could not start, or its board has stopped.
+    ///
+    /// # Panics
+    /// If its thread has.
+    pub fn end(mut self) -> Result<(), SimulatedBoardError> {
+        self.ended.store(true, Ordering::Relaxed);
+        self.thread.take().map_or(Ok(()), |thread| thread.join().expect("the board panicked"))
+    }
+}
+
+impl Drop for SimulatedBoard {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // What went wrong in it, somebody who wanted to know has asked for.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Why a program did not start.
+fn not_started<E, N, M>(program: &Program<E>, step: Step) -> SimulatedBoardError
+where
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let Program { scene, transducers, rendering, .. } = program;
+    match tuning::explain::<E, N, M>(scene, &[], transducers, rendering) {
+        Err(reason) => SimulatedBoardError::Render { step, reason: Box::new(reason) },
+        Ok(()) => SimulatedBoardError::Start(step),
+    }
+}
+
+/// The program, from boot to the end.
+fn serve<E, N, M>(
+    name: &'static str,
+    program: Program<E>,
+    mut board: SimHardware<PlantHardware>,
+    mut listener: Listener,
+    pacing: Pacing,
+    over: &AtomicBool,
+) -> Result<(), SimulatedBoardError>
+where
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let (mut mailbox, mut queue) = (Mailbox::new(), FrameQueue::<FRAMES>::new());
+    let (requests, mut inbox) = mailbox.split();
+    let (mut frames, ticks) = queue.split();
+    let booted = boot::boot::<E, N, M>(&program, &mut board, &requests)
+        .map_err(|step| not_started::<E, N, M>(&program, step))?;
+    let (mut servo_loop, margin) = (booted.servo_loop, booted.margin);
+    let (reset, previous_fault) = (booted.reset, booted.previous_fault);
+    let info =
+        BoardInfo { name, timer_counts: TIMER_COUNTS, reset, previous_fault, stack_left: || None };
+    let mut session = Session::new(program, margin, info, requests, ticks);
+    let period = Duration::from_secs_f64(program.scene.timing.period);
+    let mut next = Instant::now();
+    while !over.load(Ordering::Relaxed) {
+        // No more at a time than wait for the wire.
+        for _ in 0..FRAMES / 2 {
+            if pacing == Pacing::RealTime && Instant::now() < next {
+                break;
+            }
+            next += period;
+            servo_loop.run(&mut board, &mut inbox, &mut frames);
+        }
+        let was_busy = listener.exchange(&mut session);
+        if pacing == Pacing::RealTime && !was_busy {
+            thread::sleep(next.saturating_duration_since(Instant::now()).min(POLL_INTERVAL));
+        }
+    }
+    Ok(())
+}

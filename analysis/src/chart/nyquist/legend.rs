@@ -1,0 +1,181 @@
+//! What is written below a Nyquist picture.
+
+use std::f64::consts::PI;
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::{Curve, NyquistScene, Role, lines};
+use crate::chart::dash::Dash;
+use crate::chart::{Area, Drawn, FAINT, UNITS, anchored, units};
+use crate::quantity::{shortened, significant};
+use crate::unit_circle_poles::{Kind, UnitCirclePole};
+
+/// Height of a line of the legend in pixels.
+const ROW: i32 = 19;
+/// Longest name in the legend, in letters.
+const LONGEST_NAME: usize = 48;
+
+/// What is written below the picture: lines with the patterns that they are about.
+struct Entry {
+    /// Pattern and ink of the line that this is about.
+    sample: Option<(Dash, RGBColor, u32)>,
+    words: Vec<String>,
+}
+
+/// Height of the legend in units of the drawing.
+pub(super) fn height(scenes: &[NyquistScene]) -> i32 {
+    let rows: usize = legend(scenes).iter().map(|entry| entry.words.len()).sum();
+    units(ROW * rows as i32 + 10)
+}
+
+fn legend(scenes: &[NyquistScene]) -> Vec<Entry> {
+    let of = |(index, (scene, lines)): (usize, (&NyquistScene, Vec<super::Line<'_>>))| {
+        let name = match scenes.len() {
+            1 => String::new(),
+            _ => format!("{}: {}: ", index + 1, shortened(&scene.name, LONGEST_NAME)),
+        };
+        let curves = lines.into_iter().map(|line| {
+            let judged = line.curve.role.is_judged();
+            let ink = if judged { BLACK } else { FAINT };
+            let words = curve(&name, scene, line.curve, scenes.len() == 1);
+            Entry { sample: Some((line.dash, ink, 2)), words }
+        });
+        let bound = bound(&name, scene);
+        curves.chain(bound).collect::<Vec<_>>()
+    };
+    let mut entries: Vec<_> = scenes.iter().zip(lines(scenes)).enumerate().flat_map(of).collect();
+    if scenes.len() == 1
+        && let Some(first) = entries.first_mut()
+    {
+        let halves = "thick: frequencies from 0 to half the sample rate; thin: their mirror image";
+        first.words.insert(0, halves.to_owned());
+    }
+    entries
+}
+
+/// What is said about a curve.
+fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Vec<String> {
+    let what = match curve.role {
+        Role::Judged => "",
+        Role::JudgedLatched => "judged as well, updates being missed: ",
+        Role::Linear => "grey, environment, of which only the poles are judged: ",
+        Role::Alone => "grey, environment without its coupling, not judged: ",
+    };
+    let coupled = scene.curves.iter().any(|other| other.role == Role::Alone);
+    let what = match curve.role {
+        Role::Judged if coupled => "judged, with its coupling taken in: ",
+        _ => what,
+    };
+    let mark =
+        if is_single && curve.role.is_judged() && curve.alpha.is_some() { "circle: " } else { "" };
+    let alpha = curve.alpha.map_or_else(
+        || "no alpha: its poles forbid it".to_owned(),
+        |alpha| format!("{} = {} N m s/rad", least_words(curve), significant(-alpha, 4)),
+    );
+    let mut words = vec![format!("{name}{mark}{what}{alpha}")];
+    if curve.role == Role::Alone {
+        return words;
+    }
+    words.extend(curve.poles.iter().map(sentence));
+    if curve.outside > 0 {
+        words.push(format!(
+            "poles outside of the unit circle: {}: not passive, wherever the curve runs",
+            curve.outside
+        ));
+    }
+    if let Some(re) = curve.asymptote.filter(|_| curve.role.is_judged()) {
+        let re = significant(re, 3);
+        words.push(format!("hairline of dots: its real part near rest, {re} N m s/rad"));
+    }
+    if let Some((turn, theta, _)) = scene.phase_margin(curve) {
+        let degrees = significant(turn.to_degrees(), 3);
+        let hertz = significant(theta / (2.0 * PI * scene.period), 3);
+        words.push(format!(
+            "square: phase margin {degrees} degrees: turned so far, it touches the line, at {hertz} Hz"
+        ));
+    }
+    if curve.role == Role::Judged {
+        words.extend(margins(scene));
+    }
+    words
+}
+
+fn least_words(curve: &Curve) -> &'static str {
+    if curve.minimum.is_some() { "least real part, -alpha" } else { "real part everywhere, -alpha" }
+}
+
+/// The line that is judged in place of a curve.
+fn bound(name: &str, scene: &NyquistScene) -> Option<Entry> {
+    let linear = scene.curves.iter().any(|curve| curve.role == Role::Linear);
+    let mut words = match scene.bound {
+        _ if !linear => return None,
+        None => vec![format!("{name}one-sided or limited, and no bound is known: undecided")],
+        Some(bound) => {
+            let bound = significant(-bound, 4);
+            vec![format!("{name}one-sided or limited: judged by the bound, {bound} N m s/rad")]
+        }
+    };
+    words.extend(margins(scene));
+    let sample = scene.bound.map(|_| (Dash::of(0), BLACK, 3));
+    Some(Entry { sample, words })
+}
+
+/// How much larger what is judged may be.
+fn margins(scene: &NyquistScene) -> Vec<String> {
+    if scene.limit.is_none() {
+        let words = "no critical line: the rule for one-sided or limited scenes passes none behind a \
+                     coupling that is rigid or stiffer than 2 delta/T";
+        return vec![words.to_owned()];
+    }
+    let Some(factor) = scene.gain_margin() else { return Vec::new() };
+    let decibels = significant(20.0 * factor.log10(), 3);
+    vec![format!(
+        "gain margin {} ({decibels} dB): times this, what is judged touches the line",
+        significant(factor, 4)
+    )]
+}
+
+/// What a pole does to the curve.
+fn sentence(pole: &UnitCirclePole) -> String {
+    let place = match pole.theta {
+        0.0 => "pole at rest, z = 1".to_owned(),
+        PI => "pole at z = -1".to_owned(),
+        theta => format!("poles at +-{} rad", significant(theta, 4)),
+    };
+    match (pole.residue(), pole.kind) {
+        (Some(k), _) if k > 0.0 => format!(
+            "{place}: residue {} N m s/rad > 0, closes through infinity on the right: allowed",
+            significant(k, 4)
+        ),
+        (Some(k), _) => format!(
+            "{place}: residue {} N m s/rad < 0, closes through infinity on the left: not passive",
+            significant(k, 4)
+        ),
+        (None, Kind::Repeated) => {
+            format!("{place}: repeated, a whole turn or more at infinity: not passive")
+        }
+        (None, Kind::Simple(_)) => {
+            format!(
+                "{place}: residue of the wrong angle, askew at infinity (shown at +): not passive"
+            )
+        }
+    }
+}
+
+pub(super) fn write(area: &Area<'_>, scenes: &[NyquistScene]) -> Drawn<()> {
+    let mut row = 0;
+    for Entry { sample, words } in legend(scenes) {
+        for (index, line) in words.into_iter().enumerate() {
+            let middle = units(ROW * row + ROW / 2);
+            if let Some((dash, ink, width)) = sample.filter(|_| index == 0) {
+                let ends = [(units(20), middle), (units(76), middle)];
+                dash.draw_styled(area, &ends, ink.stroke_width(width * UNITS))?;
+            }
+            let style = anchored(HPos::Left, VPos::Center);
+            area.draw(&Text::new(line, (units(88), middle), style))?;
+            row += 1;
+        }
+    }
+    Ok(())
+}

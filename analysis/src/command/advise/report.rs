@@ -1,0 +1,185 @@
+//! The report of `haptic advise` on number formats, as text and as JSON.
+
+use std::cmp::Ordering;
+
+use firmware::certificate::QuantizationBound;
+use firmware::number::Arithmetic;
+use firmware::text::RoundUp3;
+use serde::Serialize;
+
+use crate::quantity::significant;
+use crate::studies::arithmetic::{Advice, Candidate, Subject};
+use crate::studies::bench::CORE_CLOCK;
+use crate::text_table::markdown_table;
+
+/// The answer as JSON.
+#[derive(Serialize)]
+pub struct FormatReport {
+    /// Its name.
+    pub scene: String,
+    /// Ticks a second.
+    pub rate: f64,
+    /// Stiffness in N m/rad of the coupling at that rate; `None`: rigid.
+    pub coupling_stiffness: Option<f64>,
+    /// The cheapest format that keeps to the figures.
+    pub format: Option<&'static str>,
+    /// The cheapest method of simulation.
+    pub simulation: Option<SimulationMethod>,
+    /// Torque in N m by which the encoder alone hums.
+    pub encoder_hum: Option<f64>,
+    /// All formats, the cheapest first.
+    pub formats: Vec<Candidate>,
+    /// The answer in sentences.
+    pub message: String,
+}
+
+/// A method of simulation, at the rate of the kept table.
+#[derive(Serialize)]
+pub struct SimulationMethod {
+    /// Its name.
+    pub method: String,
+    /// Its steps in a sample.
+    pub substeps: f64,
+    /// Samples that it computes a second.
+    pub samples_per_second: f64,
+    /// Part by which its largest stable stiffness is off.
+    pub verdict_error: f64,
+}
+
+/// The answer in sentences.
+pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
+    let choice = advice.choice();
+    let format = choice.map_or_else(|| none(advice), |choice| chosen(subject, choice));
+    let cheapest = choice.or_else(|| advice.candidates.first());
+    let rest = cheapest.and_then(|candidate| candidate.rest.as_ref());
+    match advice.encoder_hum {
+        Some(hum) if cheapest.is_some_and(|candidate| advice.hums(candidate)) => {
+            format!("{}. As to the formats: {format}", coarse(subject, allowed, hum, rest))
+        }
+        hum => {
+            let unknown = match hum {
+                Some(_) => "",
+                None => {
+                    "; how fine the encoder is the scene does not say, so that its part of the hum \
+                     is not in this"
+                }
+            };
+            format!("{format}{}{unknown}", as_certified(rest))
+        }
+    }
+}
+
+/// That the encoder is too coarse for any format, and what would do.
+fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&QuantizationBound>) -> String {
+    let counts = subject.transducers.counts_per_turn;
+    format!(
+        "no: in every format the encoder alone makes a device without friction hum by {} N m, above \
+         {} N m. About {} counts a turn in place of {} would do, or a softer scene{}",
+        number(hum),
+        number(allowed),
+        number(counts * hum / allowed),
+        significant(counts, 7),
+        as_certified(rest),
+    )
+}
+
+/// What the certificate says of rest.
+fn as_certified(rest: Option<&QuantizationBound>) -> String {
+    rest.map_or_else(String::new, |rest| format!("; as certified {rest}"))
+}
+
+/// Why no format was chosen.
+fn none(advice: &Advice) -> String {
+    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.hum);
+    let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
+    let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
+    let reason = quietest.map_or_else(String::new, |candidate| {
+        format!(": of the quietest, {}, the {}", candidate.format, candidate.rejected.join("; "))
+    });
+    format!("no format keeps to the figures{reason}")
+}
+
+/// Why a format was chosen.
+fn chosen(subject: &Subject, choice: &Candidate) -> String {
+    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
+    let hums = match choice.is_still() {
+        true => "would hum without friction",
+        false => "hums",
+    };
+    let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
+    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
+    let scaled = units.map_or_else(String::new, |units| {
+        format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
+    });
+    format!(
+        "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
+         core of {} MHz, and of itself it {hums} by no more than {} N m",
+        choice.format,
+        number(choice.instructions),
+        number(100.0 * choice.share),
+        number(CORE_CLOCK / 1e6),
+        number(hum),
+    )
+}
+
+/// A figure in a sentence or in a table.
+fn number(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// The answer for a person.
+pub fn text(answered: &FormatReport) -> String {
+    let mut table = markdown_table(
+        [
+            "format",
+            "instructions",
+            "share of the core",
+            "error",
+            "around 1 rad",
+            "hum",
+            "with encoder",
+            "friction needed",
+            "rejected",
+        ],
+        1..8,
+    );
+    for candidate in &answered.formats {
+        table.add_row(row(candidate));
+    }
+    let coupling = answered.coupling_stiffness.map_or_else(
+        || "rigid".to_owned(),
+        |stiffness| format!("{} N m/rad, the standard one", significant(stiffness, 6)),
+    );
+    let FormatReport { scene, rate, message, .. } = answered;
+    let simulation = answered.simulation.as_ref().map_or_else(String::new, |simulated| {
+        let SimulationMethod { method, substeps, verdict_error, .. } = simulated;
+        let error = significant(100.0 * verdict_error, 2);
+        format!(
+            "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \
+             largest stable stiffness is off by {error} %.\n"
+        )
+    });
+    format!(
+        "scene     {scene}, certified at {rate} Hz\ncoupling  {coupling}\n\n{table}\n\n{message}\n{simulation}"
+    )
+}
+
+/// A format's figures; torques in N m.
+fn row(candidate: &Candidate) -> [String; 9] {
+    let figure = |value: Option<f64>| match value {
+        Some(value) if value.is_finite() => number(value),
+        _ => "none".to_owned(),
+    };
+    let losses = candidate.losses;
+    [
+        candidate.format.to_owned(),
+        figure(Some(candidate.instructions)),
+        format!("{} %", figure(Some(100.0 * candidate.share))),
+        figure(losses.map(|losses| losses.error)),
+        figure(losses.and_then(|losses| losses.error_elsewhere)),
+        figure(losses.map(|losses| losses.alone.hum)),
+        figure(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
+        candidate.rest.map_or_else(|| "none".to_owned(), |rest| RoundUp3(rest.hum()).to_string()),
+        candidate.rejected.join("; "),
+    ]
+}

@@ -1,0 +1,92 @@
+//! `haptic board-sim`: a simulated board, to try `tune` and `scope` without hardware.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use super::rebuild_with_scene;
+use super::status::{CommandError, CommandStatus};
+use super::value_parsers::seconds;
+use super::virtual_board_build::VirtualBoardBuild;
+use crate::board_sim::{Pacing, SimulatedBoard};
+use crate::link::Address;
+use crate::lockstep::SimulatedDevice;
+use crate::program::Program;
+use crate::toolchain::{Board, NumberFormat};
+
+/// Arguments of `haptic board-sim`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of a scene's program in firmware/src/bin, as damper_wall
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    /// Where it listens: tcp://HOST:PORT, unix:PATH
+    #[arg(long, value_name = "PORT")]
+    pub port: Address,
+    /// A virtual board with what would be flashed to this one (nucleo-g474re, b-g431b-esc1, stm32f405),
+    /// instead of a thread with the same servo
+    #[arg(long, value_name = "BOARD", value_parser = Board::find)]
+    pub board: Option<Board>,
+    /// End after so many seconds
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
+          allow_negative_numbers = true)]
+    pub duration: Option<Duration>,
+}
+
+/// The hand's trajectory is repeated for so many seconds: an hour.
+const HAND_DURATION: f64 = 3600.0;
+
+/// Longest time between two polls for the end.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// Runs a program in a simulated hand until the time is up, Ctrl-C, or it is told to end.
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let name = &arguments.scene;
+    let program = Program::find(name).ok_or_else(|| no_program(name))?;
+    let enough = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, enough.clone())?;
+    }
+    let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
+    let (device, period) = (program.scene.device, program.scene.timing.period);
+    let device = SimulatedDevice::new(device, trajectory, period, &program.transducers)?;
+    let (device, address) = (Box::new(device), &arguments.port);
+    let board = match arguments.board {
+        None => program.listen(device, address, Pacing::RealTime),
+        Some(board) => {
+            let built = VirtualBoardBuild::build(board, program.name, NumberFormat::F32)?;
+            SimulatedBoard::from_virtual_board(
+                built.boot()?,
+                device,
+                address,
+                Pacing::RealTime,
+                period,
+            )
+        }
+    };
+    let board =
+        board.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
+    writeln!(io::stdout(), "{name} listens on {}", board.address())?;
+    let end = arguments.duration.map(|duration| Instant::now() + duration);
+    let is_over = || enough.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() >= end);
+    while !board.has_ended() && !is_over() {
+        thread::sleep(POLL_INTERVAL);
+    }
+    board.end()?;
+    Ok(CommandStatus::Success)
+}
+
+/// Why there is no simulated board of that name: a scene file may have been meant.
+fn no_program(name: &str) -> CommandError {
+    let (name, programs) = (name.to_owned(), rebuild_with_scene::scenes());
+    match Path::new(&name).is_file() {
+        true => CommandError::FileOnSimulatedBoard { file: name, programs },
+        false => CommandError::NoProgram { name, programs },
+    }
+}

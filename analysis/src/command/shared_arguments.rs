@@ -1,0 +1,119 @@
+//! What several commands have in common: a scene as their argument, a method and its steps, a
+//! number format and so many ticks, and an answer that is text for a person or one JSON object for a program.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use clap::Args;
+use firmware::number::Format;
+use serde::Serialize;
+
+use super::status::CommandError;
+use crate::file::{self, Purpose, SceneFile};
+use crate::number;
+use crate::simulation::Integration;
+use crate::simulation::method::Method;
+use crate::verdict::{VerdictReport, judge_in};
+
+/// The scene that a command is about.
+#[derive(Debug, Args)]
+pub struct SceneArgument {
+    /// Scene file, TOML or JSON; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: String,
+}
+
+impl SceneArgument {
+    /// Reads it, to certify.
+    pub fn load(&self) -> Result<SceneFile, CommandError> {
+        Ok(file::load(&self.file)?)
+    }
+
+    /// Reads it, to look at what it does.
+    pub fn load_to_simulate(&self) -> Result<SceneFile, CommandError> {
+        Ok(file::load_for(Purpose::Simulate, &self.file)?)
+    }
+
+    /// Where the files that it names are looked for.
+    pub fn folder(&self) -> &Path {
+        folder(&self.file)
+    }
+}
+
+/// The folder of a file; that of a program itself for standard input.
+pub fn folder(file: &str) -> &Path {
+    Path::new(file).parent().unwrap_or(Path::new(""))
+}
+
+/// Integration method of the device and its substeps.
+#[derive(Debug, Args)]
+pub struct IntegrationArguments {
+    /// Method of integration of the device; the servo is computed tick by tick in all of them
+    #[arg(long, value_enum, default_value_t)]
+    pub method: Method,
+    /// Steps of the method in each tick
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub substeps: u32,
+}
+
+impl IntegrationArguments {
+    /// Method and steps.
+    pub fn integration(&self) -> Integration {
+        Integration { method: self.method, substeps: self.substeps }
+    }
+}
+
+/// Number format of the servo's coefficients.
+#[derive(Debug, Args)]
+pub struct CoefficientFormat {
+    /// Judge the coefficients as this number format rounds them: f32, or fixed point of 32 bits
+    /// such as i8f24; f64 are the numbers as they were written
+    #[arg(long, default_value = "f64", value_parser = number::format)]
+    pub format: Format,
+}
+
+impl CoefficientFormat {
+    /// The verdict on a file's scene.
+    pub fn judge(&self, file: &SceneFile) -> Result<VerdictReport, CommandError> {
+        number::fits(&file.scene, self.format)?;
+        Ok(judge_in(&file.name, &file.scene, self.format, &file.steps()))
+    }
+}
+
+/// Ticks of a run that nothing else limits: the trajectory of the hand and some time to come to rest.
+pub const DEFAULT_TICKS: usize = 5000;
+
+/// Most ticks of a run, which keeps all of them until its end: hours at a kilohertz, and half a gigabyte.
+pub const MAX_TICKS: u64 = 10_000_000;
+
+/// Whether an answer is printed as JSON.
+#[derive(Debug, Args)]
+pub struct JsonOption {
+    /// Print JSON
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+impl JsonOption {
+    /// Prints the answer as JSON, or as the text that is made of it.
+    pub fn print<A: Serialize>(
+        &self,
+        answer: &A,
+        text: impl FnOnce(&A) -> String,
+    ) -> Result<(), CommandError> {
+        let mut out = io::BufWriter::new(io::stdout().lock());
+        if self.json {
+            json(&mut out, answer)?;
+        } else {
+            write!(out, "{}", text(answer))?;
+        }
+        Ok(out.flush()?)
+    }
+}
+
+/// Writes an answer as one JSON object on a line.
+pub fn json(mut out: impl Write, answer: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut out, answer)?;
+    writeln!(out)
+}

@@ -1,0 +1,304 @@
+//! Status of a command: its verdict, or the error that kept it from one.
+
+use std::io;
+use std::path::PathBuf;
+
+use firmware::certificate::Rejection;
+use thiserror::Error;
+
+use crate::batch::BatchError;
+use crate::board_sim::SimulatedBoardError;
+use crate::chart::ChartError;
+use crate::compare_run::RunError;
+use crate::emulator::EmulatorError;
+use crate::file::FileError;
+use crate::identify::IdentifyError;
+use crate::identify::port::PortError;
+use crate::link::{Address, LinkError};
+use crate::quantity::significant;
+use crate::run_csv::RunCsvError;
+use crate::simulation::SimulationError;
+use crate::studies::arithmetic::ArithmeticError;
+use crate::studies::tradeoff::TradeoffError;
+use crate::table::TableError;
+use crate::toolchain::{BuildError, SetupError, SourcesError};
+use crate::virtual_board::VirtualBoardError;
+
+/// Verdict of a command, which becomes the exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CommandStatus {
+    /// Exit status 0.
+    Success,
+    /// Exit status 1: rejected, undecided, unstable, different.
+    NegativeVerdict,
+}
+
+/// Why a command has no answer; exit status 2.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    /// A bad scene file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A record that identifies nothing.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
+    /// A board whose sweep gives no record.
+    #[error(transparent)]
+    Sweep(#[from] PortError),
+    /// No program and no file of that name.
+    #[error("there is no scene {name}: the programs are {programs}, and there is no such file")]
+    NoScene {
+        /// What was asked for.
+        name: String,
+        /// The programs that there are.
+        programs: String,
+    },
+    /// No program of that name, where only a program will do.
+    #[error("there is no scene {name}: the programs are {programs}")]
+    NoProgram {
+        /// What was asked for.
+        name: String,
+        /// The programs that there are.
+        programs: String,
+    },
+    /// A scene file has no program for a simulated board.
+    #[error(
+        "{file} is a file, and a simulated board runs a scene's program by its name: the programs are {programs}; \
+         `cargo haptic new NAME` begins one"
+    )]
+    FileOnSimulatedBoard {
+        /// The file.
+        file: String,
+        /// The programs that there are.
+        programs: String,
+    },
+    /// A scene file has no program for the board.
+    #[error(
+        "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
+         of its own, in firmware/src/bin: `cargo haptic new NAME` begins one"
+    )]
+    FileOnBoard {
+        /// The scene.
+        scene: String,
+    },
+    /// A program for the board has its transducers built in.
+    #[error(
+        "the program {program} is built for {counts_per_turn} counts a turn and {full_scale} N m \
+         at full scale; change its TRANSDUCERS, or run it on the host"
+    )]
+    OtherTransducers {
+        /// The program.
+        program: &'static str,
+        /// Its encoder's counts a turn.
+        counts_per_turn: f64,
+        /// Its motor's torque at full scale in N m.
+        full_scale: f64,
+    },
+    /// The certificate refuses the scene; exit status 1, for the question was good.
+    #[error("{0}")]
+    Refused(Box<Rejection>),
+    /// The servo cannot be built of the certified scene.
+    #[error(transparent)]
+    Servo(#[from] firmware::servo::BuildError),
+    /// A number of the scene does not fit the number format.
+    #[error(transparent)]
+    Number(#[from] crate::number::DoesNotFit),
+    /// A bad recording.
+    #[error(transparent)]
+    CountsCsv(#[from] TableError),
+    /// A bad record of a run.
+    #[error(transparent)]
+    RunCsv(#[from] RunCsvError),
+    /// The machine cannot build or run programs for the board.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A scene cannot be begun.
+    #[error(transparent)]
+    Sources(#[from] SourcesError),
+    /// A program does not build.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A program could not be taken apart.
+    #[error(transparent)]
+    Anatomy(#[from] crate::studies::anatomy::AnatomyError),
+    /// A program could not be flashed.
+    #[error(transparent)]
+    Probe(#[from] crate::toolchain::probe::ProbeError),
+    /// A run failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The emulated board failed.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// A number format has no figures; what refuses a scene, or cannot simulate it, says so by itself.
+    #[error(transparent)]
+    Arithmetic(ArithmeticError),
+    /// A set could not be measured on the emulated board.
+    #[error(transparent)]
+    Live(#[from] crate::studies::bench::live::LiveError),
+    /// A picture could not be drawn.
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    /// No map can be drawn.
+    #[error(transparent)]
+    Map(#[from] crate::stability_map::MapError),
+    /// The scene is certified at no sample rate, however soft its wall.
+    #[error(
+        "{scene}: no stiffness is certified at any of these sample rates; its damping alone, or \
+         what its canceller takes away, is more than the device has"
+    )]
+    NoStiffness {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// One file cannot have the pictures of all topics.
+    #[error("{}: one picture shows one topic; name one of {topics}", picture.display())]
+    NoTopic {
+        /// The file.
+        picture: PathBuf,
+        /// What there is.
+        topics: String,
+    },
+    /// A table has no such panel.
+    #[error("there is no {what} `{word}`; there are {there}")]
+    NoPanel {
+        /// Case or error.
+        what: &'static str,
+        /// What was asked for.
+        word: String,
+        /// What there is.
+        there: String,
+    },
+    /// A table that is to be drawn has not been measured.
+    #[error(
+        "{}: there is no such table; --draw-only reads the tables from the folder of -o, or the kept \
+         ones without -o", table.display()
+    )]
+    NothingKept {
+        /// The table's file.
+        table: PathBuf,
+    },
+    /// A picture that does not show all of a run; exit status 1, for it shows the rest.
+    #[error(
+        "the run grows beyond what a picture can show: sample {sample} and all after it are left \
+         out"
+    )]
+    LeftOut {
+        /// The first sample, counted from 0, that is not shown.
+        sample: usize,
+    },
+    /// The date of a page is none.
+    #[error(transparent)]
+    Date(#[from] crate::date::InvalidDate),
+    /// A page's file must be called one.
+    #[error("{path}: the name of a page must end in .html")]
+    NoPage {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file or folder could not be written.
+    #[error("{path}: {source}")]
+    Unwritable {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A scene that cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A simulated device that leaves; exit status 1, for what it does is the answer.
+    #[error(
+        "the motion runs away: from sample {sample} on, at {} s, the device is more than {} rad from \
+         its zero; the loop is most likely not stable (`haptic stability`)",
+        significant(*.time, 6), significant(*.farthest, 6)
+    )]
+    RanAway {
+        /// The angle in rad that it has left behind.
+        farthest: f64,
+        /// The first sample, counted from 0, that is farther.
+        sample: usize,
+        /// When that is in s.
+        time: f64,
+    },
+    /// A case of failure could not be shown.
+    #[error(transparent)]
+    Failure(#[from] crate::studies::failures::FailureError),
+    /// Models of a device that cannot be compared.
+    #[error(transparent)]
+    Model(#[from] crate::studies::model::ModelError),
+    /// A design asks for what the environment does not have.
+    #[error("the environment of {scene} has no {quantity}")]
+    NoSuchQuantity {
+        /// Name of the scene.
+        scene: String,
+        /// What was asked for.
+        quantity: &'static str,
+    },
+    /// A parameter was given two values.
+    #[error(transparent)]
+    DuplicateParameter(#[from] crate::link::change::DuplicateParameter),
+    /// A board cannot be talked to.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Nobody can be listened to there.
+    #[error("cannot listen on {address}: {source}")]
+    Listen {
+        /// The address.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+    /// A board without hardware has ended by itself.
+    #[error(transparent)]
+    SimulatedBoard(#[from] SimulatedBoardError),
+    /// A virtual board that did not start.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
+    /// The answer could not be written.
+    #[error("cannot write the answer: {0}")]
+    Output(#[from] io::Error),
+}
+
+impl From<ArithmeticError> for CommandError {
+    fn from(error: ArithmeticError) -> Self {
+        match error {
+            ArithmeticError::Refused(rejection) => Self::Refused(rejection),
+            ArithmeticError::Simulation(error) => Self::Simulation(error),
+            other => Self::Arithmetic(other),
+        }
+    }
+}
+
+impl From<TradeoffError> for CommandError {
+    fn from(error: TradeoffError) -> Self {
+        match error {
+            TradeoffError::Arithmetic(error) => error.into(),
+            TradeoffError::Setup(error) => error.into(),
+            TradeoffError::Build(error) => error.into(),
+            TradeoffError::Emulator(error) => error.into(),
+        }
+    }
+}
+
+impl From<BatchError> for CommandError {
+    fn from(error: BatchError) -> Self {
+        match error {
+            BatchError::File(error) => error.into(),
+            BatchError::Output(error) => error.into(),
+        }
+    }
+}
+
+impl CommandError {
+    /// Whether the question was good and this is its answer.
+    pub(super) fn is_negative_verdict(&self) -> bool {
+        matches!(
+            self,
+            Self::Refused(_)
+                | Self::LeftOut { .. }
+                | Self::RanAway { .. }
+                | Self::Simulation(SimulationError::Overflow { .. })
+        )
+    }
+}

@@ -1,0 +1,215 @@
+//! A scene run over counts: on the host, and on an emulated or a virtual board beside it.
+
+use std::path::Path;
+
+use thiserror::Error;
+
+use crate::controller::Controller;
+use crate::device::Energy;
+use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
+use crate::hand::HandTrajectory;
+use crate::lockstep::{NoRemote, PlantIo, Recording, RemoteServo, Run, SimulatedDevice, run};
+use crate::simulation::tick_status::TickStatus;
+use crate::toolchain;
+use crate::trace::{TimeUnit, Trace};
+use crate::virtual_board::{self, VirtualBoard, VirtualBoardError};
+
+/// What comes into a servo.
+pub enum Input<'a> {
+    /// A simulated device in a hand.
+    Hand(Box<SimulatedDevice>),
+    /// Recorded counts.
+    Recording(&'a [i32]),
+}
+
+/// The board on which a scene's program runs in lockstep with the host.
+#[derive(Clone, Copy, Debug)]
+pub enum Backend<'a> {
+    /// On the emulated board, which has a program of its own.
+    Emulator(&'a Path),
+    /// On a virtual board, which has what is flashed.
+    VirtualBoard {
+        /// The program that is a virtual board.
+        program: &'a Path,
+        /// Which board it is.
+        board: toolchain::Board,
+        /// What is in its flash.
+        elf: &'a Path,
+        /// The period of its servo in s.
+        period: f64,
+    },
+}
+
+/// Instructions that a board measured.
+#[derive(Clone, Debug)]
+pub enum BoardMeasurement {
+    /// The emulated one.
+    Emulated(Box<EmulatorReport>),
+    /// A virtual one.
+    Virtual(virtual_board::VirtualBoardReport),
+}
+
+impl BoardMeasurement {
+    /// Instructions from count to code.
+    pub fn compute(&self) -> &InstructionStats {
+        match self {
+            Self::Emulated(report) => &report.compute_instructions,
+            Self::Virtual(report) => &report.compute,
+        }
+    }
+
+    /// Instructions of the servo's whole interrupt.
+    pub fn interrupt(&self) -> &InstructionStats {
+        match self {
+            Self::Emulated(report) => &report.interrupt_instructions,
+            Self::Virtual(report) => &report.interrupt,
+        }
+    }
+}
+
+/// What a run gave, with what the board measured if one took part.
+#[derive(Debug)]
+pub struct RunOutcome {
+    /// The ticks.
+    pub run: Run,
+    /// Energy that passed between hand and device; none where the counts were recorded.
+    pub energy: Option<Energy>,
+    /// Speed of the device at the end, in rad/s; none where the counts were recorded.
+    pub final_speed: Option<f64>,
+    /// What the board measured.
+    pub board: Option<BoardMeasurement>,
+}
+
+impl RunOutcome {
+    /// What the emulated board measured, if that took part.
+    pub fn emulated(self) -> Option<EmulatorReport> {
+        match self.board {
+            Some(BoardMeasurement::Emulated(report)) => Some(*report),
+            Some(BoardMeasurement::Virtual(_)) | None => None,
+        }
+    }
+}
+
+/// Why a run ended before its time.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The emulated board failed.
+    #[error("at tick {tick}: {source}")]
+    EmulatedBoard {
+        /// The tick, counted from 0.
+        tick: usize,
+        /// How.
+        source: EmulatorError,
+    },
+    /// The emulated board could not be started or did not end.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
+    /// The virtual board failed.
+    #[error(transparent)]
+    VirtualBoard(#[from] VirtualBoardError),
+}
+
+/// Runs a servo for at most `ticks` ticks and, with a backend, its program on that board as well.
+/// `progress` is called after each tick.
+///
+/// # Errors
+/// Where the board cannot be started, fails, or does not end.
+pub fn run_with_backend(
+    input: Input<'_>,
+    controller: &mut dyn Controller,
+    board: Option<Backend<'_>>,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<RunOutcome, RunError> {
+    match input {
+        Input::Hand(mut device) => {
+            let mut outcome = run_lockstep(device.as_mut(), controller, board, ticks, progress)?;
+            outcome.energy = Some(device.energy());
+            outcome.final_speed = Some(device.motion().velocity.abs());
+            Ok(outcome)
+        }
+        Input::Recording(counts) => {
+            run_lockstep(&mut Recording::new(counts), controller, board, ticks, progress)
+        }
+    }
+}
+
+fn run_lockstep(
+    plant: &mut dyn PlantIo,
+    controller: &mut dyn Controller,
+    board: Option<Backend<'_>>,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<RunOutcome, RunError> {
+    let (run, board) = match board {
+        None => {
+            let Ok(run) = run::<NoRemote>(plant, controller, None, ticks, progress);
+            (run, None)
+        }
+        // On either board the hand waits until the servo runs.
+        Some(Backend::Emulator(elf)) => {
+            let mut board = EmulatedBoard::boot(elf)?;
+            board.emulator.arm_and_wait()?;
+            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            (run, Some(BoardMeasurement::Emulated(Box::new(board.emulator.finish()?))))
+        }
+        Some(Backend::VirtualBoard { program, board, elf, period }) => {
+            let mut board = VirtualBoard::boot(program, board, elf)?;
+            board.arm_and_wait(period)?;
+            let run = run(plant, controller, Some(&mut board), ticks, progress)?;
+            (run, Some(BoardMeasurement::Virtual(board.finish()?)))
+        }
+    };
+    Ok(RunOutcome { run, energy: None, final_speed: None, board })
+}
+
+/// The emulated board, which knows the tick that it is in.
+pub struct EmulatedBoard {
+    emulator: Emulator,
+    tick: usize,
+}
+
+impl EmulatedBoard {
+    /// Starts a program.
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self { emulator: Emulator::boot(elf)?, tick: 0 })
+    }
+
+    /// Ends a program that has no scene to report of, and gives its log.
+    ///
+    /// # Errors
+    /// Where the board does not end, or ends with a failure.
+    pub fn end(self) -> Result<Vec<String>, EmulatorError> {
+        self.emulator.end()
+    }
+}
+
+impl RemoteServo for EmulatedBoard {
+    type Error = RunError;
+
+    fn exchange(&mut self, raw: i32) -> Result<u16, RunError> {
+        let tick = self.tick;
+        self.tick += 1;
+        self.emulator.exchange(raw).map_err(|source| RunError::EmulatedBoard { tick, source })
+    }
+}
+
+/// What a picture shows of a run: its position, its torque, and where the hand wanted to be.
+pub fn trace(title: String, period: f64, run: &Run, trajectory: &HandTrajectory) -> Trace {
+    let time = |tick: usize| tick as f64 * period;
+    let held = (0..run.ticks.len()).map(time).take_while(|&time| time < trajectory.release);
+    Trace {
+        title,
+        time_unit: TimeUnit::Seconds,
+        time: (0..run.ticks.len()).map(time).collect(),
+        position: run.ticks.iter().map(|tick| tick.angle).collect(),
+        hand: held.map(|time| trajectory.position(time)).collect(),
+        torque: run.ticks.iter().map(|tick| tick.torque).collect(),
+        limit: run.ticks.iter().map(|tick| TickStatus::Ran(tick.limit)).collect(),
+        release: Some(trajectory.release).filter(|&release| release < time(run.ticks.len())),
+        ..Trace::default()
+    }
+}

@@ -1,0 +1,74 @@
+//! Torques and sines as the emulated board computes them, with the instructions of each.
+
+use std::path::Path;
+
+use firmware_harness::bench_request::{
+    BLOCK, BenchRequest, BenchRequestWords, Inputs, Output, Outputs, READY,
+};
+
+use super::{EmulatorError, Guest, Transport};
+
+/// An emulated board that measures computations that the host chooses.
+pub struct BenchClient {
+    guest: Box<dyn Transport>,
+}
+
+impl BenchClient {
+    /// Starts the program; see [`build_bench_programs`](crate::toolchain::Toolchain::build_bench_programs).
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self::with_transport(Guest::boot(elf, &[])?))
+    }
+
+    /// A client of a program that runs already.
+    pub fn with_transport(guest: impl Transport + 'static) -> Self {
+        Self { guest: Box::new(guest) }
+    }
+
+    /// Has the board compute all of these: counts of an encoder, or the bits of parts of a turn.
+    ///
+    /// # Errors
+    /// Where the board has ended, does not answer, or has no program for this.
+    pub fn compute(
+        &mut self,
+        request: &BenchRequest,
+        inputs: &[u32],
+    ) -> Result<Vec<Output>, EmulatorError> {
+        let mut ready = [0];
+        self.guest.ask(&request.encode(), &mut ready)?;
+        if ready != [READY] {
+            return Err(EmulatorError::NoBenchProgram);
+        }
+        let mut outputs = Vec::with_capacity(inputs.len() + BLOCK);
+        for block in inputs.chunks(BLOCK) {
+            outputs.extend(self.block(block)?);
+        }
+        // The padding of the last block.
+        outputs.truncate(inputs.len());
+        self.guest.exchange(&[0], &mut [])?;
+        Ok(outputs)
+    }
+
+    fn block(&mut self, block: &[u32]) -> Result<Outputs, EmulatorError> {
+        let last = block.last().copied().unwrap_or_default();
+        let inputs: [[u8; 4]; BLOCK] =
+            std::array::from_fn(|i| block.get(i).copied().unwrap_or(last).to_le_bytes());
+        let request = [&[1], inputs.as_flattened()].concat();
+        let mut answer = [[0; Output::BYTES]; BLOCK];
+        self.guest.exchange(&request, answer.as_flattened_mut())?;
+        Ok(answer.map(Output::from_bytes))
+    }
+
+    /// Ends the board.
+    ///
+    /// # Errors
+    /// Where it does not end, or ends with a failure.
+    pub fn finish(self) -> Result<(), EmulatorError> {
+        self.guest.finish()
+    }
+}
+
+/// A request fits into a pipe's buffer, so that sending it never waits for the board.
+const _: () = assert!(size_of::<Inputs>() < 4096 && size_of::<BenchRequestWords>() < 4096);

@@ -1,0 +1,49 @@
+//! The certificate as the emulated board computes it, for scenes that the host chooses.
+
+use std::path::Path;
+
+use firmware::scene::Scene;
+use firmware_harness::scene_codec::{CertifyReply, ReplyWords, SceneWords, decode_reply, encode};
+
+use super::{EmulatorError, Guest, Transport};
+
+/// An emulated board that certifies scenes.
+pub struct CertifyClient {
+    guest: Box<dyn Transport>,
+}
+
+impl CertifyClient {
+    /// Starts the certify server; see [`build_certify_server`](crate::toolchain::Toolchain::build_certify_server).
+    ///
+    /// # Errors
+    /// Where the emulator cannot be started.
+    pub fn boot(elf: &Path) -> Result<Self, EmulatorError> {
+        Ok(Self::with_transport(Guest::boot(elf, &[])?))
+    }
+
+    /// A client of a program that runs already.
+    pub fn with_transport(guest: impl Transport + 'static) -> Self {
+        Self { guest: Box::new(guest) }
+    }
+
+    /// Has the board certify a scene.
+    ///
+    /// # Errors
+    /// Where the board has ended or does not answer.
+    pub fn certify(&mut self, scene: &Scene) -> Result<CertifyReply, EmulatorError> {
+        let mut words = [[0; 8]; size_of::<ReplyWords>() / 8];
+        self.guest.ask(&encode(scene), words.as_flattened_mut())?;
+        decode_reply(&words.map(u64::from_le_bytes)).ok_or(EmulatorError::NoReply)
+    }
+
+    /// Ends the board.
+    ///
+    /// # Errors
+    /// Where it does not end, or ends with a failure.
+    pub fn finish(self) -> Result<(), EmulatorError> {
+        self.guest.finish()
+    }
+}
+
+/// A request fits into a pipe's buffer, so that sending it never waits for the board.
+const _: () = assert!(size_of::<SceneWords>() <= 4096);

@@ -1,0 +1,205 @@
+//! The tick-by-tick loop of a servo and what surrounds it: a recording, or a simulated device with
+//! encoder, motor and hand. A remote servo may run in lockstep, and its codes are compared.
+
+use std::fmt;
+
+use firmware::dac::DacCode;
+use firmware::scene::Device;
+use firmware::servo::Transducers;
+
+use crate::controller::{Controller, Tick};
+use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
+use crate::hand::HandTrajectory;
+use crate::simulation::SimulationError;
+use crate::simulation::held_device::HeldDevice;
+
+/// Source of the encoder's counts and sink of the DAC codes.
+pub trait PlantIo {
+    /// The counter's content now; `None` at the end of a recording.
+    fn count(&mut self) -> Option<i32>;
+    /// Holds the code until the next tick.
+    fn hold(&mut self, code: u16);
+}
+
+/// A recording: the DAC code changes nothing.
+pub struct Recording<'a> {
+    counts: std::slice::Iter<'a, i32>,
+}
+
+impl<'a> Recording<'a> {
+    /// Plays the counts, one a tick.
+    pub fn new(counts: &'a [i32]) -> Self {
+        Self { counts: counts.iter() }
+    }
+}
+
+impl PlantIo for Recording<'_> {
+    fn count(&mut self) -> Option<i32> {
+        self.counts.next().copied()
+    }
+
+    fn hold(&mut self, _: u16) {}
+}
+
+/// A simulated device in a hand that follows a trajectory.
+pub struct SimulatedDevice {
+    held: HeldDevice,
+    free: HeldDevice,
+    trajectory: HandTrajectory,
+    encoder: SimulatedEncoder,
+    period: f64,
+    torque_per_code: f64,
+    ticks: u64,
+    motion: Motion,
+    energy: Energy,
+}
+
+impl SimulatedDevice {
+    /// A device at rest at zero, stepped by `period` s, with the encoder and the motor that the
+    /// servo is told of.
+    ///
+    /// # Errors
+    /// Where device and hand are too fast for their motion over a period to be computed.
+    pub fn new(
+        device: Device,
+        trajectory: HandTrajectory,
+        period: f64,
+        transducers: &Transducers,
+    ) -> Result<Self, SimulationError> {
+        let full_scale = transducers.full_scale_torque;
+        Ok(Self {
+            held: HeldDevice::new(device, trajectory.hand, period)?,
+            free: HeldDevice::new(device, Hand::default(), period)?,
+            trajectory,
+            encoder: SimulatedEncoder::new(transducers.counts_per_turn),
+            period,
+            torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
+            ticks: 0,
+            motion: Motion::default(),
+            energy: Energy::default(),
+        })
+    }
+
+    /// How the device moves now.
+    pub fn motion(&self) -> Motion {
+        self.motion
+    }
+
+    /// Energy that passed between hand and device so far.
+    pub fn energy(&self) -> Energy {
+        self.energy
+    }
+}
+
+impl PlantIo for SimulatedDevice {
+    fn count(&mut self) -> Option<i32> {
+        Some(self.encoder.read(self.motion.position))
+    }
+
+    fn hold(&mut self, code: u16) {
+        let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
+        let torque = codes * self.torque_per_code;
+        let start = self.ticks as f64 * self.period;
+        self.ticks += 1;
+        let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
+        let is_held = start < self.trajectory.release;
+        let device = if is_held { &self.held } else { &self.free };
+        let (motion, work) = device.step(self.motion, torque, setpoint);
+        self.motion = motion;
+        if is_held {
+            self.energy.add(work);
+        }
+    }
+}
+
+/// The same servo on a board: it gets the same counts.
+pub trait RemoteServo {
+    /// Why it could not answer.
+    type Error;
+    /// The board's code for a count.
+    fn exchange(&mut self, raw: i32) -> Result<u16, Self::Error>;
+}
+
+/// The first tick whose codes were not equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Difference {
+    /// Which tick, counted from 0.
+    pub tick: usize,
+    /// The counter's content.
+    pub count: i32,
+    /// The host's code.
+    pub host: u16,
+    /// The board's code.
+    pub target: u16,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tick, count, host, target } = self;
+        write!(
+            f,
+            "the codes differ first at tick {tick}, count {count}: {host} on the host, {target} on \
+             the target"
+        )
+    }
+}
+
+/// What a run gave.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// The ticks in order; the codes are the host's.
+    pub ticks: Vec<Tick>,
+    /// Ticks whose codes were equal to the remote servo's.
+    pub equal: usize,
+    /// The first that was not.
+    pub difference: Option<Difference>,
+}
+
+impl Run {
+    /// Largest coupling torque in N m, without sign.
+    pub fn peak_torque(&self) -> f64 {
+        self.ticks.iter().fold(0.0, |peak, tick| tick.torque.abs().max(peak))
+    }
+}
+
+/// Runs at most `ticks` ticks. With a remote servo, its codes move the device, and the servo here is
+/// compared with it. `progress` is called after each tick.
+pub fn run<T: RemoteServo>(
+    plant: &mut dyn PlantIo,
+    controller: &mut dyn Controller,
+    mut remote: Option<&mut T>,
+    ticks: usize,
+    mut progress: impl FnMut(),
+) -> Result<Run, T::Error> {
+    let mut run = Run::default();
+    while run.ticks.len() < ticks
+        && let Some(count) = plant.count()
+    {
+        let tick = controller.tick(count);
+        let code = match remote.as_mut() {
+            Some(remote) => remote.exchange(count)?,
+            None => tick.code,
+        };
+        if code == tick.code {
+            run.equal += 1;
+        } else if run.difference.is_none() {
+            let (number, host) = (run.ticks.len(), tick.code);
+            run.difference = Some(Difference { tick: number, count, host, target: code });
+        }
+        plant.hold(code);
+        run.ticks.push(tick);
+        progress();
+    }
+    Ok(run)
+}
+
+/// No remote servo: for runs on the host alone.
+pub enum NoRemote {}
+
+impl RemoteServo for NoRemote {
+    type Error = std::convert::Infallible;
+
+    fn exchange(&mut self, _: i32) -> Result<u16, Self::Error> {
+        match *self {}
+    }
+}

@@ -1,0 +1,84 @@
+//! Plant and controller as one matrix: where neither limit nor face nor converter acts, the loop
+//! is linear, and everything about it is in there.
+
+use firmware::certificate::LoopTransfers;
+use firmware::passivity::transfer::Unbuildable;
+use firmware::scene::Scene;
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::discrete_plant::DiscretePlant;
+use super::plant::POSITION;
+use crate::response::Response;
+
+/// The transfer functions of environment and controller. The passivity that the scene declares has
+/// no part in them, and a scene that has none is simulated like any other.
+///
+/// # Errors
+/// Where the environment is not causal, the loop of coupling and environment has no solution, or
+/// a number is out of range.
+pub fn transfers(scene: &Scene) -> Result<LoopTransfers, Unbuildable> {
+    /// So large that the standard coupling, which the equivalent environment stands behind, is as
+    /// good as rigid: whatever has a controller then has an equivalent. Below 0, since no device
+    /// has more passivity than damping.
+    const ANY: f64 = -1e200;
+    let mut scene = *scene;
+    scene.device.passivity = Some(ANY);
+    LoopTransfers::of(&scene)
+}
+
+/// `z(k+1) = matrix z(k) + inputs`, with the coupling torque `F = torque z`.
+///
+/// The state `z` is that of the plant, the motor torque of the tick before where there is latency,
+/// and that of the controller `C = E / (1 + V E)` (direct form II, transposed).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosedLoop {
+    /// State transition over a tick.
+    pub matrix: DMatrix<f64>,
+    /// Coupling torque in N m from the state.
+    pub torque: RowDVector<f64>,
+    /// Number of the plant's states, which come first.
+    pub plant: usize,
+}
+
+impl ClosedLoop {
+    /// Closes the loop of a scene; one-sidedness, face, torque limit and converters left out.
+    ///
+    /// # Errors
+    /// Where the environment is not causal, the loop of coupling and environment has no solution,
+    /// or a number is out of range.
+    pub fn new(tick: &DiscretePlant, scene: &Scene) -> Result<Self, Unbuildable> {
+        let controller = Response::new(transfers(scene)?.controller);
+        let filter = controller.filter().ok_or(Unbuildable::OutOfRange)?;
+        let (numerator, denominator) = (filter.numerator(), filter.denominator());
+        let (n, late, degree) =
+            (tick.transition.nrows(), usize::from(tick.is_late()), denominator.len() - 1);
+        let first = n + late;
+        let size = first + degree;
+        let mut torque = RowDVector::zeros(size);
+        torque[POSITION] = numerator[0];
+        if degree > 0 {
+            torque[first] = 1.0;
+        }
+        let mut matrix = DMatrix::zeros(size, size);
+        matrix.view_mut((0, 0), (n, n)).copy_from(&tick.transition);
+        matrix.view_mut((0, 0), (n, size)).ger(-1.0, &tick.motor, &torque.transpose(), 1.0);
+        if late == 1 {
+            matrix.view_mut((0, n), (n, 1)).copy_from(&tick.previous);
+            matrix.row_mut(n).copy_from(&-&torque);
+        }
+        for i in 1..=degree {
+            let row = first + i - 1;
+            matrix.row_mut(row).copy_from(&(&torque * -denominator[i]));
+            matrix[(row, POSITION)] += numerator[i];
+            if i < degree {
+                matrix[(row, row + 1)] += 1.0;
+            }
+        }
+        Ok(Self { matrix, torque, plant: n })
+    }
+
+    /// A vector of the plant's states as one of the whole loop's.
+    pub fn extended(&self, plant: &DVector<f64>) -> DVector<f64> {
+        plant.clone().resize_vertically(self.matrix.nrows(), 0.0)
+    }
+}

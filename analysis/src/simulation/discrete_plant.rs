@@ -1,0 +1,133 @@
+//! The discrete-time plant: a [`Plant`] over one tick, with the servo's period and latency.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::error::SimulationError;
+use super::method::{Method, repeated, rotation, step};
+use super::plant::{Input, Plant};
+
+/// How a plant is discretised over a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discretization {
+    /// The method.
+    pub method: Method,
+    /// Steps a tick, at least one.
+    pub substeps: u32,
+    /// Period of the servo in s.
+    pub period: f64,
+    /// Time in s from the sample to the torque that follows from it, less than the period.
+    pub latency: f64,
+}
+
+impl Discretization {
+    /// The exact method without latency, over a period in s.
+    pub fn exact(period: f64) -> Self {
+        Self { method: Method::Exact, substeps: 1, period, latency: 0.0 }
+    }
+
+    /// The two parts of a tick, before and after the new torque: length in s and steps.
+    pub(super) fn parts(&self) -> [(f64, u32); 2] {
+        let share = self.latency / self.period;
+        let steps = |share: f64| (f64::from(self.substeps) * share).ceil().max(1.0) as u32;
+        [(self.latency, steps(share)), (self.period - self.latency, steps(1.0 - share))]
+    }
+}
+
+/// `x(k+1) = transition x(k) + previous u(k-1) + motor u(k) + hand w(k) + sine (s, c)(k)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiscretePlant {
+    /// From the state at the tick's start.
+    pub transition: DMatrix<f64>,
+    /// From the motor torque of the tick before, which lasts for the latency; zero without one.
+    pub previous: DVector<f64>,
+    /// From the motor torque that this tick's sample leads to.
+    pub motor: DVector<f64>,
+    /// From the hand's torque held over the tick.
+    pub hand: DVector<f64>,
+    /// From the hand's sine torque at the tick's start and from its cosine.
+    pub sine: [DVector<f64>; 2],
+}
+
+impl DiscretePlant {
+    /// Takes the plant through a tick; `omega` in rad/s is that of the hand's sine torque.
+    pub fn new(plant: &Plant, discretization: &Discretization, omega: f64) -> Self {
+        let n = plant.order();
+        let [before, after] = discretization.parts().map(|(length, count)| {
+            let h = length / f64::from(count);
+            repeated(&step(plant, discretization.method, omega, h), count)
+        });
+        let part = |whole: &DMatrix<f64>| whole.view((0, 0), (n, n)).into_owned();
+        let column = |whole: &DMatrix<f64>, index: usize| {
+            whole.view((0, n + index), (n, 1)).column(0).into_owned()
+        };
+        let (motor, hand, sine) =
+            (Input::Motor as usize, Input::Hand as usize, super::plant::INPUTS);
+        let late = part(&after);
+        let turned = rotation(omega * discretization.latency);
+        let oscillator = |i: usize| {
+            let later =
+                column(&after, sine) * turned[(0, i)] + column(&after, sine + 1) * turned[(1, i)];
+            &late * column(&before, sine + i) + later
+        };
+        Self {
+            transition: &late * part(&before),
+            previous: &late * column(&before, motor),
+            motor: column(&after, motor),
+            hand: &late * column(&before, hand) + column(&after, hand),
+            sine: [oscillator(0), oscillator(1)],
+        }
+    }
+
+    /// The same, where its numbers are finite.
+    ///
+    /// # Errors
+    /// Where the machine is too fast for its motion over a period to be computed.
+    pub fn checked(
+        plant: &Plant,
+        discretization: &Discretization,
+        omega: f64,
+    ) -> Result<Self, SimulationError> {
+        let tick = Self::new(plant, discretization, omega);
+        let inputs = [&tick.previous, &tick.motor, &tick.hand, &tick.sine[0], &tick.sine[1]];
+        let mut entries = inputs.iter().flat_map(|input| input.iter()).chain(&tick.transition);
+        if entries.all(|entry| entry.is_finite()) {
+            Ok(tick)
+        } else {
+            let rate = plant.rates().amax();
+            Err(SimulationError::TooFast { rate, period: discretization.period })
+        }
+    }
+
+    /// The state after a tick from `state` with these torques in N m held over it; nothing is left
+    /// of the torque of the tick before, and the hand plays no sine.
+    pub fn end(&self, state: &DVector<f64>, motor: f64, hand: f64) -> DVector<f64> {
+        &self.transition * state + &self.motor * motor + &self.hand * hand
+    }
+
+    /// Whether the tick depends on the torque of the one before.
+    pub fn is_late(&self) -> bool {
+        self.previous.iter().any(|&effect| effect != 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use firmware::scene::Device;
+
+    #[test]
+    fn latency_splits_the_tick_and_nothing_else() {
+        let plant = Plant::rigid(Device { inertia: 2e-4, damping: 0.02, passivity: None });
+        let discretization =
+            |latency| Discretization { method: Method::Exact, substeps: 1, period: 1e-3, latency };
+        let [prompt, late] =
+            [0.0, 4e-4].map(|latency| DiscretePlant::new(&plant, &discretization(latency), 900.0));
+        assert!(!prompt.is_late() && late.is_late());
+        let near = |a: &DVector<f64>, b: &DVector<f64>| assert!((a - b).amax() < 1e-12 * b.amax());
+        assert!((&prompt.transition - &late.transition).amax() < 1e-15);
+        near(&(&late.previous + &late.motor), &prompt.motor);
+        near(&late.hand, &prompt.hand);
+        near(&late.sine[0], &prompt.sine[0]);
+        near(&late.sine[1], &prompt.sine[1]);
+    }
+}

@@ -1,0 +1,168 @@
+//! The sampled loop with its non-linear elements: limits, wall face, quantisation, friction.
+
+use firmware::torque::LimitReason;
+use nalgebra::DVector;
+
+use super::discrete_plant::DiscretePlant;
+use super::error::SimulationError;
+use super::experiment::{Experiment, Integration};
+use super::friction::FrictionPlant;
+use super::kernel::{DEAD, LOOK};
+use super::plant::{POSITION, VELOCITY};
+use super::tick_status::TickStatus;
+use super::torque_signal::TorqueSignal;
+use super::trajectory::Columns;
+use super::unquantized_servo::UnquantizedServo;
+use crate::missed::Missed;
+
+/// A loop in motion.
+#[derive(Debug)]
+pub struct NonlinearLoop {
+    servo: UnquantizedServo,
+    machine: Machine,
+    encoder_step: Option<f64>,
+    missed: Box<dyn Ticks>,
+    torque: f64,
+    k: usize,
+}
+
+/// Whether each tick is missed.
+trait Ticks: Iterator<Item = bool> + std::fmt::Debug {}
+impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
+
+/// The plant, with Coulomb friction or without.
+#[derive(Debug)]
+pub(crate) enum Machine {
+    /// Without.
+    Smooth(Box<Smooth>),
+    /// With.
+    FrictionPlant(Box<FrictionPlant>),
+}
+
+/// A plant whose ticks are all one matrix.
+#[derive(Debug)]
+pub(crate) struct Smooth {
+    tick: DiscretePlant,
+    period: f64,
+    state: DVector<f64>,
+    next: DVector<f64>,
+}
+
+impl NonlinearLoop {
+    /// Sets an experiment up.
+    ///
+    /// # Errors
+    /// Where the scene has no law that could run.
+    pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
+        Ok(Self {
+            servo: UnquantizedServo::new(&experiment.scene)?,
+            machine: Machine::new(experiment, integration),
+            encoder_step: experiment.encoder_step,
+            missed: ticks(experiment.missed),
+            torque: 0.0,
+            k: 0,
+        })
+    }
+
+    /// The next samples, and what the servo did at each.
+    pub fn fill(
+        &mut self,
+        hand_torque: &TorqueSignal,
+        columns: Columns<'_>,
+        limit: &mut [TickStatus],
+    ) {
+        let Columns { position, velocity, torque } = columns;
+        let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit);
+        for (((position, velocity), torque), status) in samples {
+            let state = self.machine.state();
+            (*position, *velocity) = (state[POSITION], state[VELOCITY]);
+            let before = self.torque;
+            *status = self.run_servo(*position);
+            *torque = self.torque;
+            self.machine.tick(self.k, hand_torque, [-before, -self.torque]);
+            self.k += 1;
+        }
+    }
+
+    /// The servo's part in a tick that starts with the device at `position` rad.
+    fn run_servo(&mut self, position: f64) -> TickStatus {
+        if self.missed.next().unwrap_or(false) {
+            return TickStatus::Missed;
+        }
+        let (angle, standing_still) = match self.encoder_step {
+            Some(step) => read(position, step),
+            None => (position, LimitReason::None),
+        };
+        let (torque, limit) = self.servo.tick(angle, standing_still);
+        self.torque = torque;
+        TickStatus::Ran(limit)
+    }
+}
+
+/// The angle in rad that an encoder with this step shows, and whether its count was too large for
+/// the servo's 32 bits, where the angle stands still.
+fn read(position: f64, step: f64) -> (f64, LimitReason) {
+    let count = (position / step).floor();
+    let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+    let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
+    (nearest * step, reason)
+}
+
+fn ticks(missed: Missed) -> Box<dyn Ticks> {
+    Box::new(missed.ticks())
+}
+
+impl Machine {
+    /// The plant of an experiment at its start.
+    pub(crate) fn new(experiment: &Experiment, integration: Integration) -> Self {
+        let (plant, discretization) = (&experiment.plant, experiment.discretization(integration));
+        let omega = experiment.hand_torque.omega();
+        let state = plant.state_at(experiment.start.position, experiment.start.velocity);
+        if experiment.friction > 0.0 {
+            let friction_plant =
+                FrictionPlant::new(plant, experiment.friction, &discretization, omega, &state);
+            return Self::FrictionPlant(Box::new(friction_plant));
+        }
+        let tick = DiscretePlant::new(plant, &discretization, omega);
+        let next = state.clone();
+        Self::Smooth(Box::new(Smooth { tick, period: discretization.period, state, next }))
+    }
+
+    /// Its states.
+    pub(crate) fn state(&self) -> &DVector<f64> {
+        match self {
+            Self::Smooth(smooth) => &smooth.state,
+            Self::FrictionPlant(friction_plant) => friction_plant.state(),
+        }
+    }
+
+    /// One tick with the motor torques before and after the latency, in N m.
+    pub(crate) fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, torques: [f64; 2]) {
+        match self {
+            Self::Smooth(smooth) => smooth.tick(k, hand_torque, torques),
+            Self::FrictionPlant(friction_plant) => friction_plant.tick(k, hand_torque, torques),
+        }
+    }
+}
+
+impl Smooth {
+    fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, [before, after]: [f64; 2]) {
+        let Self { tick, state, next, period } = self;
+        next.gemv(1.0, &tick.transition, state, 0.0);
+        next.axpy(after, &tick.motor, 1.0);
+        next.axpy(before, &tick.previous, 1.0);
+        match hand_torque {
+            TorqueSignal::Free => {}
+            TorqueSignal::Held(_) => next.axpy(hand_torque.held(k), &tick.hand, 1.0),
+            TorqueSignal::Sine { .. } => {
+                let [s, c] = hand_torque.sine(k, *period);
+                next.axpy(s, &tick.sine[0], 1.0);
+                next.axpy(c, &tick.sine[1], 1.0);
+            }
+        }
+        std::mem::swap(state, next);
+        if k.is_multiple_of(LOOK) && state.iter().all(|state| state.abs() < DEAD) {
+            state.fill(0.0);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! The servo in `f64` and radians: the firmware's law and coupling without quantisation by encoder and DAC.
+//!
+//! Nothing here is certified: what a scene would do is asked before it is safe.
+
+use firmware::coupling::Solver;
+use firmware::environment::{Discretize, EnvironmentLaw, Law, LawContext};
+use firmware::scene::Scene;
+use firmware::servo::BuildError;
+use firmware::torque::{LimitReason, Limiter};
+
+/// Environment and coupling of a scene, initially at rest at zero.
+#[derive(Clone, Debug)]
+pub struct UnquantizedServo {
+    law: EnvironmentLaw<f64>,
+    solver: Solver<f64>,
+    limiter: Limiter<f64>,
+}
+
+impl UnquantizedServo {
+    /// The servo of a scene.
+    ///
+    /// # Errors
+    /// Where coupling and environment have no unique solution, or the environment needs samples
+    /// from the future.
+    pub fn new(scene: &Scene) -> Result<Self, BuildError> {
+        let setting = LawContext {
+            period: scene.timing.period,
+            damping: scene.device.damping,
+            coupling: scene.coupling,
+        };
+        let law = scene.environment.law(&setting)?;
+        let solver = Solver::new(scene.coupling, law.slopes())?;
+        // No converter ends the range here.
+        let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
+        Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })
+    }
+
+    /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
+    /// coupling is solved, and why it is not the one asked for; `otherwise` where it is. The motor
+    /// applies `-F`.
+    pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
+        let wanted = self.solver.torque(self.law.evaluate(x));
+        let (torque, limit) = self.limiter.limit(wanted, otherwise);
+        self.law.update(self.solver.environment_position(x, torque));
+        (torque, limit)
+    }
+}

@@ -1,0 +1,74 @@
+//! The device over a tick as a ratio of polynomials, which a controller closes at the cost of two
+//! products.
+
+use firmware::passivity::transfer::Unbuildable;
+use firmware::scene::Scene;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::schur_cohn::all_inside;
+use crate::response::Response;
+use crate::simulation::closed_loop::transfers;
+use crate::simulation::discrete_plant::DiscretePlant;
+use crate::simulation::plant::POSITION;
+
+/// Sampled position over motor torque, highest power first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledPlant {
+    numerator: Vec<f64>,
+    denominator: Vec<f64>,
+}
+
+impl SampledPlant {
+    /// Of a plant that is taken through a tick (Faddeev and Le Verrier's recursion). Where the
+    /// torque is late, the torque of the tick before is one more state.
+    pub fn new(tick: &DiscretePlant) -> Self {
+        let n = tick.transition.nrows() + usize::from(tick.is_late());
+        let mut transition = tick.transition.clone().resize(n, n, 0.0);
+        let mut motor = tick.motor.clone().resize_vertically(n, 0.0);
+        if tick.is_late() {
+            let held = n - 1;
+            transition.view_mut((0, held), (held, 1)).copy_from(&tick.previous);
+            motor[held] = 1.0;
+        }
+        Self::of_states(&transition, &motor)
+    }
+
+    fn of_states(transition: &DMatrix<f64>, motor: &DVector<f64>) -> Self {
+        let n = transition.nrows();
+        let (mut numerator, mut denominator) = (vec![0.0], vec![1.0]);
+        let mut adjugate = DMatrix::identity(n, n);
+        for order in 1..=n {
+            numerator.push((adjugate.row(POSITION) * motor)[0]);
+            let product = transition * &adjugate;
+            let coefficient = -product.trace() / order as f64;
+            denominator.push(coefficient);
+            adjugate = product + DMatrix::identity(n, n) * coefficient;
+        }
+        Self { numerator, denominator }
+    }
+
+    /// Value at `z`.
+    pub fn at(&self, z: Complex<f64>) -> Complex<f64> {
+        let horner = |p: &[f64]| p.iter().fold(Complex::new(0.0, 0.0), |sum, c| sum * z + *c);
+        horner(&self.numerator) / horner(&self.denominator)
+    }
+
+    /// Whether the loop of this plant and a scene's controller dies away from any start: all roots
+    /// of `D_plant D_C + N_plant N_C` inside the unit circle. One-sidedness and limits are left
+    /// out.
+    ///
+    /// # Errors
+    /// Where the scene has no controller.
+    pub fn is_stable_under(&self, scene: &Scene) -> Result<bool, Unbuildable> {
+        let controller = Response::new(transfers(scene)?.controller);
+        let filter = controller.filter().ok_or(Unbuildable::OutOfRange)?;
+        let (numerator, denominator) = (filter.numerator(), filter.denominator());
+        let mut closed = vec![0.0; self.denominator.len() + denominator.len() - 1];
+        for (i, (own_n, own_d)) in self.numerator.iter().zip(&self.denominator).enumerate() {
+            for (j, (c_n, c_d)) in numerator.iter().zip(denominator).enumerate() {
+                closed[i + j] += own_d * c_d + own_n * c_n;
+            }
+        }
+        Ok(all_inside(&mut closed))
+    }
+}

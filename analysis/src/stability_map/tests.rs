@@ -1,0 +1,161 @@
+use firmware::certificate::Answer;
+
+use super::border::closed_form_border;
+use super::*;
+use crate::file::{Format, parse};
+use crate::stability;
+
+fn file(environment: &str, coupling: &str) -> SceneFile {
+    let text = format!(
+        "name = \"a wall\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\nperiod = 0.001\n\
+         {coupling}\n[environment]\n{environment}\n"
+    );
+    parse("wall.toml", Format::Toml, &text).unwrap()
+}
+
+fn wall(delay: usize, coupling: &str) -> SceneFile {
+    let wall = format!("type = \"damper-wall\"\nstiffness = 1\ndamping = 0\ndelay = {delay}");
+    file(&wall, coupling)
+}
+
+const STANDARD: &str = "[coupling]\nstiffness = 44.0";
+const SOFT: &str = "[coupling]\nstiffness = 30.0";
+
+#[test]
+fn stability_is_that_of_the_eigenvalues() {
+    let mut compared = 0;
+    for (delay, coupling) in [(0, ""), (1, STANDARD), (2, SOFT), (3, STANDARD), (8, "")] {
+        let file = wall(delay, coupling);
+        let family = Family::of(&file).unwrap();
+        for k in 1..12 {
+            for b in -5..9 {
+                let (k, b) = (7.3 * f64::from(k), 0.0047 * f64::from(b));
+                let scene = family.member(k, b);
+                let still = Experiment::still(&scene);
+                let closed = stability::closed_loop(&still, Integration::default()).unwrap();
+                let radius = stability::radius(&stability::eigenvalues(&closed.matrix).unwrap());
+                if (radius - 1.0).abs() > 1e-6 {
+                    compared += 1;
+                    let stable = family.plant.is_stable_under(&scene).unwrap();
+                    assert_eq!(stable, radius < 1.0, "{delay} {coupling} {k} {b} {radius}");
+                }
+            }
+        }
+    }
+    assert!(compared > 700, "{compared}");
+}
+
+#[test]
+fn certified_walls_are_stable_without_a_hand() {
+    for (delay, coupling) in [(1, STANDARD), (2, SOFT), (2, ""), (4, STANDARD)] {
+        let family = Family::of(&wall(delay, coupling)).unwrap();
+        let (stiffness, damping) = family.usual_ranges();
+        let map = Map::new(&family, stiffness, damping, 40, || {});
+        for region in [Region::Unstable, Region::Rejected, Region::Exact, Region::Paper] {
+            let is_rare = region == Region::Exact && coupling == STANDARD;
+            let is_void = region == Region::Paper && coupling.is_empty();
+            assert!(map.share(region) > 0.0 || is_rare || is_void, "{delay} {region:?}");
+        }
+        let part = |range: &Range<f64>, index: usize| {
+            range.start + (range.end - range.start) * (index as f64 + 0.5) / 40.0
+        };
+        for (column, row) in (0..40).flat_map(|column| (0..40).map(move |row| (column, row))) {
+            let scene = family.member(part(&map.stiffness, column), part(&map.damping, row));
+            let assessment = assess(&scene);
+            let certified = [assessment.paper, assessment.exact].contains(&Answer::Pass);
+            assert_eq!(map.at(column, row) >= Region::Exact, certified, "{scene:?}");
+            assert!(!certified || family.plant.is_stable_under(&scene).unwrap(), "{scene:?}");
+        }
+    }
+}
+
+#[test]
+fn the_closed_form_is_the_border_of_the_papers_rule() {
+    for (delay, coupling) in [(1, STANDARD), (1, SOFT), (2, STANDARD), (3, SOFT)] {
+        let family = Family::of(&wall(delay, coupling)).unwrap();
+        let (stiffness, damping) = family.usual_ranges();
+        let map = Map::new(&family, stiffness, damping, 2, || {});
+        let border = closed_form_border(&family, &map).unwrap().points;
+        assert!(border.len() > 50, "{delay}");
+        for (k, b) in border {
+            assert_eq!(family.region(k * (1.0 - 1e-9), b), Region::Paper, "{delay} {k} {b}");
+            assert_ne!(family.region(k * (1.0 + 1e-9), b), Region::Paper, "{delay} {k} {b}");
+        }
+    }
+}
+
+#[test]
+fn an_environment_without_a_wall_has_no_map() {
+    let free = file("type = \"free-mode\"\nresidual = 0.001", STANDARD);
+    let error = Family::of(&free).unwrap_err().to_string();
+    assert!(error.starts_with("a wall: a map is drawn over"), "{error}");
+}
+
+/// Couplings and walls of every kind, one-sided ones and such as may miss updates among them.
+#[test]
+fn nothing_that_the_dashed_border_encloses_is_rejected() {
+    let stiff = "[coupling]\nstiffness = 70.0";
+    let mut drawn = Vec::new();
+    for coupling in ["", SOFT, STANDARD, stiff] {
+        for (delay, one_sided, worst) in [
+            (0, false, false),
+            (1, false, false),
+            (1, true, false),
+            (1, false, true),
+            (2, true, true),
+        ] {
+            let mut file = wall(delay, coupling);
+            if let Environment::DamperWall(wall) = &mut file.scene.environment {
+                wall.one_sided = one_sided;
+            }
+            file.scene.timing.worst_period = worst.then_some(0.0015);
+            let family = Family::of(&file).unwrap();
+            let (stiffness, damping) = family.usual_ranges();
+            let map = Map::new(&family, stiffness.clone(), damping, 2, || {});
+            let Some(border) = closed_form_border(&family, &map) else { continue };
+            for &(k, b) in &border.points {
+                for part in [0.1, 0.5, 0.9, 1.0 - 1e-9] {
+                    let region = family.region(k * part, b);
+                    assert!(region >= Region::Exact, "{file:?} {k} {b} {part} {region:?}");
+                }
+                // A soft coupling has walls beyond the paper's border that the exact rule passes.
+                let beyond = family.region(k * (1.0 + 1e-9), b);
+                assert!(beyond < Region::Paper, "{file:?} {k} {b} {beyond:?}");
+                assert!(coupling == SOFT || beyond < Region::Exact, "{file:?} {k} {b}");
+            }
+            drawn.push((coupling, border.name));
+        }
+    }
+    // The paper's rule passes nothing behind these; what is drawn of the rigid one is the exact rule's.
+    assert!(drawn.iter().all(|(coupling, _)| *coupling != stiff), "{drawn:?}");
+    assert!(drawn.iter().any(|(coupling, _)| coupling.is_empty()) && drawn.len() > 5, "{drawn:?}");
+}
+
+#[test]
+fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
+    // A torque that is nearly a sample later than the certificate takes it to be.
+    let latency = "type = \"damper-wall\"\nstiffness = 1\ndamping = 0\ndelay = 0\n[simulation]\nsamples = 1\n\
+                   latency = 0.0009";
+    let family = Family::of(&self::file(latency, STANDARD)).unwrap();
+    let map = Map::new(&family, 1.0..200.0, 0.0..0.01, 20, || {});
+    assert!(map.share(Region::Wrong) > 0.05, "{}", map.share(Region::Wrong));
+    for (k, b, region) in map.cells() {
+        let certified = assess(&family.member(k, b)).outcome.is_ok();
+        assert_eq!(region == Region::Wrong || region >= Region::Exact, certified, "{k} {b}");
+    }
+    // What is rejected is not taken for undecided.
+    let rigid = Family::of(&wall(1, "")).unwrap();
+    let (stiffness, damping) = rigid.usual_ranges();
+    let map = Map::new(&rigid, stiffness, damping, 12, || {});
+    for (k, b, region) in map.cells().filter(|cell| cell.2 == Region::Undecided) {
+        let undecided = assess(&rigid.member(k, b)).outcome.is_err_and(|why| why.is_undecided());
+        assert!(undecided, "{k} {b} {region:?}");
+    }
+    // On the border itself the certificate leaves it open.
+    let family = Family::of(&wall(1, STANDARD)).unwrap();
+    for (stiffness, undecided) in [(43.0, false), (44.0, true), (45.0, false)] {
+        let outcome = assess(&family.member(stiffness, 0.0)).outcome;
+        assert_eq!(outcome.is_err_and(|why| why.is_undecided()), undecided, "{stiffness}");
+        assert_eq!(family.region(stiffness, 0.0) == Region::Undecided, undecided, "{stiffness}");
+    }
+}

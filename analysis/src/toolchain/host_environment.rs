@@ -1,0 +1,148 @@
+//! The host's environment: its compiler, its emulator, its packages.
+
+use super::Version;
+
+/// Tools that were found on the host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostEnvironment {
+    /// The compiler that `cargo` runs here.
+    pub rust: Option<Rust>,
+    /// Whether there is a rustup to add a target with.
+    pub rustup: bool,
+    /// Whether the machine's owner forbids toolchains to be fetched.
+    pub fetching_forbidden: bool,
+    /// Version of the emulator.
+    pub qemu: Option<Version>,
+    /// Whether there is what the virtual board's processor is built with.
+    pub native: NativeBuildTools,
+    /// The packages, on a system that has Debian's.
+    pub debian: Option<Debian>,
+    /// Whether packages may be installed.
+    pub root: bool,
+}
+
+/// A compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rust {
+    /// Its version.
+    pub version: Version,
+    /// Whether it has `core` for the target.
+    pub has_target: bool,
+}
+
+/// Tools that build a library in C and read its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NativeBuildTools {
+    /// Whether there is cmake.
+    pub cmake: bool,
+    /// Whether there is make.
+    pub make: bool,
+    /// Whether there is a C++ compiler, which cmake asks for.
+    pub cxx: bool,
+    /// Whether there is pkg-config, without which the library's own configuration fails.
+    pub pkg_config: bool,
+    /// Whether there is libclang.
+    pub libclang: bool,
+}
+
+/// Debian's packages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Debian {
+    /// Whether the lists of packages have just been fetched, so that what they lack is not to be
+    /// had.
+    pub lists_are_fresh: bool,
+    /// Of each of [`Package::ALL`], in that order.
+    pub packages: [PackageState; Package::ALL.len()],
+}
+
+impl Debian {
+    pub(super) fn state(&self, package: Package) -> PackageState {
+        let index = Package::ALL.iter().position(|p| *p == package);
+        index.map_or(PackageState::Unknown, |index| self.packages[index])
+    }
+}
+
+/// What is known of a package.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PackageState {
+    /// It is installed.
+    Installed(Version),
+    /// It could be installed.
+    Available(Version),
+    /// The lists do not have it.
+    Unknown,
+}
+
+/// A package that may be needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Package {
+    /// The compiler.
+    Rustc,
+    /// Cargo of the same version.
+    Cargo,
+    /// The source of `core`.
+    RustSource,
+    /// The linker.
+    Lld,
+    /// The emulator.
+    Qemu,
+    /// Builds the virtual board's processor.
+    Cmake,
+    /// Runs what cmake writes.
+    Make,
+    /// The compiler that cmake asks for.
+    Cxx,
+    /// Finds libraries for the library's own configuration.
+    PkgConfig,
+    /// Reads its header.
+    Libclang,
+}
+
+impl Package {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Rustc,
+        Self::Cargo,
+        Self::RustSource,
+        Self::Lld,
+        Self::Qemu,
+        Self::Cmake,
+        Self::Make,
+        Self::Cxx,
+        Self::PkgConfig,
+        Self::Libclang,
+    ];
+    /// Those that make a compiler for the target.
+    pub(super) const COMPILER: [Self; 4] = [Self::Rustc, Self::Cargo, Self::RustSource, Self::Lld];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rustc => "rustc-web",
+            Self::Cargo => "cargo-web",
+            Self::RustSource => "rust-web-src",
+            Self::Lld => "lld",
+            Self::Qemu => "qemu-system-arm",
+            Self::Cmake => "cmake",
+            Self::Make => "make",
+            Self::Cxx => "g++",
+            Self::PkgConfig => "pkg-config",
+            Self::Libclang => "libclang-dev",
+        }
+    }
+
+    /// Its oldest version that serves.
+    const fn oldest(self) -> Option<Version> {
+        match self {
+            Self::Rustc | Self::Cargo | Self::RustSource => Some(Version::RUST),
+            Self::Qemu => Some(Version::QEMU),
+            Self::Lld | Self::Cmake | Self::Make | Self::Cxx | Self::PkgConfig | Self::Libclang => {
+                None
+            }
+        }
+    }
+
+    pub(super) fn is_served_by(self, version: Version) -> bool {
+        self.oldest().is_none_or(|oldest| version >= oldest)
+    }
+}

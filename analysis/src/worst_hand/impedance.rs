@@ -1,0 +1,96 @@
+//! Impedances of passive hands: their parameters, the grid that the search starts from, and the
+//! device in a hand.
+
+use std::f64::consts::PI;
+
+use serde::Serialize;
+
+use crate::chain::{Chain, EncoderPlace, Link, Mass};
+use crate::device::Hand;
+use crate::simulation::plant::Plant;
+
+/// A passive hand: on the device, or behind a spring and damper of its own. No number is negative,
+/// so it is passive whatever they are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct HandImpedance {
+    /// Inertia in kg m^2 of the hand.
+    pub inertia: f64,
+    /// Damping in N m s/rad of the hand, to the ground.
+    pub damping: f64,
+    /// Stiffness in N m/rad of the hand, to the ground.
+    pub stiffness: f64,
+    /// What is between device and hand; `None`: the hand is on the device.
+    pub link: Option<Compliance>,
+}
+
+/// Skin and tendons between the device and a hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Compliance {
+    /// Stiffness in N m/rad.
+    pub stiffness: f64,
+    /// Damping in N m s/rad.
+    pub damping: f64,
+}
+
+/// Hands that resonate around an angle in rad a tick on a device of this inertia in kg m^2, and some
+/// that do not.
+pub(super) fn impedance_grid(inertia: f64, period: f64, angle: f64) -> Vec<HandImpedance> {
+    let angles: Vec<f64> = [0.25, 0.5, 0.8, 1.0, 1.25, 2.0]
+        .iter()
+        .map(|ratio| (angle * ratio).clamp(1e-3, PI))
+        .chain([0.1, 0.5, 1.5, 2.5, PI])
+        .collect();
+    // From a hundredth of the device to a thousand times it: a heavy hand sees the
+    // controller at one angle alone, a light one moves with the device between the samples.
+    let masses: Vec<f64> =
+        (-4..=6).map(|step| inertia * 10_f64.powf(f64::from(step) / 2.0)).collect();
+    let mut hands = vec![HandImpedance::default()];
+    for &mass in &masses {
+        hands.push(HandImpedance { inertia: mass, ..HandImpedance::default() });
+        for &theta in &angles {
+            let rate = (theta / period).powi(2);
+            hands.push(HandImpedance {
+                inertia: mass,
+                stiffness: (inertia + mass) * rate,
+                ..HandImpedance::default()
+            });
+            let link = Compliance { stiffness: mass * rate, damping: 0.0 };
+            hands.push(HandImpedance {
+                inertia: mass,
+                link: Some(link),
+                ..HandImpedance::default()
+            });
+        }
+    }
+    for &theta in &angles {
+        let rate = (theta / period).powi(2);
+        hands.push(HandImpedance { stiffness: inertia * rate, ..HandImpedance::default() });
+    }
+    hands
+}
+
+/// A device with so many times its inertia in a hand.
+pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
+    let light = |mass: &Mass| Mass { inertia: lighter * mass.inertia, ..*mass };
+    let mut masses: Vec<Mass> = device.masses().iter().map(light).collect();
+    let mut links = device.links().to_vec();
+    let hand = match impedance.link {
+        None => Hand {
+            inertia: impedance.inertia,
+            damping: impedance.damping,
+            stiffness: impedance.stiffness,
+        },
+        Some(link) => {
+            masses.push(Mass { inertia: impedance.inertia, damping: impedance.damping });
+            links.push(Link { stiffness: link.stiffness, damping: link.damping });
+            Hand { inertia: 0.0, damping: 0.0, stiffness: impedance.stiffness }
+        }
+    };
+    let encoder = match device.encoder() {
+        EncoderPlace::Motor => 0,
+        EncoderPlace::Hand => device.masses().len() - 1,
+    };
+    let plant = Plant::with_encoder_at(encoder, &masses, &links).with_hand(hand);
+    let lag = device.actuator_lag();
+    if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
+}

@@ -1,0 +1,88 @@
+//! Exceptions between instructions (ARM DDI 0403E, B1.5).
+
+use unicorn_engine::RegisterARM;
+
+use super::Machine;
+use crate::chip::{FLASH, TICK_INTERRUPT};
+use crate::core::exceptions::{FIRST_INTERRUPT, Number};
+use crate::core::system::FaultStatus;
+use crate::error::BoardError;
+use crate::frame::{self, Frame, THUMB};
+
+/// The servo's interrupt.
+const SERVO: Number = FIRST_INTERRUPT + TICK_INTERRUPT;
+
+impl Machine {
+    /// Begins to serve what may be served now; whether the core waits for more.
+    pub(super) fn waits(&mut self) -> bool {
+        let exceptions = &self.core.board().system.exceptions;
+        // Usual, and the masks need not be asked for.
+        if !exceptions.any_pending() {
+            return self.waiting;
+        }
+        let masks = self.core.masks();
+        self.waiting &= !exceptions.wakes(masks);
+        if let Some(number) = exceptions.next(masks) {
+            self.enter(number);
+        }
+        self.waiting
+    }
+
+    /// A fault at the instruction where the core stands.
+    pub(super) fn fault(&mut self, status: FaultStatus, address: u32) -> Result<(), BoardError> {
+        let masks = self.core.masks();
+        let board = self.core.board_mut();
+        if !board.system.exceptions.can_fault(masks) {
+            // The one way out that there is.
+            if board.watchdog.due().is_some() {
+                self.locked_up = true;
+                return Ok(());
+            }
+            return Err(BoardError::LockedUp { now: board.now, address: self.core.last_address() });
+        }
+        board.system.fault(status, address);
+        Ok(())
+    }
+
+    /// A word of the vector table, which is at the beginning of flash out of reset.
+    pub(super) fn vector(&self, number: u32) -> u32 {
+        let table = match self.core.board().system.vectors() {
+            0 => FLASH,
+            table => table,
+        };
+        self.core.word(table + 4 * number).unwrap_or(0)
+    }
+
+    /// Begins to serve an exception (ARM DDI 0403E, B1.5.6): its frame on the stack, its vector.
+    fn enter(&mut self, number: Number) {
+        let nested = self.board().system.exceptions.current().is_some();
+        frame::push(&mut self.core, nested);
+        let board = self.core.board_mut();
+        board.system.exceptions.enter(number);
+        if number == SERVO {
+            board.meter.begin(board.now);
+        }
+        let vector = match self.diverted {
+            Some((diverted, address)) if diverted == number => address | 1,
+            _ => self.vector(number.into()),
+        };
+        self.core.set_register(RegisterARM::XPSR, THUMB | u32::from(number));
+        self.core.set_register(RegisterARM::PC, vector);
+    }
+
+    /// Ends the exception that is being served (B1.5.8): back to what its frame says.
+    pub(super) fn leave(&mut self, word: u32) -> Result<(), BoardError> {
+        let Some(frame) = Frame::of(&self.core, word) else {
+            let stack = self.core.register(RegisterARM::MSP);
+            return self.fault(FaultStatus::State, stack);
+        };
+        let board = self.core.board_mut();
+        if board.system.exceptions.current() == Some(SERVO) {
+            board.meter.end(board.now);
+        }
+        board.system.exceptions.leave();
+        frame.pop(&mut self.core);
+        self.waiting = self.board().system.sleeps_on_exit() && frame.is_of_program();
+        Ok(())
+    }
+}

@@ -1,0 +1,296 @@
+//! Codec of a scene by the bits of its numbers, and of the board's certify reply.
+//!
+//! The compiler, the host and the board compute the same certificate; with this codec a test asks a
+//! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
+
+use firmware::certificate::{Answer, Assessment, Parameter, assess};
+use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
+use firmware::passivity::interval::Interval;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+
+/// Numbers in a polynomial.
+const TERMS: usize = MAX_DEGREE + 1;
+
+/// A scene as 64-bit words; an `f64` is its bits.
+pub type SceneWords = [u64; WORDS];
+
+/// Words of a scene: the type of its environment, each number with whether it is there, the side of a
+/// wall, and two polynomials.
+const WORDS: usize = 1 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
+
+/// An enclosure's ends as bits; `None` where the index does not exist.
+pub type IntervalBits = Option<(u64, u64)>;
+
+/// Certificate that the board computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CertifyReply {
+    /// Index of the environment alone.
+    pub alpha: IntervalBits,
+    /// Index behind the coupling.
+    pub alpha_coupled: IntervalBits,
+    /// Equations 17 to 19.
+    pub paper: Answer,
+    /// Theory, section 4.1.
+    pub exact: Answer,
+    /// Instructions that certifying took; 0 where nothing counts them.
+    pub instructions: u64,
+}
+
+/// A [`CertifyReply`] as words.
+pub type ReplyWords = [u64; 9];
+
+/// The words of a scene.
+pub fn encode(scene: &Scene) -> SceneWords {
+    let mut words = Cursor { words: [0; _], next: 0 };
+    words.push(match scene.environment {
+        Environment::DelayedSpring(_) => 0,
+        Environment::DamperWall(_) => 1,
+        Environment::FreeMode { .. } => 2,
+        Environment::FreeModeWall { .. } => 3,
+        Environment::Rational(_) => 4,
+        Environment::Stated(_) => 5,
+    });
+    for parameter in Parameter::ALL {
+        words.optional(scene.get(*parameter));
+    }
+    words.push(scene.environment.wall().is_some_and(|wall| wall.one_sided).into());
+    let rational = scene.environment.rational().unwrap_or(&NO_RATIONAL);
+    words.polynomial(&rational.numerator);
+    words.polynomial(&rational.denominator);
+    words.words
+}
+
+/// A polynomial that says nothing.
+const NOTHING: Coefficients = match Coefficients::new(&[1.0]) {
+    Some(one) => one,
+    None => panic!("one coefficient fits"),
+};
+
+/// Stands in where an environment is no rational function.
+const NO_RATIONAL: Rational =
+    Rational { numerator: NOTHING, denominator: NOTHING, delay: 0, unit_zeros: 0 };
+
+/// A scene without numbers.
+const BLANK: Scene = Scene {
+    device: Device { inertia: 0.0, damping: 0.0, passivity: None },
+    timing: Timing { period: 0.0, worst_period: None },
+    coupling: Coupling::Rigid,
+    environment: Environment::Rational(NO_RATIONAL),
+    torque_limit: None,
+};
+
+/// The scene of the words; `None` if they are none. Of what a type of environment only states, no board
+/// here knows a law.
+pub fn decode(words: &SceneWords) -> Option<Scene> {
+    let mut words = Cursor { words: *words, next: 0 };
+    let kind = words.take();
+    let wall = Wall::spring(0.0, 0);
+    let environment = match kind {
+        0 => Environment::DelayedSpring(wall),
+        1 => Environment::DamperWall(wall),
+        2 => Environment::FreeMode { residual: 0.0, delay: 0 },
+        3 => Environment::FreeModeWall { residual: 0.0, wall },
+        4 => Environment::Rational(NO_RATIONAL),
+        _ => return None,
+    };
+    let mut scene = Scene { environment, ..BLANK };
+    for parameter in Parameter::ALL {
+        if let Some(value) = words.take_optional() {
+            scene = scene.with(*parameter, value)?;
+        }
+    }
+    let one_sided = words.take() != 0;
+    if let Some(wall) = scene.environment.wall_mut() {
+        wall.one_sided = one_sided;
+    }
+    let (numerator, denominator) = (words.take_polynomial()?, words.take_polynomial()?);
+    if let Environment::Rational(rational) = &mut scene.environment {
+        (rational.numerator, rational.denominator) = (numerator, denominator);
+    }
+    Some(scene)
+}
+
+/// Certifies the scene of the words; `None` if they are malformed. `count` measures the
+/// instructions that this takes.
+pub fn certify(
+    words: &SceneWords,
+    count: impl FnOnce(&mut dyn FnMut()) -> u64,
+) -> Option<ReplyWords> {
+    let scene = decode(words)?;
+    let mut found = None;
+    let instructions = count(&mut || found = Some(assess(&scene)));
+    let Assessment { alpha, alpha_coupled, paper, exact, .. } = found?;
+    let mut words = Cursor { words: [0; _], next: 0 };
+    words.interval(alpha);
+    words.interval(alpha_coupled);
+    words.push(answer_code(paper));
+    words.push(answer_code(exact));
+    words.push(instructions);
+    Some(words.words)
+}
+
+/// The reply of the words; `None` if they are malformed.
+pub fn decode_reply(words: &ReplyWords) -> Option<CertifyReply> {
+    let mut words = Cursor { words: *words, next: 0 };
+    Some(CertifyReply {
+        alpha: words.take_interval(),
+        alpha_coupled: words.take_interval(),
+        paper: answer_from_code(words.take())?,
+        exact: answer_from_code(words.take())?,
+        instructions: words.take(),
+    })
+}
+
+/// An answer as a word.
+fn answer_code(answer: Answer) -> u64 {
+    match answer {
+        Answer::Pass => 0,
+        Answer::Fail => 1,
+        Answer::Undecided => 2,
+    }
+}
+
+/// The answer of a word.
+fn answer_from_code(word: u64) -> Option<Answer> {
+    [Answer::Pass, Answer::Fail, Answer::Undecided].into_iter().find(|a| answer_code(*a) == word)
+}
+
+/// Words, and the place of the next one.
+struct Cursor<const N: usize> {
+    words: [u64; N],
+    next: usize,
+}
+
+impl<const N: usize> Cursor<N> {
+    fn push(&mut self, word: u64) {
+        self.words[self.next] = word;
+        self.next += 1;
+    }
+
+    fn take(&mut self) -> u64 {
+        self.next += 1;
+        self.words[self.next - 1]
+    }
+
+    fn number(&mut self, value: f64) {
+        self.push(value.to_bits());
+    }
+
+    fn take_number(&mut self) -> f64 {
+        f64::from_bits(self.take())
+    }
+
+    fn optional(&mut self, value: Option<f64>) {
+        self.push(value.is_some() as u64);
+        self.number(value.unwrap_or(0.0));
+    }
+
+    fn take_optional(&mut self) -> Option<f64> {
+        let is_some = self.take() != 0;
+        let value = self.take_number();
+        is_some.then_some(value)
+    }
+
+    fn polynomial(&mut self, polynomial: &Coefficients) {
+        let values = polynomial.as_slice();
+        self.push(values.len() as u64);
+        for i in 0..TERMS {
+            self.number(values.get(i).copied().unwrap_or(0.0));
+        }
+    }
+
+    fn take_polynomial(&mut self) -> Option<Coefficients> {
+        let len = self.take() as usize;
+        let values: [f64; TERMS] = core::array::from_fn(|_| self.take_number());
+        Coefficients::new(values.get(..len)?)
+    }
+
+    fn interval(&mut self, interval: Option<Interval>) {
+        self.push(interval.is_some() as u64);
+        self.number(interval.map_or(0.0, Interval::lo));
+        self.number(interval.map_or(0.0, Interval::hi));
+    }
+
+    fn take_interval(&mut self) -> IntervalBits {
+        let is_some = self.take() != 0;
+        let ends = (self.take(), self.take());
+        is_some.then_some(ends)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(environment: Environment) -> Scene {
+        Scene {
+            device: Device { inertia: 0.1, damping: 0.2, passivity: Some(0.3) },
+            timing: Timing { period: 0.4, worst_period: None },
+            coupling: Coupling::Spring { stiffness: f64::MIN_POSITIVE },
+            environment,
+            torque_limit: Some(f64::INFINITY),
+        }
+    }
+
+    #[test]
+    fn scenes_survive_their_words() {
+        let wall = Wall {
+            stiffness: -1.5,
+            damping: 2.5,
+            filter: Some(0.75),
+            delay: 3,
+            face: -0.0,
+            one_sided: true,
+        };
+        let rational = Rational {
+            numerator: Coefficients::new(&[1.0, -0.0, 5e-324]).unwrap(),
+            denominator: Coefficients::new(&[0.1; TERMS]).unwrap(),
+            delay: 7,
+            unit_zeros: 2,
+        };
+        for environment in [
+            Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..wall }),
+            Environment::DamperWall(Wall { filter: None, ..wall }),
+            Environment::FreeMode { residual: 0.25, delay: 1 },
+            Environment::FreeModeWall { residual: 0.25, wall },
+            Environment::Rational(rational),
+        ] {
+            let asked = scene(environment);
+            assert_eq!(decode(&encode(&asked)), Some(asked));
+        }
+    }
+
+    #[test]
+    fn words_that_are_no_scene_are_refused() {
+        assert!(decode(&[u64::MAX; WORDS]).is_none());
+        assert!(decode(&[0; WORDS]).is_none());
+        let mut stated = encode(&scene(Environment::FreeMode { residual: 0.0, delay: 1 }));
+        stated[0] = 5;
+        assert!(decode(&stated).is_none());
+    }
+
+    #[test]
+    fn a_reply_carries_the_bits_of_the_assessment() {
+        let spring = Wall::spring(1.0, 1);
+        let scene = Scene {
+            torque_limit: None,
+            coupling: Coupling::Rigid,
+            ..scene(Environment::DelayedSpring(spring))
+        };
+        let words = encode(&scene);
+        let words = certify(&words, |run| {
+            run();
+            17
+        });
+        let found = assess(&scene);
+        let bits = |i: Option<Interval>| i.map(|i| (i.lo().to_bits(), i.hi().to_bits()));
+        let expected = CertifyReply {
+            alpha: bits(found.alpha),
+            alpha_coupled: bits(found.alpha_coupled),
+            paper: found.paper,
+            exact: found.exact,
+            instructions: 17,
+        };
+        assert_eq!(decode_reply(&words.unwrap()), Some(expected));
+    }
+}

@@ -1,0 +1,175 @@
+//! An accepted scene in the loop's units, as a search needs it, and the energy that its certificate
+//! allows.
+
+use std::f64::consts::{PI, TAU};
+
+use firmware::certificate::{Answer, Assessment, QuantizationBound, Resolution};
+use firmware::dac::DacCode;
+use firmware::encoder::CounterWidth;
+use firmware::number::Format;
+use firmware::scene::{Coupling, Scene};
+use firmware::servo::Simultaneous;
+use firmware::servo_loop::READ_WITHIN;
+use rand::Rng;
+
+use crate::norm::Errors;
+use crate::scenes::RandomScene;
+
+/// An accepted scene as numbers, in the loop's units: see [`crate::device`].
+#[derive(Clone, Copy, Debug)]
+pub struct NormalizedScene {
+    /// Damping of the simulated device.
+    pub damping: f64,
+    /// Updates that may be missed in a row.
+    pub tolerated: u32,
+    /// Whether codes are latched: only then can one be late. A simultaneous one is there at its
+    /// count, however long it took.
+    pub latched: bool,
+    /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
+    /// so much later.
+    pub overrun: f64,
+    /// Torque of one code of the converter.
+    pub torque_per_code: f64,
+    /// The largest torque of any of its sets.
+    pub bound: f64,
+    /// The largest compliance of any of its couplings.
+    pub compliance: f64,
+    /// The farthest face of any of its walls, in rad.
+    pub face: f64,
+    /// The most that encoder and converter move the torque.
+    pub error: f64,
+    /// The most that the numbers move the torque, within a turn of zero.
+    pub numbers: f64,
+    /// Encoder counts in a radian.
+    pub counts_per_radian: f64,
+    /// The fastest that the device may turn, in rad a period.
+    pub fastest: f64,
+    /// Angles, in rad, at which the runs are large.
+    pub size: f64,
+    /// The farthest place to arm at, in rad.
+    pub reach: f64,
+    /// Angles a sample at which the loop is likely at its worst.
+    pub angles: [f64; 4],
+    /// Injected damping in N m s/rad; zero without any.
+    pub injection: f64,
+    /// Sets that may be swapped in.
+    pub sets: usize,
+    /// Part of a period within which counts are read that are in time.
+    pub in_time: f64,
+}
+
+/// Damping in N m s/rad that a device may lose, everything else as it runs, before the certificate
+/// is void.
+///
+/// The margin of a board, which limits the torque of every scene; whether the scene is rendered in
+/// the mode that is run is not asked here.
+pub fn margin(assessment: &Assessment, scene: &Scene, injected: Option<f64>) -> f64 {
+    let timed = scene.certify_in(assessment.format).ok().map(|scene| scene.time::<Simultaneous>());
+    timed.and_then(Result::ok).map_or(0.0, |timed| timed.margin_with(injected.unwrap_or(0.0)))
+}
+
+/// The passivity that a scene declares.
+pub fn declared(scene: &Scene) -> f64 {
+    scene.device.passivity.unwrap_or(scene.device.damping)
+}
+
+/// An angle a sample below which nothing happens in the time that there is.
+const SLOWEST: f64 = 0.1;
+
+impl NormalizedScene {
+    /// Of a drawn scene and its other one, which were both accepted. `None` where no bound is
+    /// known on what encoder, numbers and converter do to the torque.
+    pub fn of(drawn: &RandomScene, assessments: &[Assessment], format: Format) -> Option<Self> {
+        let RandomScene { scene, transducers, .. } = drawn;
+        let declared = declared(scene);
+        let unit = declared / scene.timing.period;
+        let steps = Resolution::of(transducers, None);
+        let step = TAU / transducers.counts_per_turn;
+        // A rigid device has no more passivity than damping, whatever was declared.
+        let has = declared.min(scene.device.damping);
+        let (mut bound, mut compliance, mut face) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut error, mut numbers, mut damping) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let scenes = std::iter::once((scene, drawn.judged_as.as_ref()))
+            .chain(drawn.other.iter().map(|other| (other, None)));
+        let mut sets = 0;
+        for ((scene, judged_as), assessment) in scenes.zip(assessments) {
+            sets += 1;
+            let judged = judged_as.unwrap_or(scene);
+            let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
+            let whole = QuantizationBound::of(judged, format, &steps)
+                .map(|rest| Errors { position: rest.encoder.unwrap_or(0.0), numbers: rest.numbers })
+                .filter(|errors| errors.sum().is_finite());
+            let through = Errors::through(judged, format, largest).map(|e| e.over(0.5 * step));
+            // Where the rule allows any coupling that is as soft, no error has to come out through
+            // the coupling to be accounted for.
+            let alone = (assessment.paper == Answer::Pass)
+                .then(|| Errors::alone(judged, format, largest))
+                .flatten()
+                .map(|errors| errors.over(0.5 * step));
+            let off = [whole, through, alone].into_iter().flatten();
+            let off = off.min_by(|a, b| a.sum().total_cmp(&b.sum()))?;
+            let converter =
+                0.5 * transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+            let injected = drawn.rendering.injection.unwrap_or(0.0) / scene.timing.period;
+            error = error.max(off.position + converter + injected * step);
+            numbers = numbers.max(off.numbers);
+            bound = bound.max(largest);
+            if let Coupling::Spring { stiffness } = scene.coupling {
+                compliance = compliance.max(1.0 / stiffness);
+            }
+            face = face.max(scene.environment.wall().map_or(0.0, |wall| wall.face.abs()));
+            let lost = drawn.taken * margin(assessment, scene, drawn.rendering.injection);
+            damping = damping.max(drawn.damping.unwrap_or(has - lost));
+        }
+        let half = match transducers.counter {
+            CounterWidth::Bits16 => f64::from(1_u32 << 15),
+            CounterWidth::Bits32 => f64::from(1_u32 << 31),
+        };
+        let worst = scene.timing.worst_period.unwrap_or(scene.timing.period);
+        let periods = worst / scene.timing.period;
+        let cos = |c: f64| c.clamp(-1.0, 1.0).acos();
+        let theta = assessments.first().and_then(|a| a.cos_theta);
+        let theta = theta.map_or(1.0, |c| cos(c.midpoint())).clamp(0.02, PI);
+        Some(Self {
+            damping: (damping / declared).max(0.0),
+            tolerated: ((periods + 1e-9) as u32).saturating_sub(1),
+            latched: drawn.latched,
+            overrun: drawn.overrun,
+            in_time: READ_WITHIN / scene.timing.period,
+            torque_per_code: transducers.full_scale_torque
+                / f64::from(DacCode::CODES_TO_FULL_SCALE)
+                / unit,
+            bound: bound / unit,
+            compliance: compliance * unit,
+            face,
+            error: error / unit,
+            numbers: numbers / unit,
+            counts_per_radian: transducers.counts_per_turn / TAU,
+            // So that the counter does not wrap unseen in the longest gap that a run has.
+            fastest: 0.9 * half * step / 8.0,
+            size: drawn.size,
+            reach: drawn.reach,
+            angles: if theta < SLOWEST {
+                // As bad nearly up to there, and many times as fast.
+                [0.1, 0.2, 0.35, 0.6]
+            } else if periods > 1.0 {
+                [theta, theta / periods, PI / periods, 2.0 * PI / (periods + 1.0)]
+            } else {
+                [theta; 4]
+            },
+            injection: drawn.rendering.injection.unwrap_or(0.0),
+            sets,
+        })
+    }
+
+    /// A place for the board's zero, in rad.
+    pub fn place(&self, rng: &mut impl Rng) -> f64 {
+        match rng.random_range(0..4) {
+            0 => 0.0,
+            1 => self.size * rng.random_range(-1.0..1.0),
+            // So far from the board's zero, on either side.
+            2 => self.reach + self.size * rng.random_range(-2.0..2.0),
+            _ => -self.reach + self.size * rng.random_range(-2.0..2.0),
+        }
+    }
+}
