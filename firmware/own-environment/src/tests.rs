@@ -76,8 +76,7 @@ fn the_servo_renders_both_slopes_a_sample_late() {
     for (angle, slope, from) in [(0.05, 4.0, 0.02), (0.14, 24.0, 0.115)] {
         let mut torque = |angle| {
             // Until the coupling's deflection has settled.
-            (0..200).for_each(|_| drop(servo.tick_at(angle)));
-            servo.tick_at(angle).unwrap()
+            (0..200).map(|_| servo.tick_at(angle).unwrap()).last().unwrap()
         };
         let (below, at) = (torque(from), torque(angle));
         // Behind the coupling the slope is s / (1 + s / K_vc).

@@ -1,7 +1,7 @@
 //! What a tick does beside rendering while the servo is not simply running: requests, ramps and
 //! swaps. Kept out of line, so that the usual tick does not pay for it.
 
-use super::swap::{ARMING, SETTLING, SWAPPING};
+use super::swap::ARMING;
 use super::*;
 use crate::fault::FaultRecord;
 
@@ -27,7 +27,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.disarm(inbox);
         }
         match self.state {
-            State::Running => self.close_for_a_set(inbox),
+            State::Running => self.begin_swap(inbox),
             State::FadingIn => self.fade_in(inbox),
             State::FadingOut => self.fade_out(hardware, inbox),
             State::Settling => self.settle(inbox),
@@ -79,13 +79,6 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.rendering.servo_mut().clamp_to_held_torque();
     }
 
-    fn close_for_a_set(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
-        if inbox.has_set() {
-            self.ramp = SWAPPING;
-            self.begin_fading_out(AfterFade::Render);
-        }
-    }
-
     fn fade_in(&mut self, inbox: &Inbox<'_, PreparedServo<E, N, M>>) {
         if inbox.has_set() {
             return self.begin_fading_out(AfterFade::Render);
@@ -112,8 +105,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         match self.after_fade {
             AfterFade::Render => {
                 self.swap(inbox);
-                self.settling = SETTLING;
-                self.state = State::Settling;
+                self.begin_settling();
             }
             AfterFade::Release => {
                 hardware.amplifier(false);
@@ -124,31 +116,10 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         }
     }
 
-    fn settle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
-        if self.swap(inbox) {
-            self.settling = SETTLING;
-        }
-        self.settling = self.settling.saturating_sub(1);
-        if self.settling == 0 {
-            self.state = State::FadingIn;
-        }
-    }
-
     /// A tick without amplifier.
     fn idle(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         self.swap(inbox);
         self.fault_free_ticks = self.fault_free_ticks.saturating_add(1);
-    }
-
-    /// Puts the set that waits in the place of the running one, between two ticks and whole. To be
-    /// called with the clamp shut: the new set's is, too.
-    fn swap(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) -> bool {
-        let Some(mut set) = inbox.set() else { return false };
-        set.servo_mut().take_position_from(self.rendering.servo());
-        set.rest_here();
-        self.rendering = set;
-        inbox.notify(Notice::Applied);
-        true
     }
 
     fn status(&self, dropped: u32) -> Status {
