@@ -49,7 +49,7 @@ pub fn folder(file: &str) -> &Path {
 /// How the device is taken through a tick.
 #[derive(Debug, Args)]
 pub struct Steps {
-    /// Method of integration of the device; the servo is computed tick by tick in all of them
+    /// Method of integration of the device; the servo is computed tick by tick in every method
     #[arg(long, value_enum, default_value_t)]
     pub method: Method,
     /// Steps of the method in each tick
@@ -68,8 +68,8 @@ impl Steps {
 /// What the servo computes in.
 #[derive(Debug, Args)]
 pub struct Arithmetic {
-    /// Judge the coefficients as this number format rounds them: f32, or fixed point of 32 bits
-    /// such as i8f24; f64 are the numbers as they were written
+    /// Certify with the coefficients as this number format rounds them: f32, or 32-bit fixed point
+    /// such as i8f24; f64 does not round them
     #[arg(long, default_value = "f64", value_parser = number::format)]
     pub format: Format,
 }
@@ -87,7 +87,7 @@ impl Arithmetic {
 pub enum FormatArgument {
     /// Single-precision floating point.
     F32,
-    /// The scene's fixed-point format; a scene file's is I8F24.
+    /// The fixed-point format of the scene; of a scene file: I8F24.
     Fixed,
 }
 

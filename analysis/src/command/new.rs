@@ -10,10 +10,10 @@ use crate::toolchain::Sources;
 /// Arguments of `haptic new`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// What it is to be called: lower-case letters, digits and underscores
+    /// Name of the new scene: lower-case letters, digits and underscores
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// The scene that it begins as a copy of
+    /// Scene to copy
     #[arg(long, value_name = "SCENE", default_value = "damper_wall")]
     pub from: String,
 }

@@ -253,5 +253,5 @@ fn a_virtual_board_is_built_with_cmake_and_libclang_and_needs_no_emulator() {
     assert_eq!(plan(&person, tools), Plan::Ask(vec![Request::Native(none)]));
     assert_eq!(plan(&person, Tools::Compiler), Plan::Ready(Compiler::Own));
     let sentence = Request::Native(Native { cmake: false, ..complete().native }).to_string();
-    assert!(sentence.starts_with("install cmake, with which"), "{sentence}");
+    assert!(sentence.starts_with("install cmake, to build"), "{sentence}");
 }

@@ -24,17 +24,18 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
-    /// Sample rates in Hz, the horizontal axis
+    /// Range of the sample rate in Hz, the horizontal axis
     #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = positive_range,
           default_value = "500..100000", allow_hyphen_values = true)]
     pub rates: Range<f64>,
-    /// Stiffness in N m/rad, the vertical axis; otherwise all that there is to see
+    /// Range of the stiffness in N m/rad, the vertical axis; default: all data
     #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
     pub y: Option<Range<f64>>,
-    /// Counts of the encoder a turn; those of the scene's `[limits] encoder_step`, or 65536, if left out
+    /// Encoder counts per turn; default: from `encoder_step` in the scene's table `limits`, or
+    /// 65536
     #[arg(long, value_name = "N", value_parser = counts)]
     pub counts_per_rev: Option<f64>,
-    /// Part of the largest stiffness that is used, for the ripple: at all of it there is no bound
+    /// Fraction of the largest stiffness at which the ripple is computed: at 1 it has no bound
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
     pub used: f64,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::dac::DacCode;
 // What the servo computes for is what this board's output is linear over.
 const _: () = assert!(
     DAC_RANGE.codes_each_way() >= DacCode::CODES_TO_FULL_SCALE,
-    "this board's converter saturates within the codes of full scale"
+    "this board's DAC saturates within the codes of full scale"
 );
 
 /// A channel of a converter, written to by one register access.
