@@ -83,7 +83,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         significant(whole(curves.counts_per_turn), 7),
         significant(100.0 * curves.used, 3)
     );
-    let title = format!("{}: how stiff, how fast", shortened(&file.name, 48));
+    let title = format!("{}: largest stiffness over sample rate", shortened(&file.name, 48));
     let picture = chart::limits::limits(&title, &note, &drawn, &own, arguments.y.clone());
     let picture = picture.map_err(|error| match error {
         ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },
