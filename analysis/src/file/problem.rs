@@ -52,7 +52,7 @@ pub enum Problem {
         message: String,
     },
     /// A key twice in one table.
-    #[error("duplicate key `{key}`")]
+    #[error("the key `{key}` is set twice")]
     Duplicate {
         /// The key.
         key: String,
