@@ -142,7 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
             let sought = if files.iter().all(|file| file.chain.is_rigid()) {
                 Sought { which: "least", name: "device damping", unit, note: None }
             } else {
-                let note = Some("of the chain, this damper alone was changed");
+                let note = Some("only this damper of the chain was changed");
                 Sought { which: "least", name: "damping of the motor's mass", unit, note }
             };
             answer(arguments, &sought, &design::device(&files, &terms), &files)

@@ -28,7 +28,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, CommandError> {
     writeln!(
         io::stdout(),
         "{path}\n  \
-         is a copy of {from}: change what the hand feels there, and then\n  \
+         is a copy of {from}: change its environment, and then\n  \
          cargo haptic run {name}                               on this machine\n  \
          cargo haptic run {name} --target board:nucleo-g474re  as flashed, on a virtual board\n  \
          cargo haptic flash {name} --board nucleo-g474re       on a board",

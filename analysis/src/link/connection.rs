@@ -205,7 +205,7 @@ impl Link {
     /// Where the board does not answer.
     pub fn set(&mut self, changes: Changes) -> Result<Answer, LinkError> {
         let set = |id| ToBoard::Set { id, changes: changes.clone() };
-        let outcome = self.request("a change of its parameters", set)?;
+        let outcome = self.request("the change of its parameters", set)?;
         self.in_words(outcome, &changes)
     }
 
@@ -232,7 +232,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn arm(&mut self) -> Result<Answer, LinkError> {
-        Ok(self.request("to arm", |id| ToBoard::Arm { id })?.into())
+        Ok(self.request("the request to arm", |id| ToBoard::Arm { id })?.into())
     }
 
     /// Fades the torque out and switches the amplifier off.
@@ -240,7 +240,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn disarm(&mut self) -> Result<Answer, LinkError> {
-        Ok(self.request("to disarm", |id| ToBoard::Disarm { id })?.into())
+        Ok(self.request("the request to disarm", |id| ToBoard::Disarm { id })?.into())
     }
 
     /// What exactly runs.
@@ -248,9 +248,11 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
-        self.ask("what exactly runs", &ToBoard::Describe, QUESTION, |message| match message {
-            ToHost::Described(description) => Some(description),
-            _ => None,
+        self.ask("the request for its description", &ToBoard::Describe, QUESTION, |message| {
+            match message {
+                ToHost::Described(description) => Some(description),
+                _ => None,
+            }
         })
     }
 
@@ -259,7 +261,8 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn running(&mut self) -> Result<Running, LinkError> {
-        self.ask("which parameters run", &ToBoard::Get, QUESTION, |message| match message {
+        self.ask("the request for its parameters", &ToBoard::Get, QUESTION, |message| match message
+        {
             ToHost::Running(running) => Some(running),
             _ => None,
         })
@@ -270,10 +273,15 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
-        self.ask("how it is going", &ToBoard::Status, QUESTION, |message| match message {
-            ToHost::Status(status) => Some(status),
-            _ => None,
-        })
+        self.ask(
+            "the request for its status",
+            &ToBoard::Status,
+            QUESTION,
+            |message| match message {
+                ToHost::Status(status) => Some(status),
+                _ => None,
+            },
+        )
     }
 
     /// Says something that is not answered, or whose answer is taken with [`Self::receive`].

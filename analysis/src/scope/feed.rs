@@ -199,7 +199,7 @@ impl Feeder {
             }
             let Some(message) = link.receive(beat.min(Instant::now() + LOOK))? else {
                 if heard.elapsed() > SILENCE {
-                    return Err(End::Lost(link.silent("for its status", SILENCE)));
+                    return Err(End::Lost(link.silent("the request for its status", SILENCE)));
                 }
                 continue;
             };
