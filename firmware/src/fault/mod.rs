@@ -1,7 +1,7 @@
 //! What stops a servo: torque to zero, amplifier off, and a record of why.
 //!
 //! A fault is not a [limit reason](crate::torque::LimitReason), which only says why an output is
-//! less than was asked for. After a fault the motor stays off until somebody arms it again.
+//! less than was asked for. After a fault the motor stays off until it is armed again.
 
 mod retained;
 
