@@ -330,7 +330,7 @@ def change(pair):
     try:
         return name, float(value)
     except ValueError:
-        raise ValueError(f"`{value}` is no number for {name}") from None
+        raise ValueError(f"`{value}` is not a number for {name}") from None
 
 
 def main(arguments):

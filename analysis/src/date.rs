@@ -10,7 +10,7 @@ const EPOCH: &str = "SOURCE_DATE_EPOCH";
 
 /// The time that was asked for is none.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{EPOCH} = `{0}` is no number of seconds since 1970-01-01, up to the year 9999")]
+#[error("{EPOCH} = `{0}` is not a valid number of seconds since 1970-01-01, up to the year 9999")]
 pub struct InvalidDate(String);
 
 /// Today in UTC, as 2026-03-14; the day of `SOURCE_DATE_EPOCH` where that is set.

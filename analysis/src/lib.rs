@@ -68,13 +68,13 @@ pub mod quantity;
 pub mod terminal;
 pub mod text_table;
 
-/// The scene file of the README, as this library reads it.
+/// The scene file of the guide to certifying a wall, as this library reads it.
 ///
 /// ```
 /// use analysis::file::{Format, parse};
 ///
-/// let readme = include_str!("../../README.md");
-/// let (_, marked) = readme.split_once("<!-- file -->").expect("a marked block");
+/// let guide = include_str!("../../docs/certify.md");
+/// let (_, marked) = guide.split_once("<!-- file -->").expect("a marked block");
 /// let lines = marked.lines().skip(2).take_while(|line| !line.starts_with('`'));
 /// let text: String = lines.map(|line| format!("{line}\n")).collect();
 /// let file = parse("wall.toml", Format::Toml, &text)?;
@@ -83,4 +83,4 @@ pub mod text_table;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[cfg(doctest)]
-pub mod readme {}
+pub mod guide {}

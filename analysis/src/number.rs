@@ -15,7 +15,10 @@ pub fn format(name: &str) -> Result<Format, String> {
     if let Some(rounded) = lower.strip_suffix("-truncated") {
         return match format(rounded)? {
             Format::Fixed { fraction_bits } => Ok(Format::Truncated { fraction_bits }),
-            _ => Err("only fixed point is truncated, such as i8f24-truncated".to_owned()),
+            _ => {
+                Err("only a fixed-point format can be truncated, such as i8f24-truncated"
+                    .to_owned())
+            }
         };
     }
     match lower.as_str() {
@@ -32,9 +35,7 @@ pub fn format(name: &str) -> Result<Format, String> {
         Some((Some(before), Some(fraction_bits))) if before + fraction_bits == 32 => {
             Ok(Format::Fixed { fraction_bits })
         }
-        _ => Err("it must be f32, f64, or bits before and behind the point that make 32, such as \
-                  i8f24 or i16f16"
-            .to_owned()),
+        _ => Err("it must be f32, f64, or 32-bit fixed point, such as i8f24 or i16f16".to_owned()),
     }
 }
 

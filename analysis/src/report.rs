@@ -74,13 +74,13 @@ impl Page<'_> {
                     h1 { (report.name) }
                     (verdict(report))
                     (origin(self))
-                    h2 { "What was judged" }
+                    h2 { "Scene and verdict" }
                     (table("judged", &judged(self.file)))
                     h2 { "Numbers" }
                     (numbers(report, &self.file.scene))
                     @if !report.remedies.is_empty() {
                         h2 { "Remedies" }
-                        p { "Each of these changes alone would make it pass." }
+                        p { "Each of these changes alone is sufficient." }
                         ul id="remedies" { @for item in &report.remedies { li { (item) } } }
                     }
                     @if !report.warnings.is_empty() {
@@ -88,15 +88,16 @@ impl Page<'_> {
                         ul id="warnings" { @for item in &report.warnings { li { (item) } } }
                     }
                     h2 { "Assumptions" }
-                    p { "The verdict rests on these, and says nothing where they do not hold." }
+                    p { "The verdict holds only if these hold." }
                     ul id="assumptions" { @for item in &report.assumptions { li { (item) } } }
                     h2 { "Pictures" }
-                    (figure("nyquist", &self.nyquist, "Nyquist curves from velocity to torque. What \
-                        is judged is black: it must stay on the right of the critical line. What is \
-                        grey is shown beside it."))
-                    (figure("map", &self.map, "What is known of walls with this scene's device, \
-                        period, coupling and delay."))
-                    (figure("motion", &self.motion, "What the scene's simulation does."))
+                    (figure("nyquist", &self.nyquist, "Nyquist curves from velocity to torque. The \
+                                                       black curve decides: it must stay right of \
+                                                       the critical line. Grey curves are for \
+                                                       comparison."))
+                    (figure("map", &self.map, "Verdicts on walls with this scene's device, period, \
+                                               coupling and delay."))
+                    (figure("motion", &self.motion, "Simulation of the scene."))
                 }
             }
         };
@@ -148,7 +149,9 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
         rows.push(("Device", format!("a chain of {} masses", file.chain.masses().len())));
     }
     rows.push(("Hand, in the simulation", hand(file.hand)));
-    rows.extend(file.friction.map(|torque| number("Dry friction of the device", torque, "N m")));
+    rows.extend(
+        file.friction.map(|torque| number("Coulomb friction of the device", torque, "N m")),
+    );
     rows.extend(file.encoder_step.map(|angle| number("Encoder's step", angle, "rad")));
     rows.extend(file.full_scale.map(|torque| number("Torque at full scale", torque, "N m")));
     rows
@@ -160,10 +163,10 @@ fn delayed(samples: usize) -> (&'static str, String) {
 
 fn hand(hand: Option<Hand>) -> String {
     let Some(Hand { inertia, damping, stiffness }) = hand else {
-        return "none; the verdict is of every passive hand".to_owned();
+        return "none; the verdict holds in every passive hand".to_owned();
     };
     format!(
-        "{} kg m\u{b2}, {} N m s/rad, {} N m/rad; the verdict is of every passive hand",
+        "{} kg m\u{b2}, {} N m s/rad, {} N m/rad; the verdict holds in every passive hand",
         significant(inertia, 6),
         significant(damping, 6),
         significant(stiffness, 6)

@@ -16,7 +16,7 @@ pub enum RunCsvError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// A period was given for samples that have times of their own.
-    #[error("{file}: its times are in seconds; a period is for runs that are counted in ticks")]
+    #[error("{file} has times in seconds; --period is only for a file with tick numbers")]
     PeriodKnown {
         /// The file.
         file: String,
@@ -116,7 +116,7 @@ mod tests {
         let simulated = "time,position,velocity,torque,limit\n0,1,2,3,missed\n0.5,1,2,3,none\n";
         let found = trace(simulated, None).unwrap();
         assert_eq!((found.time_unit, found.limit[0]), (TimeUnit::Seconds, TickStatus::Missed));
-        assert!(trace(simulated, Some(0.25)).unwrap_err().contains("times are in seconds"));
+        assert!(trace(simulated, Some(0.25)).unwrap_err().contains("has times in seconds"));
     }
 
     #[test]

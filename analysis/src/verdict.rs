@@ -206,7 +206,10 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
 fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
     let to_spare = margin.map_or_else(String::new, |margin| {
         let margin = significant(margin, 4);
-        format!("; the device may lose {margin} N m s/rad of its damping with all else as it runs")
+        format!(
+            "; the device may lose {margin} N m s/rad of its damping with everything else \
+                 unchanged"
+        )
     });
     let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
     format!("certified: no passive hand can make it oscillate{to_spare}{rest}")

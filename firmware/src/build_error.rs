@@ -124,7 +124,7 @@ impl BuildError {
             Self::TorqueLimit { limit, full_scale } => {
                 t.push("the torque limit of ");
                 t.push_number(*limit);
-                t.push(" N m is above the converter's full scale of ");
+                t.push(" N m is above the DAC's full scale of ");
                 t.push_number(*full_scale);
                 t.push(" N m: lower it to that, or scale the amplifier up");
             }
@@ -137,10 +137,7 @@ impl BuildError {
             Self::Uncertified { format } => {
                 t.push("the scene is certified, but not with its coefficients rounded to ");
                 t.push(format.name().as_str());
-                t.push(
-                    ": ask for its certificate in that format, which says why, and leave more \
-                     margin",
-                );
+                t.push(": `haptic certify --format` says why; leave more margin");
             }
             Self::IllPosed { line, contact } => {
                 t.push(
@@ -171,14 +168,14 @@ impl BuildError {
                 t.push_number(*numerator as f64);
                 t.push(" over a denominator of degree ");
                 t.push_number(*denominator as f64);
-                t.push(" needs samples from the future");
+                t.push(" needs future samples");
             }
             Self::Injection { damping, room } => {
                 t.push("a damping of ");
                 t.push_number(*damping);
                 t.push(
-                    " N m s/rad that is switched on and off uses up as much of the device's \
-                     passivity, of which this scene leaves less than ",
+                    " N m s/rad that is switched on and off needs as much of the device's \
+                     passivity, but this scene leaves less than ",
                 );
                 t.push_number(*room);
                 t.push(" N m s/rad: inject less, or make the scene softer");
@@ -186,9 +183,9 @@ impl BuildError {
             Self::Speed { counts, half } => {
                 t.push("at the largest speed the encoder may move by ");
                 t.push_number(*counts);
-                t.push(" counts between two ticks, of which its counter tells only those below ");
+                t.push(" counts between two ticks, but its counter resolves only fewer than ");
                 t.push_number(*half);
-                t.push(": a shorter worst period or a wider counter tells them all");
+                t.push(": take a shorter worst period or a wider counter");
             }
             Self::Period { period, shortest, longest } => {
                 t.push("the period of ");
@@ -197,7 +194,7 @@ impl BuildError {
                 t.push_number(*shortest);
                 t.push(" and ");
                 t.push_number(*longest);
-                t.push(" s, what a board can pace");
+                t.push(" s, the range of a board");
             }
         }
         t

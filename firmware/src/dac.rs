@@ -16,7 +16,7 @@ pub trait Dac {
 /// assert_eq!(DacCode::new(4095).map(DacCode::get), Ok(4095));
 /// assert_eq!(
 ///     DacCode::new(4096).unwrap_err().to_string(),
-///     "4096 is no code of a 12-bit converter: the largest is 4095"
+///     "4096 is not a code of a 12-bit DAC: the largest is 4095"
 /// );
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -112,7 +112,7 @@ pub struct CodeOutOfRange {
 impl fmt::Display for CodeOutOfRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (code, largest) = (self.code, DacCode::MAX.0);
-        write!(f, "{code} is no code of a 12-bit converter: the largest is {largest}")
+        write!(f, "{code} is not a code of a 12-bit DAC: the largest is {largest}")
     }
 }
 

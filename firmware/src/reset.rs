@@ -62,7 +62,7 @@ impl ResetCause {
 impl fmt::Display for ResetCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Unknown => "the cause is not known",
+            Self::Unknown => "unknown cause",
             Self::PowerOn => "power on",
             Self::BrownOut => "brown-out: the supply was too low for a while",
             Self::Pin => "the reset pin",

@@ -21,7 +21,8 @@ use crate::link::Address;
 const BYTES: usize = 256;
 
 /// What is wrong with an address that is none of a socket.
-const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH; at a serial port there is a real board";
+const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH, not \
+                         on a serial port";
 
 /// Frames that are sent at a time at most.
 const FRAMES: usize = 16;
@@ -125,7 +126,7 @@ fn bind_unix(path: &Path) -> io::Result<UnixListener> {
         bound => return bound,
     }
     if !std::fs::symlink_metadata(path)?.file_type().is_socket() {
-        return Err(taken("a file of that name is there, and is no socket"));
+        return Err(taken("a file with this name exists, and is not a socket"));
     }
     match UnixStream::connect(path) {
         Err(error) if error.kind() == ErrorKind::ConnectionRefused => {

@@ -198,10 +198,10 @@ pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
         let gains = [found.gain_margin(), found.gain_reduction()];
         let mut words: Vec<_> = gains.into_iter().flatten().map(factor).collect();
         if words.is_empty() {
-            words.push("no gain margin: it never has the phase of -1".to_owned());
+            words.push("no gain margin: the phase is never -180 degrees".to_owned());
         }
         words.push(found.phase_margin().map_or_else(
-            || "no phase margin: its gain is never 1".to_owned(),
+            || "no phase margin: the gain is never 1".to_owned(),
             |margin| {
                 format!("phase margin {} degrees {}", significant(margin.value, 3), at(margin))
             },

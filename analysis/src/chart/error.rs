@@ -42,7 +42,7 @@ pub enum ChartError {
         path: PathBuf,
     },
     /// Both files are to have the numbers.
-    #[error("{output}: it has the numbers already; --csv {csv} goes with a picture")]
+    #[error("{output} has the numbers already; --csv {csv} needs a chart as output")]
     TwoTables {
         /// The file of the picture.
         output: PathBuf,
@@ -62,7 +62,7 @@ pub enum ChartError {
     },
     /// An axis was asked for where nothing is.
     #[error(
-        "there is nothing to draw from {} to {} on the {axis} axis: what there is goes from {} to {}",
+        "there is nothing to draw from {} to {} on the {axis} axis: the data go from {} to {}",
         number(wanted.start), number(wanted.end), number(there.start), number(there.end)
     )]
     NothingThere {
@@ -84,9 +84,9 @@ fn number(value: f64) -> String {
 
 fn unbuildable(why: Unbuildable) -> &'static str {
     match why {
-        Unbuildable::Improper => "it needs samples from the future",
+        Unbuildable::Improper => "it needs future samples",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",
-        Unbuildable::OutOfRange => "a number of it is out of range",
+        Unbuildable::OutOfRange => "one of its numbers is out of range",
         Unbuildable::Unstated => "its environment is stated by a bound alone",
     }
 }

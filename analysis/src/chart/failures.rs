@@ -37,7 +37,7 @@ type LogPlane<'a, 'b> = ChartContext<
 pub fn failures(regions: &[Region]) -> Result<Picture, ChartError> {
     let size = (SIZE.0, (SIZE.1 as i32 + ROW * ROWS - 20) as u32);
     draw_sized(size, |area| {
-        let title = "What methods of integration call stable";
+        let title = "Stability limits by method of integration";
         let area = area.margin(units(TOP), 0, 0, 0).titled(title, text(TITLE))?;
         let (plots, legend) = area.split_vertically(units(SIZE.1 as i32 - TITLE_ROOM - 20));
         let panels = plots.split_evenly((1, regions.len()));

@@ -127,7 +127,7 @@ fn name_curves(chart: &mut Plane<'_, '_>, found: &Identification, far: f64) -> D
     let mut rows = vec!["dots: responses measured".to_owned(), format!("solid: {}", model(found))];
     match disk(found) {
         Some(radius) => rows.extend([
-            format!("broken: disk, delta = {}", significant(found.disk.delta, 4)),
+            format!("dashed: disk, delta = {}", significant(found.disk.delta, 4)),
             format!("radius 1/(2 delta) = {}", significant(radius, 4)),
             format!("touched at {hertz} Hz"),
         ]),
@@ -164,7 +164,7 @@ fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     }
     bars(&mut chart, found, real)?;
     let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
-    let late = if late { "; broken: as it looks late" } else { "" };
+    let late = if late { "; dashed: with the delay" } else { "" };
     let value = significant(estimate.value, 5);
     caption(area, format!("b = {value} +- {reach} N m s/rad{late}"))
 }

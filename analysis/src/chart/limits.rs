@@ -149,7 +149,7 @@ fn write_legend(area: &Area<'_>, note: &str, curves: &[DelayCurve], own: &Own) -
                 format!("{k} N m/rad at {rate} Hz")
             },
         );
-        let what = if curve.is_coupling { " (any wall; the coupling is felt)" } else { "" };
+        let what = if curve.is_coupling { " (any wall: the coupling limits)" } else { "" };
         let words = format!("delay {}{what}: {end}", curve.delay);
         area.draw(&Text::new(words, (units(102), y), style()))?;
     }

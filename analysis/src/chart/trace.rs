@@ -203,10 +203,10 @@ fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> 
         });
     }
     if !trace.hand.is_empty() {
-        words.push("broken: angle that the hand wants".to_owned());
+        words.push("dashed: set-point of the hand".to_owned());
     }
     if !trace.hand_torque.is_empty() {
-        words.push("broken: torque of the hand".to_owned());
+        words.push("dashed: torque of the hand".to_owned());
     }
     if let Some(limit) = trace.torque_limit {
         let limit = significant(limit, 4);
@@ -228,7 +228,7 @@ fn words(trace: &Trace, times: &Range<f64>, angles: &Range<f64>) -> Vec<String> 
             TimeUnit::Ticks => "ticks",
         };
         let when = significant(lost, 6);
-        words.push(format!("not drawn from {when} {unit} on: too large for a picture"));
+        words.push(format!("not drawn from {when} {unit} on: too large for a chart"));
     }
     words
 }

@@ -26,7 +26,7 @@ use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Only take the scenes' programs apart: instructions of each part of a tick, state, flash, RAM
+    /// Print only the parts of a tick in the scenes' programs: instructions, state, flash, RAM
     #[arg(long)]
     pub parts: bool,
     #[command(flatten)]

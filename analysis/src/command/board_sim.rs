@@ -23,17 +23,17 @@ use crate::toolchain::{Board, NumberFormat};
 /// Arguments of `haptic board-sim`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a scene's program in firmware/src/bin, as damper_wall
+    /// Name of a scene's program in firmware/src/bin, for example damper_wall
     #[arg(value_name = "SCENE")]
     pub scene: String,
-    /// Where it listens: tcp://HOST:PORT, unix:PATH
+    /// Address to listen on: tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
-    /// A virtual board with what would be flashed to this one (nucleo-g474re, b-g431b-esc1, stm32f405),
-    /// instead of a thread with the same servo
+    /// Run the program as flashed, on a virtual board (nucleo-g474re, b-g431b-esc1, stm32f405);
+    /// default: a thread with the same servo
     #[arg(long, value_name = "BOARD", value_parser = Board::find)]
     pub board: Option<Board>,
-    /// End after so many seconds
+    /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
           allow_negative_numbers = true)]
     pub duration: Option<Duration>,

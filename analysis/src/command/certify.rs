@@ -23,8 +23,8 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub arithmetic: CoefficientFormat,
-    /// FILE has a scene as JSON on each line; print a result a line, in the same order. The exit status
-    /// is 0 where all lines were answered, whatever the verdicts and errors in them
+    /// Read one scene as JSON on each line of FILE, and print one result on each line, in the same
+    /// order. The exit status is 0 if every line has a result, whatever the verdicts and errors are
     #[arg(long)]
     pub batch: bool,
 }

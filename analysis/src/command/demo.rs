@@ -30,13 +30,13 @@ use crate::worst_hand::{self, HandCase};
 /// Arguments of `haptic demo`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Folder for the pictures
+    /// Folder for the charts
     #[arg(long, value_name = "DIR", default_value = "target/demo")]
     pub out: PathBuf,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
-    /// Ticks of each run; a picture needs two
+    /// Ticks of each run, at least 2
     #[arg(long, value_name = "N", default_value_t = DEFAULT_TICKS,
           value_parser = RangedU64ValueParser::<usize>::new().range(2..=MAX_TICKS))]
     pub ticks: usize,
@@ -179,7 +179,7 @@ fn touched(device: &Chain, held: &HandCase) -> Result<Vec<f64>, CommandError> {
 }
 
 fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError> {
-    writeln!(out, "past the line: the same wall, two samples late instead of one")?;
+    writeln!(out, "beyond the limit: the same wall, two samples late instead of one")?;
     match certify(&PAST_THE_LINE) {
         Ok(_) => writeln!(out, "  certified")?,
         Err(rejection) => writeln!(out, "  {rejection}")?,
@@ -200,7 +200,7 @@ fn past_the_line(out: &mut impl Write, folder: &Path) -> Result<(), CommandError
             significant(1e3 * PAST_THE_LINE.timing.period * ticks_to(1e3, &held), 3)
         )?;
         let picture = growth(
-            "Past the line: what the refused wall would have done",
+            "Beyond the limit: the rejected wall in a passive hand",
             PAST_THE_LINE.timing.period,
             &touched(&device, &held)?,
         )?;

@@ -20,15 +20,15 @@ pub struct Arguments {
     /// What is looked for.
     #[command(subcommand)]
     pub question: DesignGoal,
-    /// Part of the device's passivity to count on, above 0 and up to 1
+    /// Fraction of the device's passivity to use, above 0 and up to 1
     #[arg(long, global = true, value_name = "PART", default_value_t = 1.0, value_parser = part,
           allow_negative_numbers = true)]
     pub safety: f64,
-    /// Keep the coupling of the scene instead of the standard one, 2 delta / T, with which a device is
-    /// designed in any case
+    /// Keep the coupling of the scene instead of the standard coupling, 2 delta / T.
+    /// `design device` always takes the standard coupling
     #[arg(long, global = true)]
     pub keep_coupling: bool,
-    /// Write the scenes that certify into this folder instead of standard output
+    /// Write the certified scenes into this folder instead of standard output
     #[arg(long, short, global = true, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -39,35 +39,36 @@ pub struct Arguments {
 /// The directions of a design.
 #[derive(Debug, Subcommand)]
 pub enum DesignGoal {
-    /// The most of one quantity that may be rendered on the scene's device
+    /// Find the largest value of one quantity that certifies on the scene's device
     Largest {
-        /// Which quantity
+        /// Quantity to maximise
         #[arg(value_enum)]
         quantity: Quantity,
         /// Scene file
         file: String,
     },
-    /// The most of one quantity for each value of another
+    /// Find the largest value of one quantity for each value of another
     Border {
-        /// Quantity that is taken from none to the most
+        /// Quantity to vary from 0 to its largest value
         #[arg(value_enum)]
         first: Quantity,
-        /// Quantity whose limit is asked for
+        /// Quantity to maximise at each value
         #[arg(value_enum)]
         second: Quantity,
         /// Scene file
         file: String,
-        /// Number of values
+        /// Number of values of the first quantity
         #[arg(long, default_value_t = 21, value_parser = clap::value_parser!(u32).range(2..=100_000))]
         points: u32,
     },
-    /// The damping that a device needs for all these scenes, and the coupling that goes with it
+    /// Find the smallest device damping with which all these scenes certify, and the coupling for
+    /// it
     Device {
         /// Scene files
         #[arg(required = true)]
         files: Vec<String>,
     },
-    /// The longest period with which all these scenes may be rendered
+    /// Find the longest period with which all these scenes certify
     Period {
         /// Scene files
         #[arg(required = true)]
@@ -141,7 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
             let sought = if files.iter().all(|file| file.chain.is_rigid()) {
                 SoughtQuantity { which: "least", name: "device damping", unit, note: None }
             } else {
-                let note = Some("of the chain, this damper alone was changed");
+                let note = Some("only this damper of the chain was changed");
                 SoughtQuantity { which: "least", name: "damping of the motor's mass", unit, note }
             };
             answer(arguments, &sought, &design::device(&files, &terms), &files)

@@ -13,7 +13,7 @@ use crate::quantity::significant;
 /// Arguments of `haptic device`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// File with a device table, which may be a scene; TOML or JSON; `-` is standard input
+    /// Scene file, or a file with a table `device` alone; TOML or JSON; `-` is standard input
     #[arg(value_name = "FILE")]
     pub file: String,
     #[command(flatten)]

@@ -21,13 +21,13 @@ use crate::toolchain::{Tools, prepare};
 /// Arguments of `haptic failures`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// One case, or the walls on both sides of their limit; all of them otherwise
+    /// Name of one case; `walls` are walls on both sides of their limit. Default: all
     #[arg(long, value_name = "NAME", value_parser = names())]
     pub case: Option<String>,
-    /// Run the loops with the emulated board as their servo, too
+    /// Also run the loops with the servo on the emulated board
     #[arg(long)]
     pub emulate: bool,
-    /// Print one row a claim
+    /// Print one row for each claim
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]

@@ -12,19 +12,19 @@ use crate::toolchain::{self, Board, Memory, NumberFormat, Tools, probe};
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program in firmware/src/bin, as damper_wall or identify
+    /// Name of a program in firmware/src/bin, for example damper_wall or identify
     #[arg(value_name = "PROGRAM")]
     pub program: String,
-    /// The board: nucleo-g474re, b-g431b-esc1 or stm32f405
+    /// Board to build for: nucleo-g474re, b-g431b-esc1 or stm32f405
     #[arg(long, value_parser = Board::find)]
     pub board: Board,
-    /// Number format that it computes in
+    /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
-    /// Build, print the sizes and the program's file, and stop
+    /// Build only: print sizes and path of the program, and flash nothing
     #[arg(long)]
     pub build_only: bool,
-    /// The debug probe to use where there are several: VID:PID or VID:PID:SERIAL
+    /// Debug probe, if there are several: VID:PID or VID:PID:SERIAL
     #[arg(long, value_name = "PROBE")]
     pub probe: Option<String>,
 }

@@ -36,7 +36,7 @@ use status::{CommandError, CommandStatus};
 
 use crate::terminal;
 
-/// Certifies haptic scenes, runs them, and shows what they do.
+/// Certifies haptic scenes, runs them, and draws their behaviour.
 #[derive(Debug, Parser)]
 #[command(name = "haptic", version)]
 pub struct Arguments {
@@ -100,43 +100,44 @@ pub enum Command {
     Device(device::Arguments),
     /// Identify inertia, damping and passivity of a device from a measurement.
     Identify(identify::Arguments),
-    /// Begin a scene of your own, as a copy of another one.
+    /// Copy a scene's program, to begin a scene of your own.
     New(new::Arguments),
     /// Build a scene's program for a board and flash it.
     Flash(flash::Arguments),
-    /// Run a scene tick by tick: on this machine, on the emulated board, or as flashed on a virtual one.
+    /// Run a scene's servo tick by tick: on this machine, the emulated board or a virtual board.
     Run(run::Arguments),
-    /// Set up, build, certify and run all scenes on the emulated board, and draw what they did.
+    /// Install the tools, certify all scenes, run them on the emulated board, and draw them.
     Demo(demo::Arguments),
-    /// Draw scenes: Nyquist curves, maps, limits, traces.
+    /// Draw charts: Nyquist curves, Bode charts, maps, limits, traces.
     Chart(chart::Arguments),
-    /// Write one page about a scene: verdict, numbers, assumptions, pictures.
+    /// Write verdict, numbers, assumptions and charts of a scene into one HTML page.
     Report(report::Arguments),
-    /// Measure what a certificate and a tick cost.
+    /// Measure the cost of a certificate, a simulated step and a tick.
     Bench(bench::Arguments),
-    /// Show or change the parameters of a running board, which refuses what it cannot certify.
+    /// Show or change the parameters of a running board, arm it or disarm it.
     Tune(tune::Arguments),
-    /// Watch a running board, tune it, or record it.
+    /// Show, tune or record a running board.
     ///
-    /// In the view t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. Torque
-    /// is the coupling torque, as in every other trace; the motor applies its negative.
+    /// Keys: t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. The
+    /// torque is the coupling torque, as in every trace; the motor applies its negative.
     Scope(scope::Arguments),
-    /// Simulate a board in a simulated hand, to try `tune` and `scope` without hardware.
+    /// Simulate a board with device and hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
     BoardSim(board_sim::Arguments),
     /// Simulate a scene sample by sample, certified or not.
     Simulate(simulate::Arguments),
-    /// Compute the spectral radius of the loop, and up to which stiffness it is stable.
+    /// Compute the spectral radius of the loop and its critical stiffness.
     Stability(stability::Arguments),
-    /// Find the largest stiffness, the least damping or the longest period that certifies.
+    /// Find the largest stiffness, the smallest device damping or the longest period that
+    /// certifies.
     Design(design::Arguments),
-    /// Find the cheapest number format, or the simplest device model, that is enough for a scene.
+    /// Find the cheapest number format, or the simplest device model, that is accurate enough.
     Advise(advise::Arguments),
     /// Search for a passive hand in which a scene oscillates.
     WorstHand(worst_hand::Arguments),
     /// Print the JSON schema of scene files, a commented example, or the reference of all keys.
     Schema(schema::Arguments),
-    /// Show loops that other methods judge wrongly, beside what the certificate says of them.
+    /// Show loops that other methods judge wrongly, with the verdict of the certificate.
     Failures(failures::Arguments),
 }
 

@@ -10,10 +10,10 @@ use crate::toolchain::Sources;
 /// Arguments of `haptic new`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// What it is to be called: lower-case letters, digits and underscores
+    /// Name of the new scene: lower-case letters, digits and underscores
     #[arg(value_name = "NAME")]
     pub name: String,
-    /// The scene that it begins as a copy of
+    /// Scene to copy
     #[arg(long, value_name = "SCENE", default_value = "damper_wall")]
     pub from: String,
 }
@@ -28,7 +28,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     writeln!(
         io::stdout(),
         "{path}\n  \
-         is a copy of {from}: change what the hand feels there, and then\n  \
+         is a copy of {from}: change its environment, and then\n  \
          cargo haptic run {name}                               on this machine\n  \
          cargo haptic run {name} --target board:nucleo-g474re  as flashed, on a virtual board\n  \
          cargo haptic flash {name} --board nucleo-g474re       on a board",

@@ -72,7 +72,7 @@ fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let full_scale = program.transducers.full_scale_torque;
     let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
     format!(
-        "  still turning at the end: {} rad/s; friction of half a converter step, {} N m, stops it\n",
+        "  still turning at the end: {} rad/s; friction of half a DAC step, {} N m, stops it\n",
         significant(speed, 2),
         significant(half_step, 2)
     )

@@ -28,7 +28,7 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub arithmetic: CoefficientFormat,
-    /// The page, .html
+    /// File of the page, .html
     #[arg(short, long, value_name = "PAGE")]
     pub output: PathBuf,
 }
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let named = [(file.name.clone(), file.scene)];
     let map = match map::of_file(&file, (None, None), SIDE) {
         Err(CommandError::Map(MapError::NoWall { .. })) => {
-            missing("The environment has no wall, whose stiffness and damping a map would show.")
+            missing("The environment has no wall, so there is no map of stiffness and damping.")
         }
         Err(CommandError::Map(error @ (MapError::Device(_) | MapError::NoRange { .. }))) => {
             missing(&error.to_string())
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
             moved => motion(&drawable(moved?))?,
         }
     } else {
-        missing("The scene has no [simulation] table, which would say what to simulate.")
+        missing("The scene has no [simulation] table, so there is no simulation.")
     };
     let nyquist =
         match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named, &Window::default()) {
@@ -91,7 +91,7 @@ fn missing(why: &str) -> Figure {
 fn motion(moved: &Trace) -> Result<Figure, ChartError> {
     match (trace(moved, &Window::default()), moved.lost) {
         (Err(ChartError::TooFewPoints), Some(_)) => {
-            Ok(missing("The motion is too large for a picture from its start on."))
+            Ok(missing("The motion is too large for a chart from its start on."))
         }
         (drawn, _) => Ok(Figure::Drawn(drawn?)),
     }

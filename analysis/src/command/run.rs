@@ -81,34 +81,35 @@ impl fmt::Display for Target {
 /// Arguments of `haptic run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of a program in firmware/src/bin, as damper_wall; or, on the host, a scene file, whose
-    /// table human holds the device, and whose table simulation is for `haptic simulate`
+    /// Name of a program in firmware/src/bin, for example damper_wall; on the host also a scene
+    /// file. Its table `human` is the hand; its table `simulation` is read by `haptic simulate`
+    /// only
     #[arg(value_name = "SCENE")]
     pub scene: String,
-    /// Where it runs: host, qemu (the emulated board), or board:NAME, which is what would be flashed to
-    /// that board (nucleo-g474re, b-g431b-esc1, stm32f405) on a virtual one
+    /// Target: host, qemu (the emulated board), or board:NAME (the program as flashed, on a virtual
+    /// board: nucleo-g474re, b-g431b-esc1, stm32f405)
     #[arg(long, default_value_t = Target::Host)]
     pub target: Target,
-    /// Recorded counts (column `count`), one a tick, in place of the simulated device
+    /// Replay recorded counts, one for each tick (column `count`), instead of simulating the device
     #[arg(long, value_name = "FILE.csv")]
     pub replay: Option<PathBuf>,
-    /// Encoder counts a turn; the scene's own if left out
+    /// Encoder counts per turn; default: those of the scene
     #[arg(long, value_name = "N", value_parser = positive,
           allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
-    /// Motor torque in N m at the converter's largest code; the scene's own if left out
+    /// Motor torque in N m at the largest code of the DAC; default: that of the scene
     #[arg(long, value_name = "TORQUE", value_parser = positive,
           allow_negative_numbers = true)]
     pub full_scale: Option<f64>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
-    /// Ticks to run; a recording ends with its last row
+    /// Number of ticks; a recording ends with its last row
     #[arg(long, value_name = "N",
           value_parser = RangedU64ValueParser::<usize>::new().range(1..=MAX_TICKS))]
     pub ticks: Option<usize>,
-    /// Print a row a tick: tick,count,angle,torque,code,limit; the torque is the coupling's, and the
-    /// motor applies its negative
+    /// Print one row for each tick: tick,count,angle,torque,code,limit. The torque is the coupling
+    /// torque; the motor applies its negative
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]
@@ -246,7 +247,9 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
         }
     } else if !file.chain.is_rigid() || file.chain.actuator_lag() > 0.0 {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
-        notes.push(format!("{rigid}; `haptic simulate` has its masses and its amplifier's lag"));
+        notes.push(format!(
+            "{rigid}; `haptic simulate` includes its masses and its amplifier's lag"
+        ));
     }
     if file.simulation.is_some() {
         let instead = if is_replay {

@@ -10,7 +10,7 @@ use crate::file::{example, reference, schema};
 /// Arguments of `haptic schema`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Print a commented scene file that certifies, to start from
+    /// Print a commented scene file that certifies
     #[arg(long, value_name = "TYPE", conflicts_with = "reference",
           value_parser = clap::builder::PossibleValuesParser::new(example::names()))]
     pub example: Option<String>,

@@ -24,20 +24,20 @@ use crate::terminal;
 /// Arguments of `haptic scope`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
+    /// Address of the board: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
-    /// Record every tick that is sent, to a file, or with `-` to standard output
+    /// Record every received tick to a file; `-` is standard output
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// End after so many seconds
+    /// End after this number of seconds
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds,
           allow_negative_numbers = true)]
     pub duration: Option<Duration>,
-    /// Have only every so many ticks sent; as many as a terminal shows if left out
+    /// Receive only every Nth tick; default: as many as the terminal shows
     #[arg(long, value_name = "TICKS", value_parser = ticks, allow_negative_numbers = true)]
     pub every: Option<NonZeroU32>,
-    /// Seconds that the view shows
+    /// Width of the view in seconds
     #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds)]
     pub window: Duration,
 }

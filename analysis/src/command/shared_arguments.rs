@@ -48,7 +48,7 @@ pub fn folder(file: &str) -> &Path {
 /// Integration method of the device and its substeps.
 #[derive(Debug, Args)]
 pub struct IntegrationArguments {
-    /// Method of integration of the device; the servo is computed tick by tick in all of them
+    /// Method of integration of the device; the servo is computed tick by tick in every method
     #[arg(long, value_enum, default_value_t)]
     pub method: Method,
     /// Steps of the method in each tick
@@ -67,8 +67,8 @@ impl IntegrationArguments {
 /// Number format of the servo's coefficients.
 #[derive(Debug, Args)]
 pub struct CoefficientFormat {
-    /// Judge the coefficients as this number format rounds them: f32, or fixed point of 32 bits
-    /// such as i8f24; f64 are the numbers as they were written
+    /// Certify with the coefficients as this number format rounds them: f32, or 32-bit fixed point
+    /// such as i8f24; f64 does not round them
     #[arg(long, default_value = "f64", value_parser = number::format)]
     pub format: Format,
 }

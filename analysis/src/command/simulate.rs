@@ -23,8 +23,8 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub steps: IntegrationArguments,
-    /// Print a line for each sample: time (s), position (rad), velocity (rad/s), torque (N m), and
-    /// what limited it
+    /// Print one row for each sample: time (s), position (rad), velocity (rad/s), torque (N m),
+    /// limit reason
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
     #[command(flatten)]

@@ -37,9 +37,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 
 fn text(name: &str, stability: &Stability) -> String {
     let meaning = match stability.verdict {
-        Verdict::Stable => "STABLE: a small motion dies away",
+        Verdict::Stable => "STABLE: a small motion decays",
         Verdict::Unstable => "UNSTABLE: a small motion grows",
-        Verdict::Marginal => "MARGINAL: a small motion neither grows nor dies away",
+        Verdict::Marginal => "MARGINAL: a small motion neither grows nor decays",
     };
     let critical = match stability.critical_stiffness {
         Some(stiffness) => format!("{} N m/rad", significant(stiffness, 12)),

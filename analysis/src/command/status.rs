@@ -63,7 +63,7 @@ pub enum CommandError {
     },
     /// A scene file has no program for a simulated board.
     #[error(
-        "{file} is a file, and a simulated board runs a scene's program by its name: the programs are {programs}; \
+        "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \
          `cargo haptic new NAME` begins one"
     )]
     FileOnSimulatedBoard {
@@ -74,8 +74,8 @@ pub enum CommandError {
     },
     /// A scene file has no program for the board.
     #[error(
-        "{scene} is a scene file, which runs on the host only; a scene on the board is a program \
-         of its own, in firmware/src/bin: `cargo haptic new NAME` begins one"
+        "{scene} is a scene file, which runs on the host only; a board needs a program in \
+         firmware/src/bin: `cargo haptic new NAME` begins one"
     )]
     FileOnBoard {
         /// The scene.
@@ -144,15 +144,15 @@ pub enum CommandError {
     Map(#[from] crate::stability_map::MapError),
     /// The scene is certified at no sample rate, however soft its wall.
     #[error(
-        "{scene}: no stiffness is certified at any of these sample rates; its damping alone, or \
-         what its canceller takes away, is more than the device has"
+        "{scene}: no stiffness is certified at any of these sample rates; the damping of the wall \
+         alone, or the cancelled damping, exceeds the damping of the device"
     )]
     NoStiffness {
         /// Name of the scene.
         scene: String,
     },
     /// One file cannot have the pictures of all topics.
-    #[error("{}: one picture shows one topic; name one of {topics}", picture.display())]
+    #[error("{}: one chart shows one topic; name one of {topics}", picture.display())]
     NoTopic {
         /// The file.
         picture: PathBuf,
@@ -180,8 +180,7 @@ pub enum CommandError {
     },
     /// A picture that does not show all of a run; exit status 1, for it shows the rest.
     #[error(
-        "the run grows beyond what a picture can show: sample {sample} and all after it are left \
-         out"
+        "the motion exceeds the range of a chart: sample {sample} and all after it are not drawn"
     )]
     LeftOut {
         /// The first sample, counted from 0, that is not shown.
@@ -209,8 +208,8 @@ pub enum CommandError {
     Simulation(#[from] SimulationError),
     /// A simulated device that leaves; exit status 1, for what it does is the answer.
     #[error(
-        "the motion runs away: from sample {sample} on, at {} s, the device is more than {} rad from \
-         its zero; the loop is most likely not stable (`haptic stability`)",
+        "the motion diverges: from sample {sample} on, at {} s, the device is more than {} rad \
+         from its zero; the loop is probably unstable (`haptic stability`)",
         significant(*.time, 6), significant(*.farthest, 6)
     )]
     RanAway {

@@ -15,22 +15,22 @@ use crate::scope::formatting;
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
-#[command(after_help = "\
-A board that is armed lets go of the device while it swaps a set in: its torque fades out, the new set \
-starts at rest where the device is, and its torque fades in. With the usual fading of 0.1 s and a period \
-of 1 ms that takes up to 36 ms; the answer says how long at most.")]
+#[command(after_help = "An armed board takes the torque away while it swaps a set in: the torque \
+                        fades out, the new set starts at rest where the device is, and the torque \
+                        fades in. With the default fading of 0.1 s and a period of 1 ms this takes \
+                        up to 36 ms; the answer has the longest time.")]
 pub struct Arguments {
-    /// Where the board is: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
+    /// Address of the board: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
     #[arg(long, value_name = "PORT")]
     pub port: Address,
-    /// What to change, all or nothing, in SI units: stiffness=30 damping=0.01; without any, what
-    /// runs is printed
+    /// Parameters to change together, in SI units: stiffness=30 damping=0.01. A set that does not
+    /// certify changes nothing. Without parameters: print the running ones
     #[arg(value_name = "NAME=VALUE", value_parser = change)]
     pub changes: Vec<(Parameter, f64)>,
-    /// Switch the amplifier on afterwards; clears a fault
+    /// Switch the amplifier on after the change; clears a fault
     #[arg(long, conflicts_with = "disarm")]
     pub arm: bool,
-    /// Switch the amplifier off first
+    /// Switch the amplifier off before the change
     #[arg(long)]
     pub disarm: bool,
     #[command(flatten)]

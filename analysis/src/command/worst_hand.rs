@@ -41,7 +41,7 @@ fn text(name: &str, period: f64, search: &SearchResult) -> String {
     let number = |value: f64| significant(value, 6);
     let mut text = format!("scene    {name}\nsearched {tried} passive hands\n");
     if !oscillates {
-        text += "result   in none of them does the device oscillate\n";
+        text += "result   the device oscillates in none of them\n";
         if let Some(held) = lighter {
             let inertia = number(held.device_inertia);
             text += &format!(

@@ -108,23 +108,24 @@ pub enum EmulatorError {
     },
     /// The servo did not begin to run.
     #[error(
-        "the emulated board's servo was asked to arm, and does not run after {LONGEST_FADING} ticks"
+        "the servo of the emulated board was told to arm, but is not running after \
+         {LONGEST_FADING} ticks"
     )]
     NotArmed,
     /// Its serial port could not be reached.
     #[error("the emulated board's serial port: {0}")]
     Serial(#[source] io::Error),
     /// The board gave an answer that is none.
-    #[error("the emulated board's reply is not understood: its program is of another version")]
+    #[error("malformed reply from the emulated board: its program has another version")]
     NoReply,
     /// A board that is not QEMU's gave no answer.
-    #[error("the board gives no answer: {0}")]
+    #[error("no reply from the board: {0}")]
     Transport(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The board cannot compute what it was asked to.
     #[error(
-        "the emulated board has no program to measure this scene: it has one for a spring and a \
-         damper wall at zero and a one-sided damper wall anywhere, each one sample late, and for \
-         free mode one sample late"
+        "the emulated board has no benchmark program for this scene: it has programs for a spring \
+         or a damper wall at zero, a one-sided damper wall anywhere, and free mode, each one \
+         sample late"
     )]
     NoBenchProgram,
     /// The log does not say what a report needs.

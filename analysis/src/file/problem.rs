@@ -41,7 +41,7 @@ pub enum Problem {
         offset: usize,
     },
     /// Nothing in it.
-    #[error("there is nothing here; a scene has `name`, [device], [servo] and [environment]")]
+    #[error("the file is empty; a scene has `name`, [device], [servo] and [environment]")]
     Empty,
     /// Neither valid TOML nor valid JSON.
     #[error("not valid {format}: {message}")]
@@ -52,7 +52,7 @@ pub enum Problem {
         message: String,
     },
     /// A key twice in one table.
-    #[error("the key `{key}` is there twice; a key is set once")]
+    #[error("the key `{key}` is set twice")]
     Duplicate {
         /// The key.
         key: String,
@@ -98,7 +98,7 @@ pub enum Problem {
         bound: String,
     },
     /// A device that no certificate can be taken of.
-    #[error("`{key}` = {value} leaves the device no passivity to certify with: {reason}")]
+    #[error("`{key}` = {value} leaves the device without passivity: {reason}")]
     NoPassivity {
         /// Full name of the key.
         key: &'static str,

@@ -14,7 +14,7 @@ pub enum IdentifyError {
     Record(#[from] TableError),
     /// No stretch of steady sine.
     #[error(
-        "there is no stretch of at least {} periods of a steady sine in the torque{}",
+        "the torque has no steady sine of at least {} periods{}",
         LEAST_PERIODS, reasons(.0)
     )]
     NoSteps(Vec<LeftOut>),

@@ -133,8 +133,8 @@ pub fn identify(
 fn lost_in_noise(response: &Response) -> LeftOut {
     let counts = significant(response.counts, 2);
     let reason = format!(
-        "its motion of {counts} counts is lost in counts and noise: use a larger torque, or a longer \
-         tone"
+        "its motion of {counts} counts is below quantisation and noise: use a larger torque, or a \
+         longer tone"
     );
     LeftOut::new(response.omega, reason)
 }

@@ -53,8 +53,8 @@ pub enum PortError {
     Link(#[from] LinkError),
     /// Nobody who plays a sweep is there.
     #[error(
-        "no board that plays a sweep answers on {address} within {} s: flash `identify` \
-         (cargo haptic flash --board BOARD identify), and check the port and its speed",
+        "no board with the program `identify` answers on {address} within {} s: flash it (cargo \
+         haptic flash --board BOARD identify), and check the port and its speed",
         TIMEOUT.as_secs()
     )]
     Silent {
@@ -64,7 +64,7 @@ pub enum PortError {
     /// A description of another version, or none.
     #[error(
         "the board on {address} describes its sweep as `{line}`, which is not version \
-         {SWEEP_PROTOCOL}: flash `identify` anew"
+         {SWEEP_PROTOCOL} of the sweep protocol: flash `identify` again"
     )]
     Protocol {
         /// The address.
@@ -101,9 +101,7 @@ pub enum PortError {
         speed: f64,
     },
     /// A word that no version of this program knows.
-    #[error(
-        "the board ended the sweep with `{word}`, which means nothing here: flash `identify` anew"
-    )]
+    #[error("the board ended the sweep with the unknown word `{word}`: flash `identify` again")]
     Word {
         /// The word.
         word: String,
@@ -114,32 +112,32 @@ pub enum PortError {
 fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
     match end {
         SweepEnd::Done => "nothing is wrong".to_owned(),
-        SweepEnd::Stopped => "something else that has the port open stopped it".to_owned(),
+        SweepEnd::Stopped => "another program that has the port open stopped it".to_owned(),
         SweepEnd::Silent => format!(
-            "the board has not heard from this computer for {SILENCE} s: check the cable, and close \
-             whatever else has the port open"
+            "the board received nothing from this computer for {SILENCE} s: check the cable, and \
+             close other programs that have the port open"
         ),
         SweepEnd::MissedTick => {
-            "a tick of the board came late or not at all, so that a torque was \
-             held for too long: run it without a debugger, and report it if it comes again"
+            "the board missed a tick or was late, so a torque was held for too long: run it \
+             without a debugger, and report it if it happens again"
                 .to_owned()
         }
         SweepEnd::LostRow => {
-            "the line to this computer was too slow for the rows: connect the board \
-             without a hub, and close what else keeps this computer busy"
+            "the connection to this computer was too slow for the rows: connect the board without \
+             a hub, and end other programs that load this computer"
                 .to_owned()
         }
         SweepEnd::Travel => format!(
-            "the device moved by more than {travel} rad from where it began. If it drifts one way, \
+            "the device moved by more than {travel} rad from its start. If it drifts to one side, \
              trim the amplifier's offset; if it swings too far, lower the amplitudes of the lowest \
-             tones, or raise LIMITS.travel (firmware/src/bin/identify.rs) where there is room"
+             tones, or raise LIMITS.travel (firmware/src/bin/identify.rs) if the device has room"
         ),
         SweepEnd::Speed => format!(
             "the device was faster than {speed} rad/s: lower the amplitudes, or raise LIMITS.speed \
-             (firmware/src/bin/identify.rs) where it may be"
+             (firmware/src/bin/identify.rs) if the device may be faster"
         ),
-        SweepEnd::Jump => "the encoder moved as no device can: check its cable, its supply and \
-             counts_per_turn"
+        SweepEnd::Jump => "the encoder jumped by more than the device can move: check its cable, \
+                           its supply and counts_per_turn"
             .to_owned(),
     }
 }

@@ -33,11 +33,14 @@ pub enum AddressError {
     )]
     Empty,
     /// A network address without a port.
-    #[error("`{0}` is no network address: tcp://HOST:PORT, with a port from 1 to 65535")]
+    #[error(
+        "`{0}` is not a valid network address: expected tcp://HOST:PORT, with a port from 1 to \
+             65535"
+    )]
     NoTcpPort(String),
     /// A speed that is no number.
     #[error(
-        "`{0}` is no speed: a serial port's is a whole number of bit/s, as in /dev/ttyACM0@{BAUD}"
+        "`{0}` is not a valid speed: expected a whole number of bit/s, as in /dev/ttyACM0@{BAUD}"
     )]
     NoBaud(String),
 }

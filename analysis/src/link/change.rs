@@ -22,11 +22,11 @@ pub fn change(text: &str) -> Result<(Parameter, f64), String> {
         text.split_once('=').ok_or_else(|| format!("expected NAME=VALUE, got `{text}`"))?;
     let parameter = tuning::parameter(name).ok_or_else(|| {
         let names: Vec<&str> = TUNABLE.iter().map(|(name, _)| *name).collect();
-        format!("there is no parameter `{name}` to tune; there are {}", names.join(", "))
+        format!("there is no parameter `{name}`; the parameters are {}", names.join(", "))
     })?;
     match value.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((parameter, value)),
-        _ => Err(format!("`{value}` is no finite number")),
+        _ => Err(format!("`{value}` is not a finite number")),
     }
 }
 
@@ -56,7 +56,7 @@ pub fn line(text: &str) -> Result<Changes, String> {
     let words = together.split([' ', '\t', ',']).filter(|word| !word.is_empty());
     let changes = words.map(change).collect::<Result<Vec<_>, _>>()?;
     if changes.is_empty() {
-        return Err("nothing is changed: NAME=VALUE".to_owned());
+        return Err("expected NAME=VALUE, got nothing".to_owned());
     }
     collect(&changes).map_err(|twice| twice.to_string())
 }
@@ -71,9 +71,9 @@ mod tests {
         assert_eq!(change("coupling.stiffness=4e1"), Ok((Parameter::CouplingStiffness, 40.0)));
         for (text, part) in [
             ("stiffness", "NAME=VALUE"),
-            ("stiffnes=3", "there are stiffness, damping"),
-            ("damping=soft", "no finite number"),
-            ("damping=inf", "no finite number"),
+            ("stiffnes=3", "the parameters are stiffness, damping"),
+            ("damping=soft", "not a finite number"),
+            ("damping=inf", "not a finite number"),
         ] {
             let refused = change(text).unwrap_err();
             assert!(refused.contains(part), "{refused}");
@@ -95,7 +95,7 @@ mod tests {
         for (text, part) in [
             ("", "NAME=VALUE"),
             ("stiffness", "NAME=VALUE"),
-            ("stiffness = = 3", "no finite number"),
+            ("stiffness = = 3", "not a finite number"),
             ("damping = 1, damping = 1", "damping is given twice"),
             ("stiffness 20", "NAME=VALUE"),
         ] {

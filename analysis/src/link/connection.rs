@@ -210,7 +210,7 @@ impl Link {
     /// Where the board does not answer.
     pub fn set(&mut self, changes: Changes) -> Result<RequestResult, LinkError> {
         let set = |id| ToBoard::Set { id, changes: changes.clone() };
-        let outcome = self.request("a change of its parameters", set)?;
+        let outcome = self.request("the change of its parameters", set)?;
         self.in_words(outcome, &changes)
     }
 
@@ -241,7 +241,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn arm(&mut self) -> Result<RequestResult, LinkError> {
-        Ok(self.request("to arm", |id| ToBoard::Arm { id })?.into())
+        Ok(self.request("the request to arm", |id| ToBoard::Arm { id })?.into())
     }
 
     /// Fades the torque out and switches the amplifier off.
@@ -249,7 +249,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn disarm(&mut self) -> Result<RequestResult, LinkError> {
-        Ok(self.request("to disarm", |id| ToBoard::Disarm { id })?.into())
+        Ok(self.request("the request to disarm", |id| ToBoard::Disarm { id })?.into())
     }
 
     /// What exactly runs.
@@ -257,9 +257,11 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
-        self.ask("what exactly runs", &ToBoard::Describe, QUERY_TIMING, |message| match message {
-            ToHost::Described(description) => Some(description),
-            _ => None,
+        self.ask("the request for its description", &ToBoard::Describe, QUERY_TIMING, |message| {
+            match message {
+                ToHost::Described(description) => Some(description),
+                _ => None,
+            }
         })
     }
 
@@ -268,9 +270,11 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
-        self.ask("which parameters run", &ToBoard::Get, QUERY_TIMING, |message| match message {
-            ToHost::ActiveParameters(parameters) => Some(parameters),
-            _ => None,
+        self.ask("the request for its parameters", &ToBoard::Get, QUERY_TIMING, |message| {
+            match message {
+                ToHost::ActiveParameters(parameters) => Some(parameters),
+                _ => None,
+            }
         })
     }
 
@@ -279,9 +283,11 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
-        self.ask("how it is going", &ToBoard::Status, QUERY_TIMING, |message| match message {
-            ToHost::Status(status) => Some(status),
-            _ => None,
+        self.ask("the request for its status", &ToBoard::Status, QUERY_TIMING, |message| {
+            match message {
+                ToHost::Status(status) => Some(status),
+                _ => None,
+            }
         })
     }
 

@@ -35,8 +35,8 @@ pub enum LinkError {
     },
     /// The other end has closed the socket before it said who it is.
     #[error(
-        "{address} is in use by another program: a board has one at a time. If that is `haptic \
-         scope`, press t in it to tune, A to arm, d to disarm; or end it first"
+        "{address} is in use by another program: a board serves one at a time. If it is `haptic \
+         scope`, press t there to tune, A to arm, d to disarm; or end it first"
     )]
     InUse {
         /// The address.
@@ -44,8 +44,8 @@ pub enum LinkError {
     },
     /// A board of another version.
     #[error(
-        "the board on {address} runs `{program}` with version {theirs} of the protocol, and this \
-         program speaks version {PROTOCOL}: flash it anew"
+        "the board on {address} runs `{program}` with version {theirs} of the protocol, but this \
+         program speaks version {PROTOCOL}: flash the board again"
     )]
     Protocol {
         /// The address.

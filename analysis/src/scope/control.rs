@@ -67,7 +67,10 @@ impl Reply {
             Self::Asked => format!("{what} ..."),
             Self::Answered(RequestResult::Done) => format!("{what}: done"),
             Self::Answered(RequestResult::Refused(sentence)) => format!("{what}: {sentence}"),
-            Self::Unanswered => format!("{what}: the board has not answered; it may have done it"),
+            Self::Unanswered => format!(
+                "{what}: the board has not answered; it may have executed \
+                                         the request"
+            ),
             Self::Busy => {
                 format!("{what}: not sent; the board has not answered the last request yet")
             }
@@ -90,7 +93,7 @@ pub enum Action {
 /// The keys, as the last line of the view names them.
 pub const KEYS: &str = "q quits   t tunes   A arms   d disarms";
 /// And where a line is typed.
-pub const PROMPT_KEYS: &str = "Enter sends   Esc gives up";
+pub const PROMPT_KEYS: &str = "Enter sends   Esc cancels";
 
 /// The line that is typed, and what came of the last one.
 #[derive(Clone, Debug, Default, PartialEq)]

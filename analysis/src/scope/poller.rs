@@ -209,7 +209,7 @@ impl PollerThread {
             }
             let Some(message) = link.receive(beat.min(Instant::now() + POLL_INTERVAL))? else {
                 if heard.elapsed() > SILENCE {
-                    return Err(PollEnd::Lost(link.silent("for its status", SILENCE)));
+                    return Err(PollEnd::Lost(link.silent("the request for its status", SILENCE)));
                 }
                 continue;
             };

@@ -45,9 +45,9 @@ pub enum SimulationError {
     },
     /// The motion over a period is out of range.
     #[error(
-        "the motion over a period of {period:e} s of a machine with rates of up to {rate:.1e} per \
-         second is beyond the range of numbers; look at that period, and at the inertia, damping \
-         and stiffness of device and hand"
+        "overflow: the motion over a period of {period:e} s, with rates of up to {rate:.1e} per \
+         second, exceeds the range of numbers; check the period, and inertia, damping and \
+         stiffness of device and hand"
     )]
     TooFast {
         /// Largest of the machine's rates in 1/s, or of their squares in 1/s^2.
@@ -57,8 +57,8 @@ pub enum SimulationError {
     },
     /// The motion grows beyond the range of numbers.
     #[error(
-        "the motion grows beyond the range of numbers: there is none from sample {sample} on, which \
-         is at {} s; the loop is not stable (`haptic stability`)", significant(*.time, 6)
+        "overflow: the motion exceeds the range of numbers from sample {sample} on, at {} s; the \
+         loop is unstable (`haptic stability`)", significant(*.time, 6)
     )]
     Overflow {
         /// The first sample, counted from 0, of which something is no finite number.
@@ -67,7 +67,10 @@ pub enum SimulationError {
         time: f64,
     },
     /// No eigenvalues were found.
-    #[error("the eigenvalues of the closed loop were not found; its numbers are too far apart")]
+    #[error(
+        "the eigenvalues of the closed loop did not converge: its numbers differ too much in \
+             magnitude"
+    )]
     Eigenvalues,
 }
 
@@ -79,9 +82,9 @@ impl From<Unbuildable> for SimulationError {
 
 fn unbuildable(error: Unbuildable) -> &'static str {
     match error {
-        Unbuildable::Improper => "its environment needs samples from the future",
+        Unbuildable::Improper => "its environment needs future samples",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",
-        Unbuildable::OutOfRange => "a number of it is out of range",
+        Unbuildable::OutOfRange => "one of its numbers is out of range",
         Unbuildable::Unstated => "its environment is stated by a bound alone",
     }
 }

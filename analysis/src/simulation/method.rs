@@ -11,14 +11,14 @@ use super::plant::{INPUTS, Input, Plant};
 /// A method of integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Method {
-    /// Matrix exponential: no error of method, whatever the step.
+    /// Matrix exponential: exact for every step.
     #[default]
     Exact,
-    /// Explicit Euler: all states from the rates at the start of the step.
+    /// Explicit Euler: all states from the derivatives at the start of the step.
     Euler,
     /// Semi-implicit Euler: the positions from the velocities at the end of the step.
     SemiImplicit,
-    /// Runge-Kutta of fourth order.
+    /// Fourth-order Runge-Kutta.
     Rk4,
     /// Trapezoidal rule.
     Tustin,

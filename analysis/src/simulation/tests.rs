@@ -252,5 +252,5 @@ fn a_scene_without_a_law_is_refused() {
     let rational = Rational { numerator, denominator, delay: 0, unit_zeros: 0 };
     let scene = paper(Environment::Rational(rational));
     let error = simulate(&moving(&scene, 10, 0.0), Integration::default()).unwrap_err();
-    assert!(error.to_string().contains("samples from the future"), "{error}");
+    assert!(error.to_string().contains("future samples"), "{error}");
 }

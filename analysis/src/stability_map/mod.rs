@@ -60,8 +60,8 @@ impl Region {
 pub enum MapError {
     /// Nothing of the environment is a stiffness or a damping.
     #[error(
-        "{scene}: a map is drawn over stiffness and damping of a wall, and this environment has \
-         none; it must be a delayed-spring, a damper-wall or a free-mode-wall"
+        "{scene}: a map shows stiffness and damping of a wall, but this environment has no wall; \
+         it must be a delayed-spring, a damper-wall or a free-mode-wall"
     )]
     NoWall {
         /// Name of the scene.

@@ -88,7 +88,7 @@ fn the_closed_form_is_the_border_of_the_papers_rule() {
 fn an_environment_without_a_wall_has_no_map() {
     let free = file("type = \"free-mode\"\nresidual = 0.001", STANDARD);
     let error = Family::of(&free).unwrap_err().to_string();
-    assert!(error.starts_with("a wall: a map is drawn over"), "{error}");
+    assert!(error.starts_with("a wall: a map shows stiffness and damping"), "{error}");
 }
 
 /// Couplings and walls of every kind, one-sided ones and such as may miss updates among them.

@@ -38,7 +38,7 @@ pub enum AptError {
     /// Packages would be removed, and nobody has said yes.
     #[error(
         "installing {wanted} would remove packages of this machine, so nothing was done: it \
-         {changes}\nlook at that, and where it is right do it yourself:\n  {command}"
+         {changes}\ncheck these changes; if they are right, run this yourself:\n  {command}"
     )]
     Removes {
         /// The packages that are wanted.

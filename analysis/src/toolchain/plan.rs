@@ -235,8 +235,8 @@ impl fmt::Display for ManualStep {
                     tools.iter().filter(|(there, _)| !there).map(|(_, name)| *name).collect();
                 write!(
                     f,
-                    "install {}, with which the virtual board's processor is built: apt install \
-                     cmake make g++ pkg-config libclang-dev (Debian, Ubuntu), dnf install cmake make \
+                    "install {}, to build the processor of the virtual board: apt install cmake \
+                     make g++ pkg-config libclang-dev (Debian, Ubuntu), dnf install cmake make \
                      gcc-c++ pkgconf clang-devel (Fedora), pacman -S cmake make gcc pkgconf clang \
                      (Arch), brew install cmake pkgconf llvm (macOS)",
                     missing.join(" and ")

@@ -14,7 +14,7 @@ use super::{BuildError, TARGET};
 #[derive(Debug, thiserror::Error)]
 pub enum SetupError {
     /// The person has to do something first.
-    #[error("building and running the board's programs needs more than this machine has:{}", bullets(.0))]
+    #[error("tools to build and run the programs for boards are missing:{}", bullets(.0))]
     Missing(Vec<ManualStep>),
     /// A step could not be begun.
     #[error("`{step}` could not be run: {source}")]

@@ -26,8 +26,8 @@ pub enum ProbeError {
     Start(#[source] io::Error),
     /// There is no debug probe.
     #[error(
-        "no debug probe is connected, or it may not be used: plug the board's USB port in (on \
-         Linux, with the rules of https://probe.rs/docs/getting-started/probe-setup)"
+        "no debug probe was found: connect the USB port of the board (on Linux, access needs the \
+         udev rules of https://probe.rs/docs/getting-started/probe-setup)"
     )]
     NoProbe,
     /// The program does not say which chip it is for.

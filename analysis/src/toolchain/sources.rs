@@ -17,7 +17,7 @@ pub struct Sources {
 #[derive(Debug, thiserror::Error)]
 pub enum SourcesError {
     /// The source is not where it was when this program was built.
-    #[error("the workspace is no longer at {0}: run `haptic` from it by `cargo haptic`")]
+    #[error("the workspace is no longer at {0}: run `cargo haptic` in the workspace")]
     NoWorkspace(PathBuf),
     /// A file could not be read or written.
     #[error("{path}: {source}")]
@@ -36,7 +36,7 @@ pub enum SourcesError {
         scenes: Vec<String>,
     },
     /// A new scene cannot have this name.
-    #[error("a scene cannot be called `{name}`: {why}")]
+    #[error("`{name}` is not a valid name of a scene: {why}")]
     Name {
         /// The name.
         name: String,
@@ -44,7 +44,7 @@ pub enum SourcesError {
         why: BadName,
     },
     /// A new scene's file is there.
-    #[error("{} is there already; it is left as it is", .0.display())]
+    #[error("{} exists already; nothing was changed", .0.display())]
     Exists(PathBuf),
 }
 
@@ -53,15 +53,15 @@ pub enum SourcesError {
 pub enum BadName {
     /// It is no name of a module.
     #[error(
-        "it must be of lower-case letters, digits and underscores, and begin with a letter, as \
+        "expected lower-case letters, digits and underscores, with a letter first, for example \
          soft_wall"
     )]
     Letters,
     /// It is too long for a board's messages.
-    #[error("it is {0} bytes long, and at most {LONGEST} fit")]
+    #[error("it has {0} bytes, and at most {LONGEST} are allowed")]
     Long(usize),
     /// It means something else to Rust or to cargo.
-    #[error("the compiler or the firmware uses this name")]
+    #[error("the name is reserved by the compiler or the firmware")]
     Taken,
 }
 
@@ -297,10 +297,10 @@ mod tests {
 
         let said = |name, from| sources.begin(name, from).unwrap_err().to_string();
         fs::write(&path, "mine").unwrap();
-        assert!(said("soft", "wall").ends_with("soft.rs is there already; it is left as it is"));
+        assert!(said("soft", "wall").ends_with("soft.rs exists already; nothing was changed"));
         assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
         assert_eq!(said("x", "identify"), "there is no scene identify; there are wall");
-        assert!(said("match", "wall").starts_with("a scene cannot be called `match`: "));
+        assert!(said("match", "wall").starts_with("`match` is not a valid name of a scene: "));
         assert!(!sources.file("match").exists());
     }
 }

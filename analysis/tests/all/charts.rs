@@ -186,7 +186,7 @@ fn panels_of_a_tradeoff_are_chosen_by_case_and_error() {
     assert!(nothing.status.code() == Some(2) && said.contains(words), "{said}");
     assert!(!folder.path().join("new").exists());
     let all = chart(folder.path(), &["tradeoff", "--draw-only", "-o", kept, "--picture", "a.svg"]);
-    assert!(String::from_utf8(all.stderr).unwrap().contains("one picture shows one topic"));
+    assert!(String::from_utf8(all.stderr).unwrap().contains("one chart shows one topic"));
     let alone = chart(folder.path(), &["tradeoff", "servo", "--case", "damper_wall"]);
     assert!(String::from_utf8(alone.stderr).unwrap().contains("--picture"));
 }
@@ -321,7 +321,7 @@ fn what_cannot_be_drawn_is_a_bad_question() {
         ),
         (
             &["nyquist", "wall.toml", "-o", "b.csv", "--csv", "c.csv"],
-            "b.csv: it has the numbers already; --csv c.csv goes with a picture",
+            "b.csv has the numbers already; --csv c.csv needs a chart as output",
         ),
         (&["limits", "wall.toml", "-o", "no/b.csv"], "no/b.csv: the numbers cannot be written"),
         (&["nyquist", "wall.toml", "--x", "9..3", "-o", "a.svg"], "9 must be less than 3"),
@@ -339,21 +339,21 @@ fn what_cannot_be_drawn_is_a_bad_question() {
         (&["nyquist", "wall.toml", "-o", "taken.svg"], "taken.svg: the picture cannot be written"),
         (&["nyquist", "none.toml", "-o", "a.svg"], "none.toml"),
         (&["nyquist", "-o", "a.svg"], "FILE"),
-        (&["map", "free.toml", "-o", "a.svg"], "a map is drawn over stiffness and damping"),
+        (&["map", "free.toml", "-o", "a.svg"], "a map shows stiffness and damping"),
         (&["map", "wall.toml", "--stiffness", "9:3", "-o", "a.svg"], "9 must be less than 3"),
         (&["map", "wall.toml", "--points", "1", "-o", "a.svg"], "1 is not in 4..=25000000"),
         (&["limits", "damped.toml", "-o", "a.svg"], "no stiffness is certified"),
         (&["limits", "wall.toml", "--rates", "0:10", "-o", "a.svg"], "0 must be above 0"),
-        (&["trace", "moving.toml", "--period", "1", "-o", "a.svg"], "its times are in seconds"),
+        (&["trace", "moving.toml", "--period", "1", "-o", "a.svg"], "has times in seconds"),
         (
             &["trace", "moving.toml", "--x=-5..-1", "-o", "a.svg"],
-            "there is nothing to draw from -5 to -1 on the horizontal axis: what there is goes from 0 \
-             to 0.05",
+            "there is nothing to draw from -5 to -1 on the horizontal axis: the data go from 0 to \
+             0.05",
         ),
         (&["trace", "moving.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
-        (&["nyquist", "wall.toml", "--x=-5..-1", "-o", "a.svg"], "goes from -0.022 to -0.001"),
+        (&["nyquist", "wall.toml", "--x=-5..-1", "-o", "a.svg"], "go from -0.022 to -0.001"),
         (&["nyquist", "free.toml", "--y=5..7", "-o", "a.svg"], "on the vertical axis"),
-        (&["bode", "wall.toml", "--x=1e6..1e7", "-o", "a.svg"], "goes from 0.005 to 500"),
+        (&["bode", "wall.toml", "--x=1e6..1e7", "-o", "a.svg"], "go from 0.005 to 500"),
         (&["bode", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
         (&["limits", "wall.toml", "--y=1e9..1e10", "-o", "a.svg"], "on the vertical axis"),
         (&["trace", "none.csv", "-o", "a.svg"], "none.csv: cannot be read"),

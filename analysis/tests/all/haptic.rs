@@ -122,23 +122,20 @@ fn steps_are_held_against_friction() {
     let hum = 0.5e-4 * 924.0 + 0.5e-3;
     assert!((said["rest"]["hum"].as_f64().unwrap() / hum - 1.0).abs() < 1e-9);
     let message = said["message"].as_str().unwrap();
-    let unless =
-        "at rest it may hum by up to 0.0468 N m unless the device has 0.0468 N m of friction";
+    let unless = "at rest a limit cycle of up to 0.0468 N m is possible unless the device has 0.0468 N m of \
+         Coulomb friction";
     assert!(message.ends_with(unless), "{message}");
     assert!(said["rest"]["comes_to_rest"].is_null() && said.get("warnings").is_none());
     assert_eq!(judge("friction = 0.0468", steps)["rest"]["comes_to_rest"], true);
     let weak = judge("friction = 0.0467", steps);
     assert_eq!(weak["rest"]["comes_to_rest"], false);
     let warning = weak["warnings"][0].as_str().unwrap();
-    assert!(
-        warning.contains("0.0467 N m is below") && warning.contains("(converter)"),
-        "{warning}"
-    );
+    assert!(warning.contains("0.0467 N m is lower") && warning.contains("(DAC)"), "{warning}");
     // What is not stated is not judged, and the assumption says so.
     let some = judge("friction = 0.05", "encoder_step = 1e-4");
     assert!(some["rest"]["comes_to_rest"].is_null());
     let assumptions = some["assumptions"].to_string();
-    assert!(assumptions.contains("the converter's step is not stated"), "{assumptions}");
+    assert!(assumptions.contains("the step of the DAC is not stated"), "{assumptions}");
     let strong = judge("", "torque = 3.0\nfull_scale = 2.0");
     assert!(strong["warnings"][0].as_str().unwrap().contains("full scale of 2 N m"));
 }
@@ -377,7 +374,7 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     // 2 delta / T at this rate.
     assert!((answer["coupling_stiffness"].as_f64().unwrap() - 88.0).abs() < 1e-6);
     let coarse = format(answer, "i16f16")["rejected"].to_string();
-    assert!(coarse.contains("hum") && coarse.contains("is above 0.0005 N m"), "{coarse}");
+    assert!(coarse.contains("limit cycle") && coarse.contains("is above 0.0005 N m"), "{coarse}");
     // What f32 rounds away a rad off zero is too much for this, and 31 bits are not.
     let output = advise(&["--hum", "0.0005", "--error", "2e-6"]);
     let answer = &lines(&output)[0];
@@ -396,7 +393,7 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     let answer = &lines(&output)[0];
     assert_eq!(answer["format"], "f32");
     assert!(answer["encoder_hum"].as_f64().unwrap() > 0.0005);
-    assert!(answer["message"].as_str().unwrap().contains("counts a turn in place of 1000"));
+    assert!(answer["message"].as_str().unwrap().contains("counts per turn instead of 1000"));
 }
 
 /// The converter's largest code is the torque that a file says, whatever the scene is limited to.
@@ -487,7 +484,8 @@ fn friction_of_the_device_ends_a_hum() {
     assert_eq!((status, &answer["format"]), (Some(0), &"f32".into()), "{answer}");
     let message = answer["message"].as_str().unwrap();
     assert!(
-        message.contains("the device's friction of 0.0508") && message.contains("keeps it still")
+        message.contains("the device's friction of 0.0508")
+            && message.contains("prevents a limit cycle")
     );
     assert!(answer["encoder_hum"].as_f64().unwrap() > 1e-3, "without friction it hums");
     let formats = answer["formats"].as_array().unwrap();
@@ -503,13 +501,13 @@ fn friction_of_the_device_ends_a_hum() {
     let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();
     assert_eq!(coarse["rest"]["comes_to_rest"], false, "{coarse}");
     let reasons = coarse["rejected"].to_string();
-    assert!(reasons.contains("hum 0.00") && reasons.contains("is below that"), "{coarse}");
+    assert!(reasons.contains("limit cycle 0.00") && reasons.contains("N m is lower"), "{coarse}");
     // Too little for the encoder alone.
     let (status, answer) = advise(0.99 * encoder);
     assert_eq!(status, Some(1), "{answer}");
     let message = answer["message"].as_str().unwrap();
     assert!(message.starts_with("no:") && message.contains("friction of 0.0457"), "{message}");
-    assert!(message.contains("is below that"), "{message}");
+    assert!(message.contains("N m is lower"), "{message}");
     // A program's scene does not say: 924 N m/rad times half of its count are 0.0473 N m.
     let program = |friction: &str| {
         let question = ["advise", "damper_wall", "--hum", "0.001", "--rate", "1000"];

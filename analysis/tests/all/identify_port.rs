@@ -162,7 +162,7 @@ fn a_torque_that_is_cut_off_is_refused() {
 fn a_port_without_a_sweep_says_what_to_flash() {
     for (board, words) in [
         (Board { says: Some(""), ..Board::default() }, "cargo haptic flash --board BOARD identify"),
-        (Board { says: Some("identify,9,1\n"), ..Board::default() }, "flash `identify` anew"),
+        (Board { says: Some("identify,9,1\n"), ..Board::default() }, "flash `identify` again"),
         (
             Board { dies_at: Some(5000), ..Board::default() },
             "has sent nothing for 2 s after 5000 of 52500",

@@ -99,7 +99,7 @@ fn a_device_that_is_not_rigid_is_said_to_be_none() {
     assert_eq!(run.status.code(), Some(1));
     let found: Value = serde_json::from_slice(&run.stdout).unwrap();
     assert_eq!((&found["rigid"], &found["passivity"]), (&false.into(), &Value::Null), "{found}");
-    assert!(found["notes"][0].as_str().unwrap().contains("a hand that holds its far end"));
+    assert!(found["notes"][0].as_str().unwrap().contains("a hand that holds the far end"));
     assert!(std::fs::read_to_string(table.path()).unwrap().contains("# passivity: none"));
     let delta = number(&answer(&["device", path]), "/delta");
     let measured = number(&found, "/disk/delta");

@@ -48,7 +48,7 @@ impl Drop for Scene {
 fn a_new_file_is_all_that_the_commands_need() {
     let scene = Scene::begin();
     let again = complaint(haptic(&["new", NAME]));
-    assert!(again.contains("is there already"), "{again}");
+    assert!(again.contains("exists already"), "{again}");
 
     // The copy is what it was copied from, tick by tick.
     let copied = |name| haptic(&["run", name, "--csv", "--ticks", "1000"]);
@@ -92,18 +92,18 @@ fn a_name_that_cannot_be_one_is_refused() {
     for (name, why) in [
         ("Soft-Wall", "lower-case letters"),
         ("../wall", "lower-case letters"),
-        ("device", "uses this name"),
-        ("loop", "uses this name"),
+        ("device", "is reserved by"),
+        ("loop", "is reserved by"),
         ("a_wall_whose_name_says_more_than_fits", "at most 32"),
     ] {
         let said = complaint(haptic(&["new", name]));
-        assert!(said.contains(&format!("cannot be called `{name}`")), "{said}");
+        assert!(said.contains(&format!("`{name}` is not a valid name")), "{said}");
         assert!(said.contains(why), "{said}");
     }
     let said = complaint(haptic(&["new", "fine", "--from", "nothing"]));
     assert!(said.contains("there is no scene nothing") && said.contains("free_mode"), "{said}");
     for name in ["damper_wall", "identify"] {
-        assert!(complaint(haptic(&["new", name])).contains("is there already"));
+        assert!(complaint(haptic(&["new", name])).contains("exists already"));
     }
 }
 

@@ -1,13 +1,25 @@
-//! The pictures of the README are what its commands draw. With `PICTURES=overwrite` they become it.
+//! The pictures of the documents are what the commands of the charts' guide draw. With
+//! `PICTURES=overwrite` they become it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::common::{program, read, root};
 
-/// The commands of the README that draw, each as its arguments.
-fn commands(readme: &str) -> Vec<Vec<String>> {
-    let (_, marked) = readme.split_once("<!-- pictures -->\n```sh\n").expect("a marked block");
+/// The documents that show them.
+const DOCUMENTS: [&str; 7] = [
+    "README.md",
+    "docs/build.md",
+    "docs/certify.md",
+    "docs/charts.md",
+    "docs/measure.md",
+    "docs/rate-and-format.md",
+    "docs/set-up.md",
+];
+
+/// The commands of the guide that draw, each as its arguments.
+fn commands(guide: &str) -> Vec<Vec<String>> {
+    let (_, marked) = guide.split_once("<!-- pictures -->\n```sh\n").expect("a marked block");
     let (lines, _) = marked.split_once("```").expect("an end");
     lines.lines().map(|line| words(line.strip_prefix("cargo haptic ").unwrap())).collect()
 }
@@ -22,12 +34,12 @@ fn words(line: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_pictures_of_the_readme_are_what_its_commands_draw() {
+fn the_pictures_of_the_documents_are_what_commands_draw() {
     let overwrite = std::env::var_os("PICTURES").is_some_and(|value| value == "overwrite");
-    let readme = read(root().join("README.md"));
+    let guide = read(root().join("docs/charts.md"));
     let folder = tempfile::tempdir().unwrap();
     let mut drawn = Vec::new();
-    for mut command in commands(&readme) {
+    for mut command in commands(&guide) {
         let output = command.iter().position(|word| word == "-o").expect("a picture") + 1;
         let kept = PathBuf::from(&command[output]);
         let picture = folder.path().join(kept.file_name().unwrap());
@@ -46,16 +58,31 @@ fn the_pictures_of_the_readme_are_what_its_commands_draw() {
         drawn.push(kept);
     }
     // Nothing is shown or kept that no command draws.
-    let shown = readme.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-    let of_tables = |link: &&str| link.starts_with(TABLES);
-    for picture in shown.filter(|link| link.ends_with(".svg") && !of_tables(link)) {
-        assert!(drawn.contains(&PathBuf::from(picture)), "{picture}");
+    for document in DOCUMENTS {
+        let text = read(root().join(document));
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        // All are below the repository, one folder deep or none.
+        let shown = links.map(|link| link.strip_prefix("../").unwrap_or(link));
+        let of_tables = |link: &&str| link.starts_with(TABLES);
+        for picture in shown.filter(|link| link.ends_with(".svg") && !of_tables(link)) {
+            assert!(drawn.contains(&PathBuf::from(picture)), "{document}: {picture}");
+        }
     }
     for file in std::fs::read_dir(root().join("analysis/pictures")).unwrap() {
         let file = file.unwrap().path();
         let file = file.strip_prefix(root()).unwrap().to_owned();
         let is_drawn = drawn.contains(&file) || file == Path::new(TABLES);
         assert!(is_drawn || file.extension().unwrap() == "toml", "{file:?}");
+    }
+}
+
+/// The documents say of both that they are certified.
+#[test]
+fn the_scenes_of_the_pictures_are_certified() {
+    for name in ["wall.toml", "push.toml"] {
+        let scene = root().join("analysis/pictures").join(name);
+        let judged = program(&["certify"]).arg(scene).output().unwrap();
+        assert_eq!(judged.status.code(), Some(0), "{name}: {judged:?}");
     }
 }
 

@@ -274,7 +274,7 @@ fn talks_to_a_board() {
         (&["fly"][..], "there is no command fly"),
         (&["set", "stifness=3"], "there is no parameter `stifness`; there are coupling.stiffness,"),
         (&["set", "stiffness"], "`stiffness` is not NAME=VALUE"),
-        (&["set", "stiffness=much"], "`much` is no number for stiffness"),
+        (&["set", "stiffness=much"], "`much` is not a number for stiffness"),
         (&["set"], "set takes a NAME=VALUE or more"),
         (&["stream"], "stream takes two numbers: TICKS and EVERY"),
         (&[], "a command must follow the port"),

@@ -1,12 +1,22 @@
-//! What the README shows is what the program prints, and what the repository holds.
+//! What the README and the guides show is what the program prints, and what the repository holds.
 
 use std::path::Path;
 
 use crate::common::{answer, haptic, program, read, root};
 
 /// The documents that name commands of the program.
-const DOCUMENTS: [&str; 6] = [
+const DOCUMENTS: [&str; 16] = [
     "README.md",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "docs/build.md",
+    "docs/certify.md",
+    "docs/charts.md",
+    "docs/guarantees.md",
+    "docs/measure.md",
+    "docs/rate-and-format.md",
+    "docs/set-up.md",
     "firmware/boards.md",
     "firmware/PROTOCOL.md",
     "firmware/THEORY.md",
@@ -14,9 +24,11 @@ const DOCUMENTS: [&str; 6] = [
     "analysis/virtual-board/faults.md",
 ];
 
-/// The fenced block behind `<!-- name -->` in the README.
-fn block(readme: &str, name: &str) -> String {
-    let (_, rest) = readme.split_once(&format!("<!-- {name} -->\n```")).expect("a marked block");
+/// The fenced block behind `<!-- name -->` in a document.
+fn block(document: &str, name: &str) -> String {
+    let text = read(root().join(document));
+    let marked = text.split_once(&format!("<!-- {name} -->\n```"));
+    let (_, rest) = marked.unwrap_or_else(|| panic!("{document} has no block `{name}`"));
     let (_, body) = rest.split_once('\n').expect("a line");
     body.split_once("```").expect("an end").0.to_owned()
 }
@@ -26,15 +38,15 @@ fn without_instructions(text: &str) -> Vec<&str> {
     text.lines().filter(|line| !line.contains("instructions per tick")).collect()
 }
 
-/// Also compares the picture that the README shows.
+/// Also compares the picture that the guide shows.
 #[test]
-fn the_demo_prints_what_the_readme_shows() {
+fn the_demo_prints_what_the_guide_shows() {
     let out = tempfile::tempdir().unwrap();
     let pictures = out.path().to_str().unwrap();
     let run = program(&["demo", "--out", pictures]).current_dir(root()).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let printed = String::from_utf8(run.stdout).unwrap().replace(pictures, "target/demo");
-    let shown = block(&read(root().join("README.md")), "demo");
+    let shown = block("docs/set-up.md", "demo");
     assert_eq!(without_instructions(&printed), without_instructions(&shown));
 
     let name = "nyquist_delayed_wall.svg";
@@ -44,33 +56,32 @@ fn the_demo_prints_what_the_readme_shows() {
 
 #[test]
 fn the_scene_of_the_readme_is_the_program_and_its_refusal_the_compilers() {
-    let readme = read(root().join("README.md"));
     let program = read(root().join("firmware/src/bin/damper_wall.rs"));
     // The program has more, before and behind.
     let mut lines = program.lines();
-    for line in block(&readme, "scene").lines() {
+    for line in block("README.md", "scene").lines() {
         assert!(
             lines.any(|other| other == line),
             "the README's scene is not the program's: {line}"
         );
     }
 
-    let scene = block(&readme, "file").replace("damping = 0.01 ", "damping = 0.0115 ");
+    let scene = block("docs/certify.md", "file").replace("damping = 0.01 ", "damping = 0.0115 ");
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), scene).unwrap();
     let judge = |path: &Path| {
         answer(&haptic(&["certify", "--json", path.to_str().unwrap()]))["message"].to_string()
     };
     let sentence = judge(file.path());
-    let refusal = block(&readme, "refusal");
+    let refusal = block("README.md", "refusal");
     assert!(refusal.contains(sentence.trim_matches('"')), "{sentence}");
-    std::fs::write(file.path(), block(&readme, "file")).unwrap();
+    std::fs::write(file.path(), block("docs/certify.md", "file")).unwrap();
     assert!(judge(file.path()).contains("certified"));
 }
 
 #[test]
-fn what_is_flashed_does_on_a_virtual_board_what_the_readme_shows() {
-    let shown = block(&read(root().join("README.md")), "board");
+fn what_is_flashed_does_on_a_virtual_board_what_the_guide_shows() {
+    let shown = block("docs/build.md", "board");
     let (command, shown) = shown.split_once('\n').expect("a command");
     let arguments = command.strip_prefix("$ cargo haptic ").expect("a command of the program");
     let run = haptic(&arguments.split(' ').collect::<Vec<_>>());
@@ -129,4 +140,28 @@ fn commands_and_options_that_documents_name_are_there() {
         }
     }
     assert!(count > 30, "only {count} options were seen");
+}
+
+/// The names of all commands, as the help lists them.
+fn commands() -> Vec<String> {
+    let help = String::from_utf8(haptic(&["--help"]).stdout).unwrap();
+    let (_, list) = help.split_once("Commands:\n").expect("a list of commands");
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    // The lines below a command's first are further to the right.
+    let named = lines.filter_map(|line| line.strip_prefix("  ").filter(|l| !l.starts_with(' ')));
+    let names = named.filter_map(|line| line.split(' ').next());
+    names.filter(|&name| name != "help").map(str::to_owned).collect()
+}
+
+#[test]
+fn the_table_of_the_readme_lists_every_command() {
+    let readme = read(root().join("README.md"));
+    let rows = readme.lines().filter_map(|line| line.strip_prefix("| `cargo haptic "));
+    let mut listed: Vec<_> =
+        rows.map(|row| row.split([' ', '`']).next().unwrap().to_owned()).collect();
+    let mut wanted = commands();
+    assert!(wanted.len() > 15, "{wanted:?}");
+    listed.sort();
+    wanted.sort();
+    assert_eq!(listed, wanted);
 }

@@ -174,7 +174,7 @@ fn tune_says_for_how_long_an_armed_board_lets_go() {
         assert_eq!(text(&output.stdout).contains(said), lets_go, "{arguments:?}: {output:?}");
     }
     let help = rig.haptic(&["tune", "--help"]);
-    assert!(text(&help.stdout).contains("A board that is armed lets go"), "{help:?}");
+    assert!(text(&help.stdout).contains("An armed board takes the torque away"), "{help:?}");
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_bad_question_is_status_2() {
     for (arguments, part) in [
         (["tune", "stiffnes=30"], "there is no parameter `stiffnes`"),
         (["tune", "stiffness"], "NAME=VALUE"),
-        (["tune", "damping=nan"], "no finite number"),
+        (["tune", "damping=nan"], "not a finite number"),
         (["scope", "--for=-1"], "greater than 0"),
         (["scope", "--every=0"], "`0` must be a whole number from 1 to 4294967295"),
     ] {
@@ -551,11 +551,11 @@ fn a_twin_that_is_told_to_end_or_killed_is_in_nobodys_way() {
     // A file that somebody keeps there is not removed.
     std::fs::write(&path, "a scene").unwrap();
     for (arguments, words) in [
-        (["free_mode", "--port", &port], "a file of that name is there, and is no socket"),
+        (["free_mode", "--port", &port], "a file with this name exists, and is not a socket"),
         (["free_mode", "--port", "/dev/ttyACM0"], "tcp://HOST:PORT or unix:PATH"),
         (
             [path.to_str().unwrap(), "--port", &port],
-            "is a file, and a simulated board runs a scene's program",
+            "is a file; a simulated board needs the name of a scene's program",
         ),
     ] {
         let output = haptic(&[&["twin"][..], &arguments].concat());

@@ -140,8 +140,8 @@ impl fmt::Display for Assumption {
         match self {
             Self::DevicePassivity { delta } => write!(
                 f,
-                "whatever passive hand holds it, the device is output strictly passive from motor \
-                 torque to velocity at the encoder with delta = {delta} N m s/rad"
+                "in every passive hand, the device is output strictly passive from motor torque to \
+                 velocity at the encoder, with delta = {delta} N m s/rad"
             ),
             Self::Hold { period } => {
                 f.write_str(
@@ -155,13 +155,13 @@ impl fmt::Display for Assumption {
             }
             Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
-                "no two counts are more than {longest} s apart, which the servo sees to; judged with \
-                 what that leaves of delta, {} N m s/rad, for torques that begin with their count and \
-                 for those that are latched",
+                "no two counts are more than {longest} s apart: the servo stops otherwise; judged \
+                 with the remaining delta of {} N m s/rad, for torques that begin with their count \
+                 and for latched ones",
                 ShortF64(*delta)
             ),
             Self::Delay { samples } => {
-                write!(f, "the environment is late by exactly {samples} whole sample(s)")
+                write!(f, "the delay of the environment is exactly {samples} whole sample(s)")
             }
             Self::StatedModel { index: Some(index) } => write!(
                 f,
@@ -178,33 +178,33 @@ impl fmt::Display for Assumption {
             Self::Limited { torque, full_scale } => write_limit(f, *torque, *full_scale),
             Self::Saturates { bound: Some(bound), margin } => write!(
                 f,
-                "the torque may reach the converter's full scale, and be faded in and out: with a \
-                 torque limit it passes too, by the nonlinear bound of {} N m s/rad, and the device \
-                 may lose {} N m s/rad of its damping",
+                "the torque may reach the DAC's full scale, and be faded in and out: with a torque \
+                 limit the scene passes too, by the nonlinear bound of {} N m s/rad, and the \
+                 device may lose {} N m s/rad of its damping",
                 ShortF64(*bound),
                 ShortF64(*margin)
             ),
             Self::Saturates { bound: None, .. } => f.write_str(
-                "the torque is never limited: with a torque limit it would not pass, so that no board \
-                 fades it in",
+                "the torque is never limited: with a torque limit the scene would not pass, so no \
+                 board runs it",
             ),
             Self::CancelledDamping { damping } => write!(
                 f,
-                "the device really has the damping {damping} N m s/rad that is partly cancelled"
+                "the device has the damping of {damping} N m s/rad that is partly cancelled"
             ),
             Self::Quantisation(rest) => write_rest(f, rest),
             Self::StepsNotStated => f.write_str(
-                "the steps of encoder and converter are not stated and not judged: without \
-                 friction of the torque that they move the device may hum at rest by that much",
+                "the steps of encoder and DAC are not stated and not judged: with less Coulomb \
+                 friction than the torque that they cause, a limit cycle at rest is possible",
             ),
             Self::StepsUnbounded => f.write_str(
-                "the steps of encoder, numbers and converter are not judged: the controller's \
-                 response hardly ends, so that no friction makes up for them",
+                "the steps of encoder, numbers and DAC are not judged: the impulse response of the \
+                 controller is not summable, so no bound exists",
             ),
             Self::FrictionOnly { friction, speed } => write!(
                 f,
-                "its friction of {} N m alone takes more than the controller puts in, but only \
-                 below {} rad/s: it is quiet until something moves it faster",
+                "the device's friction of {} N m alone dissipates more than the controller \
+                 generates, but only below {} rad/s: the device rests until it is moved faster",
                 ShortF64(*friction),
                 ShortF64(*speed)
             ),
@@ -215,7 +215,7 @@ impl fmt::Display for Assumption {
 fn write_bound(f: &mut fmt::Formatter<'_>, bound: Option<f64>) -> fmt::Result {
     match bound {
         Some(bound) => write!(f, " of {} N m s/rad", ShortF64(bound)),
-        None => f.write_str(", of which none is known for this environment"),
+        None => f.write_str(", but none is known for this environment"),
     }
 }
 
@@ -227,20 +227,20 @@ fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>)
     )?;
     match full_scale {
         Some(full_scale) if torque <= full_scale => {
-            write!(f, ", and within the converter's full scale of {full_scale} N m")
+            write!(f, ", and within the DAC's full scale of {full_scale} N m")
         }
         Some(full_scale) => write!(
             f,
-            ", but above the converter's full scale of {full_scale} N m, which would limit it \
-             again: lower the limit to that"
+            ", but above the DAC's full scale of {full_scale} N m, which would limit it again: \
+             lower the limit to the full scale"
         ),
-        None => f.write_str("; the converter's full scale must not be below, and is not stated"),
+        None => f.write_str("; the DAC's full scale must not be lower, and is not stated"),
     }
 }
 
 /// What moves the torque at rest, what is not stated of it, and whether friction is enough.
 fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Result {
-    f.write_str("at rest the torque is off by at most")?;
+    f.write_str("at rest the error of the torque is at most")?;
     let parts = rest.parts();
     let mut between = " ";
     for (name, part) in parts {
@@ -250,7 +250,7 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
         }
     }
     for (name, _) in parts.iter().filter(|(_, part)| part.is_none()) {
-        write!(f, "; the {name}'s step is not stated and not in this")?;
+        write!(f, "; the step of the {name} is not stated and not included")?;
     }
     write!(f, ": {rest}")
 }

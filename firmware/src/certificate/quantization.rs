@@ -93,7 +93,7 @@ impl QuantizationBound {
     /// Its parts by name, as far as they were stated.
     pub fn parts(&self) -> [(&'static str, Option<f64>); 3] {
         let Self { encoder, numbers, converter, .. } = *self;
-        [("encoder", encoder), ("numbers", Some(numbers)), ("converter", converter)]
+        [("encoder", encoder), ("numbers", Some(numbers)), ("DAC", converter)]
     }
 
     /// Whether the declared friction is enough; `None` where that cannot be said.
@@ -111,27 +111,31 @@ impl fmt::Display for QuantizationBound {
             (None, _) => {
                 write!(
                     f,
-                    "it may hum by up to {hum} N m unless the device has {hum} N m of friction"
+                    "a limit cycle of up to {hum} N m is possible unless the device has {hum} N m \
+                     of Coulomb friction"
                 )?;
             }
             (Some(friction), None) => write!(
                 f,
-                "the device's friction of {friction} N m keeps it still, as far as the steps were \
-                 stated"
+                "the device's friction of {friction} N m prevents a limit cycle, as far as the \
+                 steps are stated"
             )?,
             (Some(friction), Some(true)) => {
-                write!(f, "the device's friction of {friction} N m keeps it still")?;
+                write!(f, "the device's friction of {friction} N m prevents a limit cycle")?;
             }
             (Some(friction), Some(false)) => write!(
                 f,
-                "it may hum by up to {hum} N m: the device's friction of {friction} N m is below \
-                 that"
+                "a limit cycle of up to {hum} N m is possible: the device's friction of {friction} \
+                 N m is lower"
             )?,
         }
         if self.in_any_motion {
             return Ok(());
         }
-        f.write_str("; while it moves through a face the steps do more, in proportion to its speed")
+        f.write_str(
+            "; while the device moves through a face the error is larger, in proportion to \
+                     its speed",
+        )
     }
 }
 

@@ -75,7 +75,7 @@ impl SweepError {
             }
             Self::Amplitude { tone, amplitude, least, largest } => {
                 of_tone(&mut t, tone, "an amplitude of ", amplitude);
-                t.push(" N m; the converter gives ");
+                t.push(" N m; the DAC gives ");
                 t.push_number(least);
                 t.push(" to ");
                 t.push_number(largest);

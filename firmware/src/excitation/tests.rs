@@ -56,7 +56,7 @@ fn what_cannot_be_played_is_refused_with_its_numbers() {
     for (tone, words) in [
         (Tone { frequency: 500.0, ..LOW }, "tone 1 has a frequency of 500 Hz; it must be above 0"),
         (Tone { frequency: f64::NAN, ..LOW }, "tone 1 has a frequency of NaN Hz"),
-        (Tone { amplitude: 2.001, ..LOW }, "an amplitude of 2.001 N m; the converter gives"),
+        (Tone { amplitude: 2.001, ..LOW }, "an amplitude of 2.001 N m; the DAC gives"),
         (Tone { amplitude: 0.0, ..LOW }, "an amplitude of 0 N m"),
         (Tone { measured: 3, ..LOW }, "a measured part of 3 periods; it must be at least 4"),
         (Tone { settle: 1, ..HIGH }, "a part of 1 periods, which take 4.166666667 samples"),

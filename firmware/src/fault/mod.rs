@@ -1,7 +1,7 @@
 //! What stops a servo: torque to zero, amplifier off, and a record of why.
 //!
 //! A fault is not a [limit reason](crate::torque::LimitReason), which only says why an output is
-//! less than was asked for. After a fault the motor stays off until somebody arms it again.
+//! less than was asked for. After a fault the motor stays off until it is armed again.
 
 mod record;
 
@@ -137,18 +137,18 @@ impl fmt::Display for Fault {
         match self {
             Self::MissedTick { missed, tolerated } => write!(
                 f,
-                "{missed} update(s) in a row were missed, and the certificate tolerates \
-                 {tolerated}: lengthen the scene's period or its worst period, then arm again"
+                "{missed} update(s) in a row were missed, and the certificate allows {tolerated}: \
+                 lengthen the scene's period or its worst period, then arm again"
             ),
             Self::EncoderJump { counts, largest } => write!(
                 f,
                 "the encoder jumped by {counts} counts, and the device's largest speed allows \
-                 {largest} in that time: check its cable and the largest speed, then reset with \
-                 the device at its zero"
+                 {largest} in that time: check the encoder's cable and the largest speed, then \
+                 reset with the device at its zero"
             ),
-            Self::NotANumber => f.write_str(
-                "the torque was not a number: send another set of parameters, then arm again",
-            ),
+            Self::NotANumber => {
+                f.write_str("NaN torque: send another set of parameters, then arm again")
+            }
             Self::LinkLost { allowed } => write!(
                 f,
                 "the host was silent for more than the {allowed} ticks that are allowed: connect \
@@ -159,32 +159,31 @@ impl fmt::Display for Fault {
             ),
             Self::Panic { line, column } => write!(
                 f,
-                "the program panicked at line {line}, column {column} of its source: this is a \
-                 mistake in the program; arm again"
+                "the program panicked at line {line}, column {column} of its source: this is a bug \
+                 in the program; arm again"
             ),
             Self::HardFault { address, status } => write!(
                 f,
-                "the processor faulted at {address:#010x} with the status {status:#010x}: this is \
-                 a mistake in the program; arm again"
+                "hard fault at {address:#010x} with the status {status:#010x}: this is a bug in \
+                 the program; arm again"
             ),
             Self::LateTick { late, allowed } => write!(
                 f,
-                "a tick began {late} timer counts after its period, and {allowed} are allowed: \
-                 shorten what keeps interrupts off, or lengthen the scene's period, then arm again"
+                "a tick began {late} timer counts after the start of its period, and {allowed} are \
+                 allowed: shorten the critical sections that mask interrupts, or lengthen the \
+                 scene's period, then arm again"
             ),
             Self::ClockLost => {
                 f.write_str("the crystal stopped: check it and its supply, then arm again")
             }
             Self::FlashEcc { address, status } => write!(
                 f,
-                "the flash memory cannot be read at {address:#010x} of its bank (its register of \
-                 errors: {status:#010x}): flash the program anew, then arm again"
+                "uncorrectable flash error at {address:#010x} of its bank (error register: \
+                 {status:#010x}): flash the program again, then arm again"
             ),
-            Self::RamParity => {
-                f.write_str("RAM was not as it was written: check the supply, then arm again")
-            }
+            Self::RamParity => f.write_str("RAM parity error: check the supply, then arm again"),
             Self::NonMaskable => f.write_str(
-                "a non-maskable interrupt came whose cause the chip does not say: arm again",
+                "a non-maskable interrupt came, and the chip does not report its cause: arm again",
             ),
         }
     }

@@ -35,14 +35,14 @@ fn every_fault_has_a_code_and_a_word_of_its_own() {
 #[test]
 fn sentences_have_the_value_the_bound_and_the_way_out() {
     for (fault, parts) in [
-        (ALL[0], ["3 update(s)", "tolerates 1", "arm again"]),
+        (ALL[0], ["3 update(s)", "allows 1", "arm again"]),
         (ALL[1], ["5000 counts", "allows 979", "reset"]),
         (ALL[3], ["2000 ticks", "allowed", "arm again"]),
         (ALL[5], ["line 7", "column 13", "arm again"]),
         (ALL[6], ["0x08001234", "0x00010000", "arm again"]),
         (ALL[7], ["40 timer counts", "31 are allowed", "arm again"]),
         (ALL[8], ["crystal", "supply", "arm again"]),
-        (ALL[9], ["0x00001238", "0x80001238", "flash the program anew"]),
+        (ALL[9], ["0x00001238", "0x80001238", "flash the program again"]),
     ] {
         let sentence = fault.to_string();
         for part in parts {

@@ -32,7 +32,11 @@ impl fmt::Display for TuningError {
         match self {
             Self::Fixed { parameter } => {
                 let (fixed, _) = parameter.name_and_unit();
-                write!(f, "the {fixed} is fixed while the program runs; what can be changed is ")?;
+                write!(
+                    f,
+                    "the {fixed} is fixed while the program runs; the tunable parameters are \
+                           "
+                )?;
                 for (i, (name, _)) in TUNABLE.iter().enumerate() {
                     write!(f, "{}{name}", if i > 0 { ", " } else { "" })?;
                 }

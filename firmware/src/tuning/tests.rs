@@ -88,7 +88,7 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
     );
     assert_eq!(
         refusal(&[(Parameter::Period, 0.002)]),
-        "the period is fixed while the program runs; what can be changed is stiffness, damping, \
+        "the period is fixed while the program runs; the tunable parameters are stiffness, damping, \
          filter, face, residual, coupling.stiffness, torque_limit"
     );
     assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
@@ -114,7 +114,7 @@ fn a_set_is_judged_as_a_whole_and_by_the_compilers_own_sentence() {
     assert_eq!(scene.environment.wall, DamperWall { stiffness: 30.0, damping: 0.005 });
     assert_eq!(
         refusal(&[(Parameter::TorqueLimit, 2.5)]),
-        "the torque limit of 2.5 N m is above the converter's full scale of 2 N m: lower it to \
+        "the torque limit of 2.5 N m is above the DAC's full scale of 2 N m: lower it to \
          that, or scale the amplifier up"
     );
     assert!(refusal(&[(Parameter::Stiffness, f64::NAN)]).contains("the stiffness is NaN"));

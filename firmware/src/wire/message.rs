@@ -152,14 +152,17 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Busy => f.write_str(
-                "the set of parameters before this one is still being swapped in: wait for its \
-                 answer",
+                "the previous set of parameters is still being swapped in: wait for its answer",
             ),
-            Self::Disarming => f.write_str("not armed: it is being disarmed; arm it after that"),
+            Self::Disarming => f.write_str(
+                "not armed: the servo is being disarmed; arm it after \
+                                            that",
+            ),
             Self::Fault(fault) => write!(f, "not armed: {fault}"),
             Self::Set(step) => write!(
                 f,
-                "the board refused the set by its {}, and this program cannot tell why",
+                "the board refused the set by its {}, and this program cannot reproduce the \
+                 refusal: they have different versions",
                 step.as_str()
             ),
         }
@@ -230,7 +233,7 @@ impl fmt::Display for FaultCode {
         match (self.fault(), self.numbers) {
             (Some(fault), _) => fault.fmt(f),
             (None, [a, b]) => {
-                write!(f, "a fault that this program does not know: {} ({a}, {b})", self.code)
+                write!(f, "unknown fault: {} ({a}, {b})", self.code)
             }
         }
     }

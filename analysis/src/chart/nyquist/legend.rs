@@ -58,13 +58,13 @@ fn legend(scenes: &[NyquistScene]) -> Vec<Entry> {
 fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Vec<String> {
     let what = match curve.role {
         Role::Judged => "",
-        Role::JudgedLatched => "judged as well, updates being missed: ",
+        Role::JudgedLatched => "judged, with missed updates: ",
         Role::Linear => "grey, environment, of which only the poles are judged: ",
         Role::Alone => "grey, environment without its coupling, not judged: ",
     };
     let coupled = scene.curves.iter().any(|other| other.role == Role::Alone);
     let what = match curve.role {
-        Role::Judged if coupled => "judged, with its coupling taken in: ",
+        Role::Judged if coupled => "judged, environment with coupling: ",
         _ => what,
     };
     let mark =
@@ -86,13 +86,14 @@ fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Ve
     }
     if let Some(re) = curve.asymptote.filter(|_| curve.role.is_judged()) {
         let re = significant(re, 3);
-        words.push(format!("hairline of dots: its real part near rest, {re} N m s/rad"));
+        words.push(format!("dotted line: real part towards frequency 0, {re} N m s/rad"));
     }
     if let Some((turn, theta, _)) = scene.phase_margin(curve) {
         let degrees = significant(turn.to_degrees(), 3);
         let hertz = significant(theta / (2.0 * PI * scene.period), 3);
         words.push(format!(
-            "square: phase margin {degrees} degrees: turned so far, it touches the line, at {hertz} Hz"
+            "square: phase margin {degrees} degrees, at {hertz} Hz: rotated by it, the curve \
+             touches the line"
         ));
     }
     if curve.role == Role::Judged {
@@ -131,7 +132,7 @@ fn margins(scene: &NyquistScene) -> Vec<String> {
     let Some(factor) = scene.gain_margin() else { return Vec::new() };
     let decibels = significant(20.0 * factor.log10(), 3);
     vec![format!(
-        "gain margin {} ({decibels} dB): times this, what is judged touches the line",
+        "gain margin {} ({decibels} dB): multiplied by it, the curve touches the line",
         significant(factor, 4)
     )]
 }

@@ -25,37 +25,37 @@ use crate::studies::tradeoff::{self, simulation};
 /// Arguments of `haptic advise` about formats.
 #[derive(Debug, Args)]
 pub struct FormatArguments {
-    /// Largest torque of a limit cycle at rest in N m, from its lowest to its highest
+    /// Largest torque of a limit cycle at rest in N m, peak to peak
     #[arg(long = "max-limit-cycle", alias = "hum", value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true,
           required = false, required_unless_present = "model")]
     pub hum: f64,
-    /// Ticks a second
+    /// Sample rate in Hz
     #[arg(long, value_name = "HZ", value_parser = rate, allow_negative_numbers = true,
           required = false, required_unless_present = "model")]
     pub rate: f64,
-    /// Largest error in N m of the torque to that in f64; any if left out
+    /// Largest error in N m of the torque, compared with f64; default: no limit
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
     pub error: Option<f64>,
-    /// Part of a core of 170 MHz that a tick may take from count to code; the rest of the servo's
-    /// interrupt is the same in every format
+    /// Largest share of a 170 MHz core for a tick from count to code; the rest of the interrupt is
+    /// the same in every format
     #[arg(long = "cpu-share", alias = "share", value_name = "PART", value_parser = part,
           default_value_t = 0.5, allow_negative_numbers = true)]
     pub share: f64,
-    /// Encoder counts a turn; the scene's own if left out
+    /// Encoder counts per turn; default: those of the scene
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
-    /// Dry friction of the device in N m; the scene's own if left out
+    /// Coulomb friction of the device in N m; default: that of the scene
     #[arg(long, value_name = "TORQUE", value_parser = positive, allow_negative_numbers = true)]
     pub friction: Option<f64>,
-    /// Largest angle in rad to each side that a scaled format has to hold
+    /// Largest angle in rad that a fixed-point format has to represent, to each side of zero
     #[arg(long = "max-angle", alias = "range", value_name = "ANGLE", value_parser = positive,
           default_value_t = HALF_A_TURN, allow_negative_numbers = true)]
     pub range: f64,
-    /// Part by which the largest stable stiffness of a simulation may be off
+    /// Largest relative error of the critical stiffness in a simulation
     #[arg(long = "stiffness-error", alias = "verdict", value_name = "PART", value_parser = part,
           default_value_t = 0.01, allow_negative_numbers = true)]
     pub verdict: f64,
-    /// Count the instructions of this scene on the emulated board instead of taking the kept ones
+    /// Count the instructions of this scene on the emulated board, instead of using the kept table
     #[arg(long)]
     pub measure: bool,
 }

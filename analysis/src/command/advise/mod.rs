@@ -16,7 +16,8 @@ use super::status::{CommandError, CommandStatus};
                             haptic advise <SCENE> --model [OPTIONS]"
 )]
 pub struct Arguments {
-    /// Name of a program in firmware/src/bin, as damper_wall, or a scene file; a file with `--model`
+    /// Name of a program in firmware/src/bin, for example damper_wall, or a scene file; with
+    /// `--model` a scene file
     #[arg(value_name = "SCENE")]
     pub scene: String,
     #[command(flatten)]

@@ -12,12 +12,12 @@ use crate::text_table::markdown_table;
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
 #[derive(Debug, Args)]
 pub struct ModelArguments {
-    /// Find the cheapest model of a scene file's device whose verdict and motion are those of the
-    /// fullest: rigid or with its masses, in its hand or in none, with the amplifier's lag or without
+    /// Find the simplest model of a scene file's device whose verdict and motion agree with the
+    /// full model: rigid or with its masses, with or without the hand, with or without the
+    /// amplifier's lag
     #[arg(long, conflicts_with = "Wanted")]
     pub model: bool,
-    /// Most that delta, critical stiffness, angle and torque may be off, as a share of the
-    /// fullest model's
+    /// Largest relative error of delta, critical stiffness, angle and torque
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share,
           allow_negative_numbers = true, requires = "model")]
     pub bound: f64,

@@ -60,8 +60,8 @@ pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
             let unknown = match hum {
                 Some(_) => "",
                 None => {
-                    "; how fine the encoder is the scene does not say, so that its part of the hum \
-                     is not in this"
+                    "; the scene does not state the encoder's resolution, so its part of the limit \
+                     cycle is not included"
                 }
             };
             format!("{format}{}{unknown}", as_certified(rest))
@@ -73,8 +73,9 @@ pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
 fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&QuantizationBound>) -> String {
     let counts = subject.transducers.counts_per_turn;
     format!(
-        "no: in every format the encoder alone makes a device without friction hum by {} N m, above \
-         {} N m. About {} counts a turn in place of {} would do, or a softer scene{}",
+        "no: in every format the encoder alone causes a limit cycle of {} N m in a device without \
+         friction, above {} N m. About {} counts per turn instead of {} are enough, or a softer \
+         scene{}",
         number(hum),
         number(allowed),
         number(counts * hum / allowed),
@@ -94,17 +95,21 @@ fn none(advice: &Advice) -> String {
     let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
     let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
     let reason = quietest.map_or_else(String::new, |candidate| {
-        format!(": of the quietest, {}, the {}", candidate.format, candidate.rejected.join("; "))
+        format!(
+            ": of the format with the smallest limit cycle, {}, the {}",
+            candidate.format,
+            candidate.rejected.join("; ")
+        )
     });
-    format!("no format keeps to the figures{reason}")
+    format!("no format is within the limits{reason}")
 }
 
 /// Why a format was chosen.
 fn chosen(subject: &Subject, choice: &Candidate) -> String {
     let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
-    let hums = match choice.is_still() {
-        true => "would hum without friction",
-        false => "hums",
+    let its_cycle = match choice.is_still() {
+        true => "its own limit cycle without friction would be",
+        false => "its own limit cycle is",
     };
     let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
     let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
@@ -112,8 +117,8 @@ fn chosen(subject: &Subject, choice: &Candidate) -> String {
         format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
     });
     format!(
-        "{}{scaled} is the cheapest that keeps to the figures: {} instructions a tick, {} % of a \
-         core of {} MHz, and of itself it {hums} by no more than {} N m",
+        "{}{scaled} is the cheapest within the limits: {} instructions a tick, {} % of a core of \
+         {} MHz, and {its_cycle} at most {} N m",
         choice.format,
         number(choice.instructions),
         number(100.0 * choice.share),
@@ -136,7 +141,7 @@ pub fn text(answered: &FormatReport) -> String {
             "share of the core",
             "error",
             "around 1 rad",
-            "hum",
+            "limit cycle",
             "with encoder",
             "friction needed",
             "rejected",
@@ -155,8 +160,8 @@ pub fn text(answered: &FormatReport) -> String {
         let SimulationMethod { method, substeps, verdict_error, .. } = simulated;
         let error = significant(100.0 * verdict_error, 2);
         format!(
-            "\nTo simulate a rigid device the cheapest is {method}, steps in a sample: {substeps}; its \
-             largest stable stiffness is off by {error} %.\n"
+            "\nThe cheapest method to simulate a rigid device is {method}, steps in a sample: \
+             {substeps}; its critical stiffness has an error of {error} %.\n"
         )
     });
     format!(

@@ -19,13 +19,13 @@ pub struct Arguments {
     /// Scene files, TOML or JSON; `-` is standard input
     #[arg(value_name = "FILE", required = true, num_args = 1..=6)]
     pub files: Vec<String>,
-    /// Frequencies in Hz, the horizontal axis
+    /// Range of the frequency in Hz, the horizontal axis
     #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
     pub x: Option<Range<f64>>,
-    /// Gains, the vertical axis of the upper panel
+    /// Range of the gain, the vertical axis of the upper panel
     #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
     pub y: Option<Range<f64>>,
-    /// Title of the picture; otherwise the scene's name
+    /// Title of the chart; default: the name of the scene
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]

@@ -13,16 +13,16 @@ use crate::command::value_parsers::positive;
 /// Arguments of `haptic chart identify`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Record of stepped sines, as `haptic identify` reads it; `-` is standard input
+    /// Record of stepped sines, as for `haptic identify`; `-` is standard input
     #[arg(value_name = "FILE.csv")]
     pub file: PathBuf,
-    /// Counts of the encoder in one turn
+    /// Encoder counts per turn
     #[arg(long, value_name = "N", value_parser = positive)]
     pub counts_per_rev: f64,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub reading: Reading,
-    /// Title of the picture; otherwise the file's name
+    /// Title of the chart; default: the name of the file
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]

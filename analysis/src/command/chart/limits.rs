@@ -23,17 +23,18 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
-    /// Sample rates in Hz, the horizontal axis
+    /// Range of the sample rate in Hz, the horizontal axis
     #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = positive_range,
           default_value = "500..100000", allow_hyphen_values = true)]
     pub rates: Range<f64>,
-    /// Stiffness in N m/rad, the vertical axis; otherwise all that there is to see
+    /// Range of the stiffness in N m/rad, the vertical axis; default: all data
     #[arg(long, value_name = "MIN..MAX", value_parser = positive_range, allow_hyphen_values = true)]
     pub y: Option<Range<f64>>,
-    /// Counts of the encoder a turn; those of the scene's `[limits] encoder_step`, or 65536, if left out
+    /// Encoder counts per turn; default: from `encoder_step` in the scene's table `limits`, or
+    /// 65536
     #[arg(long, value_name = "N", value_parser = counts)]
     pub counts_per_rev: Option<f64>,
-    /// Part of the largest stiffness that is used, for the ripple: at all of it there is no bound
+    /// Fraction of the largest stiffness at which the ripple is computed: at 1 it has no bound
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.7")]
     pub used: f64,
     #[command(flatten)]
@@ -81,7 +82,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         significant(whole(curves.counts_per_turn), 7),
         significant(100.0 * curves.used, 3)
     );
-    let title = format!("{}: how stiff, how fast", shortened(&file.name, 48));
+    let title = format!("{}: largest stiffness over sample rate", shortened(&file.name, 48));
     let picture = chart::limits::limits(&title, &note, &drawn, &own, arguments.y.clone());
     let picture = picture.map_err(|error| match error {
         ChartError::TooFewPoints => CommandError::NoStiffness { scene: file.name.clone() },

@@ -22,15 +22,17 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub scene: SceneArgument,
-    /// Stiffness in N m/rad, the horizontal axis; otherwise about twice the stiffest certified spring's
+    /// Range of the stiffness in N m/rad, the horizontal axis; default: to about twice the largest
+    /// certified spring
     #[arg(long, visible_alias = "x", value_name = "MIN..MAX", value_parser = range,
           allow_hyphen_values = true)]
     pub stiffness: Option<Range<f64>>,
-    /// Damping in N m s/rad, the vertical axis; otherwise about as far as the device's own goes
+    /// Range of the damping in N m s/rad, the vertical axis; default: to about the damping of the
+    /// device
     #[arg(long, visible_alias = "y", value_name = "MIN..MAX", value_parser = range,
           allow_hyphen_values = true)]
     pub damping: Option<Range<f64>>,
-    /// Number of scenes to judge, on a square grid
+    /// Number of scenes, on a square grid
     #[arg(long, value_name = "N", default_value_t = 1_000_000,
           value_parser = clap::value_parser!(u64).range(4..=25_000_000))]
     pub points: u64,

@@ -29,26 +29,26 @@ pub enum Kind {
     /// A picture that goes to one file.
     #[command(flatten)]
     Single(Single),
-    /// Speed against accuracy of methods, measured: tables, pictures, and what nothing beats
+    /// Measure speed and accuracy of methods: tables, charts, Pareto fronts
     Tradeoff(tradeoff::Arguments),
 }
 
 /// Which picture.
 #[derive(Debug, Subcommand)]
 pub enum Single {
-    /// Nyquist curves of what is judged of one or more scenes, with the critical line
+    /// Draw the Nyquist curves of one or more scenes, with the critical line at -delta
     Nyquist(nyquist::Arguments),
-    /// Gain and phase of the open loop of device and controller, with its margins
+    /// Draw gain and phase of the open loop of device and controller, with the margins
     Bode(bode::Arguments),
-    /// What is certified, stable and unstable, over stiffness and damping of a scene's wall
+    /// Draw a map of certified, stable and unstable walls over stiffness and damping (Z-width)
     Map(map::Arguments),
-    /// The largest certified stiffness over the sample rate, with the encoder's torque ripple
+    /// Draw the largest certified stiffness over the sample rate, with the encoder's torque ripple
     Limits(limits::Arguments),
-    /// What a scene's simulation or a recorded run does, with the ground shaded by what limits it
+    /// Draw angle, velocity and torque of a simulation or a recorded run, shaded where limited
     Trace(trace::Arguments),
-    /// The responses of a measured device in their disk, with the device that was fitted to them
+    /// Draw the measured responses of a device in the disk of its passivity, with the fitted device
     Identify(identify::Arguments),
-    /// What methods of integration call stable, over the steps that they take in a tick
+    /// Draw the stability limit of methods of integration over their steps in a tick
     Failures(failures::Arguments),
 }
 

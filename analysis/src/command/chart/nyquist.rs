@@ -13,7 +13,7 @@ pub struct Arguments {
     /// Scene files, TOML or JSON; `-` is standard input
     #[arg(value_name = "FILE", required = true, num_args = 1..=6)]
     pub files: Vec<String>,
-    /// Title of the picture; otherwise the scene's name
+    /// Title of the chart; default: the name of the scene
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]

@@ -11,10 +11,10 @@ use crate::command::value_parsers::range;
 /// Where a picture goes, and its numbers.
 #[derive(Debug, Args)]
 pub struct OutputArguments {
-    /// The picture's file, .svg, .png or .pdf; or .csv for the numbers that are drawn alone
+    /// File of the chart: .svg, .png or .pdf; or .csv for its numbers only
     #[arg(short, long, value_name = "PICTURE")]
     pub output: PathBuf,
-    /// Write the numbers that are drawn to this .csv, beside the picture
+    /// Also write the numbers of the chart to this .csv
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
 }
@@ -22,10 +22,10 @@ pub struct OutputArguments {
 /// Ranges of the axes.
 #[derive(Debug, Args)]
 pub struct WindowArguments {
-    /// Ends of the horizontal axis, in its unit; otherwise all that there is to see
+    /// Range of the horizontal axis, in its unit; default: all data
     #[arg(long, value_name = "MIN..MAX", value_parser = range, allow_hyphen_values = true)]
     pub x: Option<Range<f64>>,
-    /// Ends of the vertical axis, in its unit
+    /// Range of the vertical axis, in its unit; default: all data
     #[arg(long, value_name = "MIN..MAX", value_parser = range, allow_hyphen_values = true)]
     pub y: Option<Range<f64>>,
 }

@@ -16,17 +16,17 @@ use crate::trace::Trace;
 /// Arguments of `haptic chart trace`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file with a simulation table, TOML or JSON, `-` being standard input; or a .csv from
+    /// Scene file with a table `simulation`, TOML or JSON, `-` is standard input; or a .csv from
     /// `haptic run --csv` or `haptic simulate --csv`
     #[arg(value_name = "FILE")]
     pub file: String,
-    /// Period of the servo in s, for a .csv that counts ticks
+    /// Period of the servo in s, for a .csv with tick numbers
     #[arg(long, value_name = "SECONDS", value_parser = crate::command::value_parsers::positive)]
     pub period: Option<f64>,
-    /// Torque limit in N m to be drawn; of a scene file it is known
+    /// Torque limit in N m to draw, for a .csv; a scene file has it
     #[arg(long, value_name = "N M", value_parser = crate::command::value_parsers::positive)]
     pub torque_limit: Option<f64>,
-    /// Title of the picture; otherwise the scene's or the file's name
+    /// Title of the chart; default: the name of the scene or the file
     #[arg(long)]
     pub title: Option<String>,
     #[command(flatten)]

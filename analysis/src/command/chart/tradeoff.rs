@@ -26,20 +26,19 @@ pub struct Arguments {
     /// What is compared
     #[arg(value_enum, default_value_t)]
     pub topic: Topic,
-    /// Draw the tables that are kept instead of measuring
+    /// Draw the kept tables instead of measuring
     #[arg(long)]
     pub draw_only: bool,
-    /// Folder of the tables and pictures, with --draw-only also that in which the tables are looked
-    /// for; that of this repository's unless it is given
+    /// Folder of the tables and charts; default: analysis/pictures/tradeoff of this repository
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
-    /// Draw into this file only, .svg, .png or .pdf, the panels of these cases and errors
+    /// Draw only the panels of these cases and errors, into this file: .svg, .png or .pdf
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
-    /// A case to be drawn, by its name in the table; otherwise all
+    /// Name of a case in the table; default: all
     #[arg(long, value_name = "CASE", requires = "picture")]
     pub case: Vec<String>,
-    /// An error to be drawn, by its column in the table; otherwise all
+    /// Column of an error in the table; default: all
     #[arg(long, value_name = "COLUMN", requires = "picture")]
     pub error: Vec<String>,
 }
@@ -50,15 +49,15 @@ pub enum Topic {
     /// Each of the following
     #[default]
     All,
-    /// Number formats of the servo: instructions against error, hum and limit cycle
+    /// Number formats of the servo: instructions against error and limit cycle
     Servo,
-    /// Means of computing a sweep's sine: instructions against error
+    /// Ways to compute a sine: instructions against error
     Sine,
-    /// Methods of integration by their steps: time against error of the motion and of the verdict
+    /// Methods of integration: time against error of the motion and of the verdict
     Simulation,
-    /// Ways to the certificate: time against error of the index and of the verdict
+    /// Methods to compute the certificate: time against error of the index and of the verdict
     Certificate,
-    /// Sample rates: part of the processor against stiffness and the encoder's ripple
+    /// Sample rates: share of the processor against stiffness and ripple of the encoder
     Rate,
 }
 

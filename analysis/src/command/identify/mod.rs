@@ -21,19 +21,19 @@ use target::Origin;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Record of stepped sines: CSV with the columns `time` in s, `torque` in N m, `counts`, and
-    /// perhaps `frequency` in Hz; `-` is standard input.
-    /// With --target a file with a device table, which may be a scene
+    /// optionally `frequency` in Hz; `-` is standard input. With --target: scene file, or a file
+    /// with a table `device` alone
     #[arg(value_name = "FILE", required_unless_present_any = ["target", "port"])]
     pub file: Option<PathBuf>,
-    /// Counts of the encoder in one turn; 61440 with --target, the board's with --port
+    /// Encoder counts per turn; default with --target: 61440, with --port: those of the board
     #[arg(long, value_name = "N", value_parser = positive,
           required_unless_present_any = ["target", "port"], allow_negative_numbers = true)]
     pub counts_per_rev: Option<f64>,
-    /// Have the board there measure its device with the program `identify`: /dev/ttyACM0 (@BAUD),
-    /// tcp://HOST:PORT, unix:PATH. It moves the device; nobody may hold it
+    /// Measure with the board at this address, which runs the program `identify`: /dev/ttyACM0
+    /// (@BAUD), tcp://HOST:PORT, unix:PATH. The motor moves the device; nobody may hold it
     #[arg(long, value_name = "PORT", group = "measured", conflicts_with = "file")]
     pub port: Option<Address>,
-    /// Write the record there, with --port or --target
+    /// Write the record to this file, with --port or --target
     #[arg(long, value_name = "FILE.csv", requires = "measured")]
     pub record: Option<PathBuf>,
     #[command(flatten)]
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
-    /// Write the table of the device there, ready for a scene file
+    /// Write the table `device` of a scene file to this file
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -53,16 +53,16 @@ pub struct Arguments {
 /// How a record is read.
 #[derive(Debug, Args)]
 pub struct Reading {
-    /// Time from a row's time until its torque is applied, in s
+    /// Time from the time stamp of a row until its torque is applied, in s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
           allow_negative_numbers = true)]
     pub torque_delay: f64,
-    /// Time by which the counts of a row are older than its time, in s
+    /// Age of the counts of a row at its time stamp, in s
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative,
           allow_negative_numbers = true)]
     pub count_delay: f64,
-    /// Part of each sine that is left out until the device has settled, 0 to 0.9; otherwise 0.25,
-    /// or none with --target, where the settling is not part of the sine
+    /// Fraction of each sine to skip while the device settles, 0 to 0.9; default: 0.25, with
+    /// --target: 0, because the record starts after the settling
     #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true)]
     pub settle: Option<f64>,
 }
@@ -212,9 +212,9 @@ fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
     if found.skew.is_significant() {
         notes.push(format!(
-            "the counts are {} us late against the torque: uncorrected, that makes the damping {} \
-             N m s/rad at {} Hz; it has been taken out of inertia and damping. If it is a lag of \
-             the amplifier, and not of the record, account for it as delay",
+            "the counts are {} us late against the torque: uncorrected, the damping would be {} N \
+             m s/rad at {} Hz; inertia and damping are corrected for it. If the amplifier lags, \
+             and not the record, account for the lag as delay",
             significant(1e6 * found.skew.value, 3),
             significant(found.disk.delta, 3),
             significant(found.disk.omega / std::f64::consts::TAU, 3),
@@ -223,16 +223,17 @@ fn notes(found: &Identification) -> Vec<String> {
     if !found.is_rigid() {
         notes.push(format!(
             "inertia and damping do not explain the responses (residuals {} times the noise): the \
-             device is not one rigid mass. What passivity it has in a hand is not to be seen from \
-             its motor alone: a hand that holds its far end takes that end's damping away. Describe \
-             it as masses and links, and ask `haptic device`",
+             device is not one rigid mass. Its passivity in a hand cannot be measured at the motor \
+             alone, because a hand that holds the far end takes the damping of that end away. \
+             Describe it as masses and links, and use `haptic device`",
             significant(found.misfit.sqrt(), 2),
         ));
     }
     if found.disk.delta <= 0.0 || found.is_rigid() && found.passivity().is_none() {
         notes.push(format!(
-            "no passivity is left: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of torque and \
-             counts, the declared delays, and that motor and encoder are on the same mass",
+            "the device has no passivity: Re(1/J) is {} N m s/rad at {} Hz. Check the sign of \
+             torque and counts, the declared delays, and that motor and encoder are on the same \
+             mass",
             significant(found.disk.delta, 3),
             significant(found.disk.omega / std::f64::consts::TAU, 3),
         ));
@@ -245,8 +246,8 @@ pub fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
     let passivity = match found.passivity() {
         Some(passivity) => format!(
-            "passivity = {} # N m s/rad, lower end of the damping; of a device that is rigid from its \
-             motor to the hand\n",
+            "passivity = {} # N m s/rad, lower end of the damping; valid if the device is rigid \
+             from motor to hand\n",
             significant(passivity, 4),
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),

@@ -26,7 +26,7 @@ use crate::toolchain::{self, NumberFormat, Tools};
 pub enum Target {
     /// This machine.
     Host,
-    /// The emulated board, with every code compared to this machine's.
+    /// The emulated board; every code is compared with that of this machine.
     Qemu,
 }
 
@@ -34,19 +34,19 @@ pub enum Target {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "With --target")]
 pub struct Simulated {
-    /// Measure a simulated device with the program `identify`, on this machine or the emulated
+    /// Measure a simulated device, with the program `identify` on this machine or the emulated
     /// board
     #[arg(long, value_enum, group = "measured")]
     pub target: Option<Target>,
-    /// Standard deviation of the torque that is there and not recorded, new in every tick, in N m
+    /// Standard deviation of the torque noise in N m, new in every tick and not recorded
     #[arg(long, value_name = "TORQUE", default_value_t = 0.005, value_parser = not_negative, allow_negative_numbers = true,
           requires = "target")]
     pub torque_noise: f64,
-    /// Time by which the simulated counts are late, whatever is declared, in s; less than a period
+    /// Time by which the simulated counts are late, in s; less than a period
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew,
           allow_negative_numbers = true, requires = "target")]
     pub skew: f64,
-    /// The noise's seed
+    /// Seed of the noise
     #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]
     pub seed: u64,
 }

@@ -45,7 +45,7 @@ pub(super) fn listing(
     let lines = lines(&file)?;
     let marks = marks(&file);
     if marks.is_empty() {
-        return Err(ListingError::Stripped("symbols that tell code from data"));
+        return Err(ListingError::Stripped("symbols that distinguish code from data"));
     }
     for section in file.sections().filter(|section| section.kind() == SectionKind::Text) {
         let (start, data) = (section.address(), section.data()?);

@@ -139,8 +139,8 @@ fn candidate(
     };
     match &losses {
         Ok(losses) => {
-            let hums =
-                !is_still(rest.as_ref()) && beyond("hum", losses.alone.hum, figures.hum, " N m");
+            let hums = !is_still(rest.as_ref())
+                && beyond("limit cycle", losses.alone.hum, figures.hum, " N m");
             if let Some(bound) = figures.error {
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");

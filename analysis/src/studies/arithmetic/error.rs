@@ -25,8 +25,8 @@ pub enum ArithmeticError {
     Simulation(#[from] SimulationError),
     /// What a format leaves of a motion at rest cannot be told.
     #[error(
-        "the motion of this device does not die away by half in {seconds} s, so that a limit cycle at \
-         rest cannot be told from it: give the device more damping, or the scene more margin"
+        "the motion of this device does not decay by half in {seconds} s, so a limit cycle at rest \
+         cannot be distinguished from it: give the device more damping, or the scene more margin"
     )]
     NoRest {
         /// Longest time that is waited for, in s.
@@ -37,8 +37,8 @@ pub enum ArithmeticError {
     Emulator(#[from] EmulatorError),
     /// The emulated board computes something else.
     #[error(
-        "in {format} the torque of the emulated board is not that of this machine at tick {tick}: \
-         its program is of another version"
+        "in {format} the torque of the emulated board differs from that of this machine at tick \
+         {tick}: its program has another version"
     )]
     Differs {
         /// The number format.

@@ -20,7 +20,7 @@ pub enum FailureError {
     #[error(transparent)]
     Chain(#[from] ChainError),
     /// A wall has no largest stiffness.
-    #[error("the certificate knows no largest stiffness of this wall")]
+    #[error("this wall has no largest certified stiffness")]
     NoLimit,
 }
 

@@ -17,7 +17,7 @@ pub enum ModelError {
     Simulation(#[from] SimulationError),
     /// The run is a rest.
     #[error(
-        "{scene}: nothing moves in its simulation, and models that rest say the same; give it a \
+        "{scene}: nothing moves in its simulation, so models cannot be compared; give it a \
          position, a velocity or a torque"
     )]
     Rest {

@@ -23,7 +23,7 @@ pub static SUBJECT: Subject = Subject {
         Axis::least(&["error"], "largest error of the torque (N m)").floored(FLOOR, NONE),
         Axis::least(&["error_at_1_rad"], "largest error of the torque around 1 rad (N m)")
             .floored(FLOOR, NONE),
-        Axis::least(&["hum"], "hum at rest, without encoder (N m)").floored(FLOOR, NONE),
+        Axis::least(&["hum"], "limit cycle at rest, without encoder (N m)").floored(FLOOR, NONE),
         Axis::least(&["cycle"], "smallest limit cycle (rad)").floored(FLOOR, NONE),
     ],
     others: &[

@@ -44,7 +44,7 @@ pub fn check_brown_out() {
     let level = FLASH.optr().read().bor_lev();
     if level == 0 {
         defmt::warn!(
-            "brown-out level 0 lets the chip run down to 1.6 V; its converter needs 1.8 V: set the \
+            "brown-out level 0 lets the chip run down to 1.6 V; its DAC needs 1.8 V: set the \
              option byte BOR_LEV to 4 (2.8 V) with STM32_Programmer_CLI -c port=SWD -ob BOR_LEV=4"
         );
     }

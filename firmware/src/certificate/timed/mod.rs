@@ -136,7 +136,7 @@ impl TimingError {
             Self::Limited { bound, limit } => {
                 t.push(
                     "the scene passes only as long as its torque is never limited, and a board \
-                     limits it while it fades in and out and at the converter's full scale",
+                     limits it while it fades in and out and at the DAC's full scale",
                 );
                 match (bound, limit) {
                     (None, _) => t.push("; for a rational environment no bound is known then"),

@@ -66,7 +66,7 @@ fn what_cannot_be_built_is_refused_in_a_sentence() {
     );
     assert_eq!(
         build(&Scene { torque_limit: Some(1.5), ..spring }, TRANSDUCERS),
-        "the torque limit of 1.5 N m is above the converter's full scale of 1 N m: lower it to \
+        "the torque limit of 1.5 N m is above the DAC's full scale of 1 N m: lower it to \
          that, or scale the amplifier up"
     );
     let stiff = scene(DelayedSpring::<1> { stiffness: 1e300 });

@@ -267,7 +267,7 @@ fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
         ([(Parameter::Residual, 0.1)], Step::Change, "has no residual"),
         ([(Parameter::Period, 0.1)], Step::Change, "period is fixed"),
         ([(Parameter::Stiffness, f64::NAN)], Step::Certificate, "must be finite"),
-        ([(Parameter::TorqueLimit, 5.0)], Step::Servo, "above the converter's full scale"),
+        ([(Parameter::TorqueLimit, 5.0)], Step::Servo, "above the DAC's full scale"),
     ] {
         assert_eq!(bench.set(3, &changes), Outcome::Refused(Refusal::Set(step)), "{part}");
         let sentence = bench.why(&changes);

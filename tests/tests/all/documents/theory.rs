@@ -145,3 +145,22 @@ fn every_file_that_it_names_exists() {
     }
     assert!(count > 60, "only {count} files were seen");
 }
+
+#[test]
+fn every_term_of_the_glossary_is_in_the_file_that_it_names() {
+    let rows = table(&read(THEORY), "## 12 Glossary");
+    // A row of its own names each group.
+    let terms: Vec<_> = rows.iter().filter(|row| row.len() > 4 && !row[4].is_empty()).collect();
+    assert!(terms.len() > 50, "only {} terms were seen", terms.len());
+    for row in terms {
+        let (names, files): (Vec<_>, Vec<_>) =
+            row[4].split(", ").partition(|name| !name.contains('/'));
+        assert!(!files.is_empty(), "{}: no file", row[0]);
+        let texts: Vec<_> = files.iter().map(|file| read(file)).collect();
+        for name in names {
+            let is_there = regex(&format!(r"\b{name}\b"));
+            let found = texts.iter().any(|text| is_there.is_match(text));
+            assert!(found, "{}: there is no {name} in {files:?}", row[0]);
+        }
+    }
+}
