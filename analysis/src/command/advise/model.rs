@@ -14,7 +14,7 @@ use crate::text_table::markdown_table;
 pub struct ModelArguments {
     /// Find the cheapest model of a scene file's device whose verdict and motion are those of the
     /// fullest: rigid or with its masses, in its hand or in none, with the amplifier's lag or without
-    #[arg(long, conflicts_with = "Wanted")]
+    #[arg(long, conflicts_with = "FormatArguments")]
     pub model: bool,
     /// Most that delta, critical stiffness, angle and torque may be off, as a share of the
     /// fullest model's
