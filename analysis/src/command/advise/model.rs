@@ -15,7 +15,7 @@ pub struct ModelArguments {
     /// Find the simplest model of a scene file's device whose verdict and motion agree with the
     /// full model: rigid or with its masses, with or without the hand, with or without the
     /// amplifier's lag
-    #[arg(long, conflicts_with = "Wanted")]
+    #[arg(long, conflicts_with = "FormatArguments")]
     pub model: bool,
     /// Largest relative error of delta, critical stiffness, angle and torque
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share,
