@@ -2,9 +2,8 @@
 //! Then it judges the answers that ways to the certificate are compared by.
 
 use analysis::studies::tradeoff::certificate::environments::{
-    ANSWERS, EACH, Environment, Kind, PERIOD,
+    EACH, Environment, Kind, PERIOD, answer, environment,
 };
-use analysis::studies::tradeoff::certificate::environments::{answer, environment};
 use analysis::studies::tradeoff::certificate::judges::Judge;
 use num_traits::Signed;
 use std::cmp::Ordering;
@@ -92,26 +91,23 @@ fn the_answers_that_ways_to_the_certificate_are_compared_by_are_exact() {
     if std::env::var_os("ANSWERS").is_some_and(|value| value == "overwrite") {
         let asked: Vec<_> = all().collect();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let found = |part: &[(Kind, usize)]| -> String {
-            let line = |&(kind, number): &(Kind, usize)| {
+        let found = |part: &[(Kind, usize)]| -> Vec<u8> {
+            let bytes = |&(kind, number): &(Kind, usize)| {
                 let environment = environment(kind, number);
-                match index(&environment) {
-                    Ok(index) => format!("{:e}\n", nearest(&index, guess(&environment))),
-                    Err(_) => "none\n".to_owned(),
-                }
+                let alpha = index(&environment).map(|index| nearest(&index, guess(&environment)));
+                alpha.unwrap_or(f64::NAN).to_le_bytes()
             };
-            part.iter().map(line).collect()
+            part.iter().flat_map(bytes).collect()
         };
-        let text: String = std::thread::scope(|scope| {
+        let bytes: Vec<u8> = std::thread::scope(|scope| {
             let parts = asked.chunks(asked.len().div_ceil(cores));
             let threads: Vec<_> = parts.map(|part| scope.spawn(move || found(part))).collect();
-            threads.into_iter().map(|thread| thread.join().expect("found")).collect()
+            threads.into_iter().flat_map(|thread| thread.join().expect("found")).collect()
         });
-        let file = "/../analysis/src/studies/tradeoff/certificate/answers.txt";
-        std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), text).expect("written");
+        let file = "/../analysis/src/studies/tradeoff/certificate/answers.f64";
+        std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), bytes).expect("written");
         return;
     }
-    assert_eq!(ANSWERS.len(), all().count());
     let mut without = 0;
     for (kind, number) in all().step_by(61) {
         let (index, kept) = (index(&environment(kind, number)), answer(kind, number));
