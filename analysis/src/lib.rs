@@ -35,7 +35,6 @@ pub mod scope;
 
 // What scenes are worth and would do, and how far one may go.
 pub mod batch;
-pub mod circle;
 pub mod closed_form;
 pub mod design;
 pub mod limits;
@@ -47,6 +46,7 @@ pub mod response;
 pub mod simulation;
 pub mod stability;
 pub mod trace;
+pub mod unit_circle_poles;
 pub mod verdict;
 pub mod worst_hand;
 
@@ -61,8 +61,8 @@ pub mod table;
 
 // Numbers and words.
 pub mod date;
+pub mod line_search;
 pub mod listing;
-pub mod minimum;
 pub mod number;
 pub mod progress;
 pub mod quantity;

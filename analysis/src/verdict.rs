@@ -12,7 +12,7 @@ use firmware::scene::Scene;
 use firmware::servo::Latched;
 use serde::Serialize;
 
-use crate::minimum::least;
+use crate::line_search::least;
 use crate::quantity::significant;
 use crate::response::Response;
 

@@ -16,7 +16,7 @@ use nalgebra::Complex;
 use serde::Serialize;
 
 use crate::chain::Chain;
-use crate::minimum::least;
+use crate::line_search::least;
 use crate::response::Response;
 use crate::simulation::{Experiment, SimulationError, Stride};
 use crate::stability::{closed_loop, eigenvalues};

@@ -9,8 +9,8 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
-use analysis::studies::arithmetic::{Motion, cost};
 use analysis::studies::bench::live::live_set;
+use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use firmware::certificate::{Certified, Parameter, assess};
@@ -165,7 +165,7 @@ fn every_format_computes_as_the_host_does() {
     let elf = TOOLCHAIN.build_trial().unwrap_or_else(|error| panic!("{error}"));
     let mut board = Trials::boot(&elf).unwrap();
     for (number, case) in servo::cases().iter().enumerate() {
-        let motion = Motion::recorded(&case.subject, counts(number as u64));
+        let motion = Motion::recorded(&case.problem, counts(number as u64));
         for arithmetic in Arithmetic::ALL {
             let name = format!("{} in {}", case.name, arithmetic.name());
             let cost = cost(&mut board, &motion, arithmetic);
@@ -182,11 +182,11 @@ fn every_format_computes_as_the_host_does() {
         }
     }
     // A type of scene that the program has not is refused, and the next question is answered.
-    let subject = servo::cases()[0].subject;
+    let problem = servo::cases()[0].problem;
     let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
     let other = Trial::Servo {
-        scene: Scene { environment, ..subject.scene },
-        transducers: subject.transducers,
+        scene: Scene { environment, ..problem.scene },
+        transducers: problem.transducers,
         arithmetic: Arithmetic::F32,
     };
     assert!(matches!(board.compute(&other, &[0]), Err(EmulatorError::NoTrial)));

@@ -13,7 +13,7 @@ use super::judged::Branch;
 use crate::chart::dash::Dash;
 use crate::chart::sheet::{Frame, Place, Sheet};
 use crate::chart::{Drawn, anchored, units};
-use crate::circle::{CirclePole, Kind};
+use crate::unit_circle_poles::{CirclePole, Kind};
 
 /// What stands for infinity.
 const FAR: Dash = Dash::new(&[4, 4]);

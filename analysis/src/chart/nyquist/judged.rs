@@ -16,9 +16,9 @@ use firmware::passivity::transfer::Transfer;
 use firmware::scene::{Coupling, Scene};
 
 use crate::chart::ChartError;
-use crate::circle::{CirclePole, outside, poles};
-use crate::minimum::least;
+use crate::line_search::least;
 use crate::response::Response;
+use crate::unit_circle_poles::{CirclePole, outside, poles};
 
 /// Points between two poles on half the unit circle. They are denser towards the poles, where the
 /// curve is longest.

@@ -8,8 +8,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::{Curve, Judged, Role, lines};
 use crate::chart::dash::Dash;
 use crate::chart::{Area, Drawn, FAINT, UNITS, anchored, units};
-use crate::circle::{CirclePole, Kind};
 use crate::quantity::{shortened, significant};
+use crate::unit_circle_poles::{CirclePole, Kind};
 
 /// Height of a line of the key in pixels.
 const ROW: i32 = 19;

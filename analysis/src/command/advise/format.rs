@@ -17,8 +17,10 @@ use crate::command::values::positive;
 use crate::hand::Script;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
 use crate::studies::bench::CORE_CLOCK;
+use crate::studies::number_format::{
+    Advice, FormatProblem, HALF_A_TURN, Motion, Requirements, cost,
+};
 use crate::studies::tradeoff::ticks::Ticks;
 use crate::studies::tradeoff::{self, simulation};
 
@@ -68,7 +70,7 @@ const SECONDS: f64 = 5.0;
 /// What is asked about.
 struct Question {
     name: String,
-    subject: Subject,
+    problem: FormatProblem,
     script: Script,
 }
 
@@ -76,11 +78,11 @@ struct Question {
 /// does not.
 pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, CommandError> {
     let question = question(scene, arguments)?;
-    let scene = &question.subject.scene;
+    let scene = &question.problem.scene;
     // A scene that is refused at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let motion = Motion::new(&question.subject, question.script.clone(), SECONDS)?;
-    let figures = Figures {
+    let motion = Motion::new(&question.problem, question.script.clone(), SECONDS)?;
+    let requirements = Requirements {
         hum: arguments.hum,
         error: arguments.error,
         share: arguments.share,
@@ -88,15 +90,15 @@ pub fn run(scene: &str, arguments: &Wanted, answer: &ForWhom) -> Result<Answer, 
         clock: CORE_CLOCK,
     };
     let look = if arguments.measure { measured } else { kept };
-    let advice = look(&motion, &figures)?;
+    let advice = look(&motion, &requirements)?;
     let is_yes = advice.choice().is_some_and(|choice| !advice.hums(choice));
     let answered = Answered {
         format: advice.choice().map(|choice| choice.format),
-        message: message(&question.subject, arguments.hum, &advice),
+        message: message(&question.problem, arguments.hum, &advice),
         simulation: simulated(arguments.verdict)?,
         scene: question.name,
         rate: arguments.rate,
-        coupling_stiffness: match question.subject.scene.coupling {
+        coupling_stiffness: match question.problem.scene.coupling {
             Coupling::Rigid => None,
             Coupling::Spring { stiffness } => Some(stiffness),
         },
@@ -119,7 +121,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             let (scene, steps) = (at_rate(&program.scene), Resolution::of(&transducers, friction));
             Question {
                 name: program.name.to_owned(),
-                subject: Subject { scene, transducers, steps, range },
+                problem: FormatProblem { scene, transducers, steps, range },
                 script: (program.script)(),
             }
         }
@@ -134,7 +136,7 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
             };
             let scene = at_rate(&file.scene);
             Question {
-                subject: Subject { scene, transducers, steps, range },
+                problem: FormatProblem { scene, transducers, steps, range },
                 script: script_of(&file),
                 name: file.name,
             }
@@ -143,16 +145,16 @@ fn question(scene: &str, arguments: &Wanted) -> Result<Question, CommandError> {
 }
 
 /// With the instructions that are kept for scenes of this type.
-fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+fn kept(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let ticks = Ticks::kept()?;
-    let environment = &motion.subject().scene.environment;
-    Ok(Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
+    let environment = &motion.problem().scene.environment;
+    Ok(Advice::new(motion, requirements, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
 }
 
 /// With the instructions that this scene takes on the emulated board.
-fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let mut board = tradeoff::any_board()?;
-    let advice = Advice::new(motion, figures, |arithmetic| {
+    let advice = Advice::new(motion, requirements, |arithmetic| {
         Ok(cost(&mut board, motion, arithmetic)?.most.into())
     })?;
     board.finish()?;
