@@ -247,5 +247,4 @@ impl fmt::Display for Request {
 }
 
 #[cfg(test)]
-#[path = "plan_tests.rs"]
 mod tests;

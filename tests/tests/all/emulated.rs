@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{Emulator, EmulatorError, Judge, Report, Trials};
+use analysis::program::{damper_wall, delayed_spring, free_mode};
 use analysis::studies::bench::live::live_set;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
@@ -28,14 +29,6 @@ use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::vectors;
-
-// The programs' own files: their scenes have no second copy.
-#[path = "../../../firmware/src/bin/damper_wall.rs"]
-mod damper_wall;
-#[path = "../../../firmware/src/bin/delayed_spring.rs"]
-mod delayed_spring;
-#[path = "../../../firmware/src/bin/free_mode.rs"]
-mod free_mode;
 
 /// Ticks of each run.
 const TICKS: usize = 5_000;
