@@ -1,4 +1,4 @@
-//! Where methods fail, and both sides of the certificate's line: every claim that has to be wrong is,
+//! Where methods fail, and both sides of the certificate's line: every verdict that has to be wrong is,
 //! ours is not, and the loops do what was said with the emulated board as their servo.
 //!
 //! The numbers are computed here once more, by other means.
@@ -29,7 +29,7 @@ fn board() -> Player {
     Player::boot(&toolchain.build_player().unwrap_or_else(|error| panic!("{error}"))).unwrap()
 }
 
-/// The claims of each case that are wrong: those that say safe, and those that say unsafe.
+/// The verdicts of each case that are wrong: those that say safe, and those that say unsafe.
 const WRONG: &[(&str, usize, usize)] = &[
     ("explicit-euler", 0, 2),
     ("semi-implicit-euler", 2, 0),

@@ -15,7 +15,7 @@ use crate::simulation::{Experiment, Stride};
 
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
-/// Samples of a trial.
+/// Samples of a run.
 const SAMPLES: usize = 5000;
 
 /// Fixed point with 16 bits behind the point, on a device without friction.

@@ -20,7 +20,7 @@ use crate::simulation::SimulationError;
 use crate::simulation::drive::Drive;
 use crate::simulation::rendering::PreparedServo;
 
-/// Samples of the trial.
+/// Samples of the run.
 const SAMPLES: usize = 4000;
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
