@@ -67,16 +67,6 @@ pub const fn filtered_wall(k: Interval, b: Interval, a: Interval, t: Interval) -
     k.mul(t).half().add(b.mul(ratio))
 }
 
-/// Tustin damper `B (2 / T)(z - 1)/(z + 1)`, undelayed: `-B`.
-pub const fn tustin_damper(b: Interval) -> Interval {
-    b.neg()
-}
-
-/// Free mode that cancels `be >= 0` (equations 22, 23): `be`, reached at `z = 1`.
-pub const fn free_mode(be: Interval) -> Interval {
-    be
-}
-
 /// Free mode behind a coupling spring `k_vc`, with an undelayed wall: `be - K T / 2 - B`.
 pub const fn free_mode_undelayed_wall(
     be: Interval,
@@ -168,12 +158,6 @@ mod tests {
         }
 
         #[test]
-        fn free_modes(be in 0.01..0.5, k_vc in 50.0..4000.0) {
-            let (be, k_vc) = (Interval::exact(be), Interval::exact(k_vc));
-            agree(free_mode(be), index(canceller(be, k_vc), T, false).unwrap().minimum);
-        }
-
-        #[test]
         fn free_modes_behind_walls(
             be in 0.01..0.5,
             k_vc in 500.0..4000.0,
@@ -190,15 +174,6 @@ mod tests {
             agree(formula, index(sum(delayed), T, false).unwrap().minimum);
             let formula = free_mode_undelayed_wall(be, k, b, T);
             agree(formula, index(sum(undelayed), T, false).unwrap().minimum);
-        }
-
-        #[test]
-        fn tustin(b in 0.01..2.0) {
-            // B (2 / T)(z - 1)/(z + 1) with T a power of two, so that everything is exact.
-            let gain = 2.0 * b / 0.0009765625;
-            let p = |c: &[f64]| Polynomial::descending(c, false);
-            let e = Transfer { ones: 1, ..Transfer::new(p(&[gain]), p(&[1.0, 1.0])) };
-            agree(tustin_damper(Interval::exact(b)), index(e, T, false).unwrap().minimum);
         }
     }
 }

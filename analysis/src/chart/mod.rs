@@ -17,6 +17,7 @@ pub mod map;
 pub mod nyquist;
 pub mod picture;
 mod plot_area;
+mod strokes;
 pub mod trace;
 pub mod tradeoff;
 
@@ -30,6 +31,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 pub use data::{Cell, Chart, Data};
 pub use error::ChartError;
 pub use picture::{Output, Picture};
+use strokes::join_strokes;
 
 /// Width and height of a picture in pixels.
 pub const SIZE: (u32, u32) = (820, 560);
@@ -131,7 +133,7 @@ fn draw_sized(
     // The drawing keeps its units; only its size on the page is in pixels.
     let drawing = format!("width=\"{width}\" height=\"{height}\" viewBox");
     let page = format!("width=\"{}\" height=\"{}\" viewBox", size.0, size.1);
-    Ok(Picture::new(svg.replacen(&drawing, &page, 1)))
+    Ok(Picture::new(join_strokes(&svg.replacen(&drawing, &page, 1))))
 }
 
 fn text(size: i32) -> TextStyle<'static> {

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use png::{ColorType, Compression, Encoder, EncodingError, FilterType};
 use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::{Database, Source};
+use resvg::usvg::{Options, Tree};
 use svg2pdf::{ConversionOptions, PageOptions, to_pdf};
 
 use super::error::ChartError;
@@ -73,22 +76,6 @@ impl Output {
     }
 }
 
-/// A drawing for one of the libraries that make files of it, with the same letters on every machine. They
-/// read SVG with two versions of `usvg`, each with types of its own: the resvg that has svg2pdf's version
-/// writes PNGs of four times the size.
-macro_rules! tree {
-    ($library:ident, $svg:expr) => {{
-        use $library::usvg::fontdb::{Database, Source};
-        use $library::usvg::{Options, Tree};
-
-        let mut fonts = Database::new();
-        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
-        fonts.set_sans_serif_family("DejaVu Sans");
-        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-        Tree::from_str($svg, &options).map_err(failed)
-    }};
-}
-
 impl Picture {
     /// A picture from its SVG.
     pub(super) fn new(svg: String) -> Self {
@@ -105,14 +92,14 @@ impl Picture {
     /// # Errors
     /// Where it cannot be drawn.
     pub fn png(&self, scale: f32) -> Result<Vec<u8>, ChartError> {
-        let tree = tree!(resvg, &self.svg)?;
+        let tree = self.tree()?;
         let size = tree.size().to_int_size();
         let size = size.scale_by(scale).unwrap_or(size);
         let mut pixels =
             Pixmap::new(size.width(), size.height()).ok_or_else(|| failed("it has no area"))?;
         let scale = Transform::from_scale(scale, scale);
         resvg::render(&tree, scale, &mut pixels.as_mut());
-        pixels.encode_png().map_err(failed)
+        encoded(&pixels).map_err(failed)
     }
 
     /// As PDF: lines that stay sharp, text that can be searched, and its letters embedded.
@@ -121,8 +108,35 @@ impl Picture {
     /// Where it cannot be drawn.
     pub fn pdf(&self) -> Result<Vec<u8>, ChartError> {
         let page = PageOptions { dpi: DOTS_PER_INCH };
-        to_pdf(&tree!(svg2pdf, &self.svg)?, ConversionOptions::default(), page).map_err(failed)
+        to_pdf(&self.tree()?, ConversionOptions::default(), page).map_err(failed)
     }
+
+    /// As the libraries that make files of it read it, with the same letters on every machine.
+    fn tree(&self) -> Result<Tree, ChartError> {
+        let mut fonts = Database::new();
+        fonts.load_font_source(Source::Binary(Arc::new(dejavu::sans::regular())));
+        fonts.set_sans_serif_family("DejaVu Sans");
+        let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+        Tree::from_str(&self.svg, &options).map_err(failed)
+    }
+}
+
+/// Pixels as a PNG. Drawings are opaque, so that colours are all there is; what the library writes by
+/// itself is twice as large and more.
+fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
+    let colours: Vec<u8> = pixels
+        .pixels()
+        .iter()
+        .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+        .collect();
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, pixels.width(), pixels.height());
+    encoder.set_color(ColorType::Rgb);
+    // Lines on white have no gradients for a filter to take out.
+    encoder.set_filter(FilterType::NoFilter);
+    encoder.set_compression(Compression::Best);
+    encoder.write_header()?.write_image_data(&colours)?;
+    Ok(file)
 }
 
 fn failed(error: impl ToString) -> ChartError {

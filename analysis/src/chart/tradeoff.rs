@@ -45,7 +45,7 @@ impl Panels {
     /// each error, with a word for its name.
     pub fn all(table: &Tradeoff) -> Vec<(Option<&'static str>, Self)> {
         let cases: Vec<_> = table.cases().into_iter().map(str::to_owned).collect();
-        let errors = table.subject.errors;
+        let errors = table.comparison.errors;
         if errors.len() <= COLUMNS {
             return vec![(None, Self { cases, errors: (0..errors.len()).collect() })];
         }
@@ -75,7 +75,7 @@ impl Panels {
 pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError> {
     let columns = panels.columns();
     let rows_of_panels = panels.each().count().div_ceil(columns);
-    let costs = range(table, &table.subject.cost, |method| method.cost());
+    let costs = range(table, &table.comparison.cost, |method| method.cost());
     let Some(costs) = costs else { return Err(ChartError::TooFewPoints) };
     let width = (PANEL.0 * columns as u32).max(SIZE.0);
     let per_row = (width as i32 / ENTRY).max(1);
@@ -84,7 +84,7 @@ pub fn tradeoff(table: &Tradeoff, panels: &Panels) -> Result<Picture, ChartError
     let height = (PANEL.1 * rows_of_panels as u32) as i32;
     let size = (width, (TITLE_ROOM + height + ROW * rows + 10) as u32);
     draw_sized(size, |area| {
-        let area = area.margin(units(TOP), 0, 0, 0).titled(table.subject.title, text(TITLE))?;
+        let area = area.margin(units(TOP), 0, 0, 0).titled(table.comparison.title, text(TITLE))?;
         let (plots, below) = area.split_vertically(units(height));
         let plots = plots.split_evenly((rows_of_panels, columns));
         for (plot, (case, error)) in plots.iter().zip(panels.each()) {
@@ -115,7 +115,7 @@ struct Panel<'t> {
 
 impl Panel<'_> {
     fn axis(&self) -> &Axis {
-        &self.table.subject.errors[self.error]
+        &self.table.comparison.errors[self.error]
     }
 
     /// The methods that have a place in the picture, with their families' numbers.
@@ -131,13 +131,13 @@ impl Panel<'_> {
     /// Where a method is drawn; one that fails is drawn at the edge that is the worst.
     fn place(&self, method: &Method, top: f64) -> Option<(f64, f64)> {
         let (cost, error) = (method.cost()?, method.error(self.error)?);
-        let cost = cost.max(self.table.subject.cost.floor);
+        let cost = cost.max(self.table.comparison.cost.floor);
         let error = if error.is_finite() { error.max(self.axis().floor) } else { top };
         cost.is_finite().then_some((cost, error))
     }
 
     fn paint(&self, area: &Area<'_>, costs: Range<f64>) -> Drawn<()> {
-        let (axis, cost) = (self.axis(), &self.table.subject.cost);
+        let (axis, cost) = (self.axis(), &self.table.comparison.cost);
         let errors = range(self.table, axis, |method| method.error(self.error));
         let mut errors = errors.unwrap_or(0.1..1.0);
         let fails = self.table.methods.iter().any(|m| m.error(self.error) == Some(f64::INFINITY));

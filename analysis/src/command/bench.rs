@@ -163,7 +163,8 @@ fn compile_time() -> io::Result<f64> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
         .current_dir(&workspace)
-        .args(["build", "--release", "--package", "firmware", "--lib", "--message-format=json"])
+        .args(["build", "--profile", "host", "--package", "firmware", "--lib"])
+        .arg("--message-format=json")
         .output()?;
     let library = library(&output.stdout)
         .ok_or_else(|| io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))?;

@@ -12,9 +12,9 @@ use super::status::{CommandError, CommandStatus};
 use crate::emulator::ServoClient;
 use crate::progress;
 use crate::quantity::significant;
-use crate::studies::failures::claim::{Claim, Failure};
-use crate::studies::failures::report::{CaseReport, Seen, WallReport, walls};
-use crate::studies::failures::trial::Played;
+use crate::studies::failures::loop_run::BoardResult;
+use crate::studies::failures::method_result::{Failure, MethodResult};
+use crate::studies::failures::report::{CaseReport, RunResult, WallReport, walls};
 use crate::studies::failures::{ALL, Case};
 use crate::toolchain::{Tools, prepare};
 
@@ -86,42 +86,42 @@ fn text(found: &Found) -> String {
     cases.chain(found.walls.iter().map(wall)).collect::<Vec<_>>().join("\n")
 }
 
-/// A case as lines: who says what, and what was seen.
+/// A case as lines: the verdict of each method, and the runs.
 fn case(case: &CaseReport) -> String {
     let mut text = format!("{}: {}\n", case.name, case.question);
-    for judged in &case.claims {
-        line(&mut text, &judged.claim.by, &judged.claim, judged.failure);
+    for judged in &case.methods {
+        line(&mut text, &judged.result.method, &judged.result, judged.failure);
     }
     line(&mut text, "certificate", &case.certificate, None);
-    line(&mut text, &format!("truth: {}", case.truth.by), &case.truth, None);
-    seen(&mut text, &case.trials);
+    line(&mut text, &format!("truth: {}", case.truth.method), &case.truth, None);
+    runs(&mut text, &case.runs);
     text
 }
 
-fn line(text: &mut String, by: &str, claim: &Claim, failure: Option<Failure>) {
+fn line(text: &mut String, method: &str, result: &MethodResult, failure: Option<Failure>) {
     let mark = match failure {
         Some(Failure::Dangerous) => "WRONG",
         Some(Failure::Needless) => "wrong",
         None => "",
     };
     // What would make it pass is for `haptic certify` to say.
-    let because = claim.because.split("; it would pass").next().unwrap_or_default();
-    let _ = writeln!(text, "  {by:<38} {:<9} {mark:<5}  {because}", claim.says.as_str());
+    let reason = result.reason.split("; it would pass").next().unwrap_or_default();
+    let _ = writeln!(text, "  {method:<38} {:<9} {mark:<5}  {reason}", result.verdict.as_str());
 }
 
-fn seen(text: &mut String, trials: &[Seen]) {
-    for Seen { what, simulated, emulated, .. } in trials {
+fn runs(text: &mut String, results: &[RunResult]) {
+    for RunResult { what, simulated, emulated, .. } in results {
         let emulated = match emulated {
             None => String::new(),
-            Some(Played::Refused) => "; the board refuses it".to_owned(),
-            Some(Played::Ran(fate)) => format!("; emulated, {fate}"),
+            Some(BoardResult::Refused) => "; the board refuses it".to_owned(),
+            Some(BoardResult::Ran(motion)) => format!("; emulated, {motion}"),
         };
         let _ = writeln!(text, "  run: {what:<42}   simulated, {simulated}{emulated}");
     }
 }
 
 fn wall(wall: &WallReport) -> String {
-    let WallReport { delay, limit, hand, trials } = wall;
+    let WallReport { delay, limit, hand, runs } = wall;
     let number = |value: f64| significant(value, 5);
     let mut text = format!(
         "a wall {delay} samples late: certified up to {} N m/rad; worst in a hand of {} kg m^2, \
@@ -131,25 +131,32 @@ fn wall(wall: &WallReport) -> String {
         number(hand.hand.damping),
         number(hand.hand.stiffness),
     );
-    seen(&mut text, trials);
+    self::runs(&mut text, runs);
     text
 }
 
-/// One row a claim, the certificate's and the truth among them.
+/// One row a verdict, the certificate's and the truth among them.
 fn csv(cases: &[CaseReport]) -> Result<(), CommandError> {
     let mut table = csv::Writer::from_writer(io::stdout().lock());
     let failed = |error: csv::Error| CommandError::Output(error.into());
     table.write_record(["case", "by", "says", "failure", "figure", "because"]).map_err(failed)?;
     for case in cases {
-        let judged = case.claims.iter().map(|judged| (&judged.claim, judged.failure));
-        for (claim, failure) in judged.chain([(&case.certificate, None), (&case.truth, None)]) {
+        let judged = case.methods.iter().map(|judged| (&judged.result, judged.failure));
+        for (result, failure) in judged.chain([(&case.certificate, None), (&case.truth, None)]) {
             let failure = match failure {
                 Some(Failure::Dangerous) => "dangerous",
                 Some(Failure::Needless) => "needless",
                 None => "",
             };
-            let figure = claim.figure.map(|figure| figure.to_string()).unwrap_or_default();
-            let row = [case.name, &claim.by, claim.says.as_str(), failure, &figure, &claim.because];
+            let figure = result.figure.map(|figure| figure.to_string()).unwrap_or_default();
+            let row = [
+                case.name,
+                &result.method,
+                result.verdict.as_str(),
+                failure,
+                &figure,
+                &result.reason,
+            ];
             table.write_record(row).map_err(failed)?;
         }
     }

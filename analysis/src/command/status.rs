@@ -18,7 +18,7 @@ use crate::link::{Address, LinkError};
 use crate::quantity::significant;
 use crate::run_csv::RunCsvError;
 use crate::simulation::SimulationError;
-use crate::studies::arithmetic::ArithmeticError;
+use crate::studies::number_format::FormatError;
 use crate::studies::tradeoff::TradeoffError;
 use crate::table::TableError;
 use crate::toolchain::{BuildError, SetupError, SourcesError};
@@ -120,7 +120,7 @@ pub enum CommandError {
     Build(#[from] BuildError),
     /// A program could not be taken apart.
     #[error(transparent)]
-    Anatomy(#[from] crate::studies::anatomy::AnatomyError),
+    TickParts(#[from] crate::studies::tick_parts::TickPartsError),
     /// A program could not be flashed.
     #[error(transparent)]
     Probe(#[from] crate::toolchain::probe::ProbeError),
@@ -132,7 +132,7 @@ pub enum CommandError {
     Emulator(#[from] EmulatorError),
     /// A number format has no figures; what refuses a scene, or cannot simulate it, says so by itself.
     #[error(transparent)]
-    Arithmetic(ArithmeticError),
+    Arithmetic(FormatError),
     /// A set could not be measured on the emulated board.
     #[error(transparent)]
     Live(#[from] crate::studies::bench::live::LiveError),
@@ -259,11 +259,11 @@ pub enum CommandError {
     Output(#[from] io::Error),
 }
 
-impl From<ArithmeticError> for CommandError {
-    fn from(error: ArithmeticError) -> Self {
+impl From<FormatError> for CommandError {
+    fn from(error: FormatError) -> Self {
         match error {
-            ArithmeticError::Refused(rejection) => Self::Refused(rejection),
-            ArithmeticError::Simulation(error) => Self::Simulation(error),
+            FormatError::Refused(rejection) => Self::Refused(rejection),
+            FormatError::Simulation(error) => Self::Simulation(error),
             other => Self::Arithmetic(other),
         }
     }

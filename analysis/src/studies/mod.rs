@@ -2,9 +2,9 @@
 //! lose. None of them is needed to certify, simulate or run a scene, and nothing below uses them; the
 //! charts and the commands show what they find.
 
-pub mod anatomy;
-pub mod arithmetic;
 pub mod bench;
 pub mod failures;
 pub mod model;
+pub mod number_format;
+pub mod tick_parts;
 pub mod tradeoff;

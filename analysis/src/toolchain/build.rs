@@ -118,10 +118,8 @@ pub(super) struct Workspace {
     output: PathBuf,
 }
 
-/// Which build of a program: of which package, with which features, and what is added to its name for the
-/// file.
+/// Which build of a program: with which features, and what is added to its name for the file.
 struct Variant {
-    package: &'static str,
     features: String,
     suffix: String,
 }
@@ -133,7 +131,7 @@ impl Variant {
             NumberFormat::F32 => features.to_owned(),
             NumberFormat::Fixed => format!("{features},fixed-point"),
         };
-        Self { package: "firmware", features, suffix: format!("-{format}{suffix}") }
+        Self { features, suffix: format!("-{format}{suffix}") }
     }
 }
 
@@ -224,10 +222,9 @@ impl Toolchain {
     /// Where it does not compile.
     pub fn build_foreign(&self, folder: &Path, name: &str) -> Result<Program, BuildError> {
         let _lock = self.workspace.lock("build")?;
-        let profile = self.workspace.root.join(FLASH);
         let mut cargo = self.cargo();
         cargo.current_dir(folder).args(["--release", "--bin", name, "--target", TARGET]);
-        ran(name, cargo.arg("--config").arg(profile))?;
+        ran(name, &mut cargo)?;
         let built = self.target_folder().join(TARGET).join("release").join(name);
         Program::at(self.workspace.keep(&built, &format!("foreign-{name}"))?)
     }
@@ -282,8 +279,7 @@ impl Toolchain {
     /// # Errors
     /// Where it does not compile.
     pub fn build_own_environment(&self, format: NumberFormat) -> Result<PathBuf, BuildError> {
-        let scene = Variant::scene("board-qemu,log", format, "");
-        let variant = Variant { package: "own-environment", ..scene };
+        let variant = Variant::scene("board-qemu,log", format, "");
         Ok(self.build(&["pedal"], &variant)?.swap_remove(0))
     }
 
@@ -305,8 +301,7 @@ impl Toolchain {
 
     /// Builds a program without a scene for the emulated board.
     fn build_harness(&self, name: &str) -> Result<PathBuf, BuildError> {
-        let (package, features) = ("firmware-harness", "emulated".into());
-        let variant = Variant { package, features, suffix: String::new() };
+        let variant = Variant { features: "emulated".into(), suffix: String::new() };
         Ok(self.build(&[name], &variant)?.swap_remove(0))
     }
 
@@ -327,12 +322,12 @@ impl Toolchain {
         // Cargo puts each build of a program, however it is built, in the same place; the lock keeps
         // it there until it is copied.
         let _lock = self.workspace.lock("build")?;
-        let flash = ["--release", "--config", FLASH, "--target", TARGET];
+        let release = ["--release", "--target", TARGET];
         let programs = names.iter().flat_map(|name| ["--bin", name]);
-        let with = ["--package", variant.package, "--features", &variant.features];
+        let features = ["--features", &*variant.features];
         self.compile(
             &names.join(", "),
-            &flash.into_iter().chain(programs).chain(with).collect::<Vec<_>>(),
+            &release.into_iter().chain(programs).chain(features).collect::<Vec<_>>(),
         )?;
         let folder = self.target_folder().join(TARGET).join("release");
         let keep = |name: &&str| {
@@ -377,10 +372,6 @@ impl Toolchain {
     }
 }
 
-/// What is flashed is built with, from the workspace's root. Not a profile with a name, which would have
-/// a folder of its own, and in it each macro and build script once more.
-const FLASH: &str = "firmware/flash.toml";
-
 /// Builds the program `haptic` with one scene more, and gives its file.
 ///
 /// It is built as this program was, for this machine: what they have in common is there.
@@ -393,13 +384,13 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     let _lock = workspace.lock("scene")?;
     let mut cargo = Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace.root).args(["build", "--package", NAME]);
-    let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
-    if profile == "release" {
-        cargo.arg("--release");
-    }
+    // Cargo's folder of the profile `dev` has another name.
+    let (profile, folder) =
+        if cfg!(debug_assertions) { ("dev", "debug") } else { ("host", "host") };
+    cargo.args(["--profile", profile]);
     cargo.env("CARGO_TARGET_DIR", &workspace.target).env("HAPTIC_SCENE", scene);
     ran(scene, &mut cargo)?;
-    workspace.keep(&workspace.target.join(profile).join(NAME), &format!("haptic-{scene}"))
+    workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
 }
 
 /// Has cargo build a program.

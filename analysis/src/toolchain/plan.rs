@@ -247,5 +247,4 @@ impl fmt::Display for ManualStep {
 }
 
 #[cfg(test)]
-#[path = "plan_tests.rs"]
 mod tests;

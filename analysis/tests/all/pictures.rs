@@ -86,28 +86,32 @@ fn the_scenes_of_the_pictures_are_certified() {
     }
 }
 
-/// Where tables of measurements are kept, and what is drawn of them.
+/// Where tables of measurements are kept, and the pictures of them that documents show. All others are
+/// drawn here, too, and not kept.
 const TABLES: &str = "analysis/pictures/tradeoff";
 
 #[test]
 fn the_pictures_of_kept_tables_are_what_is_drawn_of_them() {
     let (folder, kept) = (tempfile::tempdir().unwrap(), root().join(TABLES));
-    let names = |folder: &Path| -> BTreeSet<_> {
-        std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name()).collect()
+    let names = |folder: &Path, extension: &str| -> BTreeSet<PathBuf> {
+        let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name().into());
+        files.filter(|name: &PathBuf| name.extension().is_some_and(|it| it == extension)).collect()
     };
-    for name in names(&kept) {
-        if Path::new(&name).extension().unwrap() == "csv" {
-            std::fs::copy(kept.join(&name), folder.path().join(&name)).unwrap();
-        }
+    for name in names(&kept, "csv") {
+        std::fs::copy(kept.join(&name), folder.path().join(&name)).unwrap();
     }
     let mut run = program(&["chart", "tradeoff", "--draw-only", "-o"]);
     let run = run.arg(folder.path()).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let drawn = names(folder.path());
-    assert_eq!(drawn, names(&kept));
-    let bytes = |folder: &Path, name| std::fs::read(folder.join(name)).unwrap();
-    for name in &drawn {
-        let same = bytes(&kept, name) == bytes(folder.path(), name);
+    let drawn = names(folder.path(), "svg");
+    let twins: BTreeSet<_> = drawn.iter().map(|name| name.with_extension("png")).collect();
+    assert_eq!(names(folder.path(), "png"), twins);
+    let readme = read(root().join("README.md"));
+    let shown = |name: &&PathBuf| readme.contains(&format!("({TABLES}/{})", name.display()));
+    let shown: Vec<_> = drawn.iter().filter(shown).collect();
+    assert_eq!(shown.len(), readme.matches(&format!("({TABLES}/")).count());
+    for name in shown {
+        let same = read(kept.join(name)) == read(folder.path().join(name));
         assert!(same, "{name:?} is not what is drawn of its table; see `haptic chart tradeoff`");
     }
 }

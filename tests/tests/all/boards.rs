@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use analysis::studies::anatomy::{Anatomy, Part, Share};
+use analysis::studies::tick_parts::{Part, Share, TickParts};
 use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
@@ -54,11 +54,11 @@ fn has(name: &str) -> &'static [Part] {
 
 /// The instructions of a scene's tick are of what the scene uses, and of nothing else.
 fn check_parts(board: Board, name: &str, program: &Program) {
-    let anatomy = Anatomy::of_file(&program.path).unwrap_or_else(|error| panic!("{error}"));
+    let tick = TickParts::of_file(&program.path).unwrap_or_else(|error| panic!("{error}"));
     let parts =
         [Part::Spring, Part::Damper, Part::Filter, Part::Canceller, Part::Face, Part::Delay];
     for part in parts {
-        let Share { instructions, multiplications, .. } = anatomy.share(part);
+        let Share { instructions, multiplications, .. } = tick.share(part);
         let should = has(name).contains(&part);
         assert_eq!(instructions > 0, should, "{board}, {name}: {instructions} of {part}");
         // A face and a delay move numbers and compare them.
@@ -67,7 +67,7 @@ fn check_parts(board: Board, name: &str, program: &Program) {
     }
     // Every servo has an angle and a deflection of its coupling.
     for part in [Part::Encoder, Part::Coupling] {
-        let multiplies = anatomy.share(part).multiplications > 0;
+        let multiplies = tick.share(part).multiplications > 0;
         assert_eq!(multiplies, !has(name).is_empty(), "{board}, {name}: {part}");
     }
 }

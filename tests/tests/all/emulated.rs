@@ -9,8 +9,9 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
-use analysis::studies::arithmetic::{Motion, cost};
+use analysis::program::{damper_wall, delayed_spring, free_mode};
 use analysis::studies::bench::live::live_set;
+use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use firmware::certificate::{Certified, Parameter, assess};
@@ -28,14 +29,6 @@ use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::vectors;
-
-// The programs' own files: their scenes have no second copy.
-#[path = "../../../firmware/src/bin/damper_wall.rs"]
-mod damper_wall;
-#[path = "../../../firmware/src/bin/delayed_spring.rs"]
-mod delayed_spring;
-#[path = "../../../firmware/src/bin/free_mode.rs"]
-mod free_mode;
 
 /// Ticks of each run.
 const TICKS: usize = 5_000;
@@ -165,7 +158,7 @@ fn every_format_computes_as_the_host_does() {
     let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
     let mut board = BenchClient::boot(&elf).unwrap();
     for (number, case) in servo::cases().iter().enumerate() {
-        let motion = Motion::recorded(&case.subject, counts(number as u64));
+        let motion = Motion::recorded(&case.problem, counts(number as u64));
         for arithmetic in Arithmetic::ALL {
             let name = format!("{} in {}", case.name, arithmetic.name());
             let cost = cost(&mut board, &motion, arithmetic);
@@ -182,11 +175,11 @@ fn every_format_computes_as_the_host_does() {
         }
     }
     // A type of scene that the program has not is refused, and the next question is answered.
-    let subject = servo::cases()[0].subject;
+    let problem = servo::cases()[0].problem;
     let environment = Environment::FreeMode { residual: 0.01, delay: 3 };
     let other = BenchRequest::Servo {
-        scene: Scene { environment, ..subject.scene },
-        transducers: subject.transducers,
+        scene: Scene { environment, ..problem.scene },
+        transducers: problem.transducers,
         arithmetic: Arithmetic::F32,
     };
     assert!(matches!(board.compute(&other, &[0]), Err(EmulatorError::NoBenchProgram)));

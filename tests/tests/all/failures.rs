@@ -1,4 +1,4 @@
-//! Where methods fail, and both sides of the certificate's line: every claim that has to be wrong is,
+//! Where methods fail, and both sides of the certificate's line: every verdict that has to be wrong is,
 //! ours is not, and the loops do what was said with the emulated board as their servo.
 //!
 //! The numbers are computed here once more, by other means.
@@ -6,11 +6,11 @@
 use std::f64::consts::TAU;
 
 use analysis::emulator::ServoClient;
-use analysis::studies::failures::claim::Failure;
-use analysis::studies::failures::fate::End;
+use analysis::studies::failures::loop_run::BoardResult;
+use analysis::studies::failures::method_result::Failure;
+use analysis::studies::failures::motion::Outcome;
 use analysis::studies::failures::report::{CaseReport, walls};
 use analysis::studies::failures::setting::{KNOB, PADDLE, PADDLES, PERIOD};
-use analysis::studies::failures::trial::Played;
 use analysis::studies::failures::{ALL, Case, roots, setting, walls as wall, zigzag};
 use analysis::toolchain::{Tools, prepare};
 use firmware::environment::{Environment, Rational};
@@ -30,7 +30,7 @@ fn board() -> ServoClient {
         .unwrap()
 }
 
-/// The claims of each case that are wrong: those that say safe, and those that say unsafe.
+/// The verdicts of each case that are wrong: those that say safe, and those that say unsafe.
 const WRONG: &[(&str, usize, usize)] = &[
     ("explicit-euler", 0, 2),
     ("semi-implicit-euler", 2, 0),
@@ -58,13 +58,13 @@ fn methods_fail_and_the_certificate_had_said_so() {
     for (case, (name, dangerous, needless)) in ALL.iter().zip(WRONG) {
         assert_eq!(case.name, *name);
         let report = case.report(&mut player).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let wrong = |failure| report.claims.iter().filter(|j| j.failure == Some(failure)).count();
+        let wrong = |failure| report.methods.iter().filter(|j| j.failure == Some(failure)).count();
         assert_eq!(wrong(Failure::Dangerous), *dangerous, "{name}");
         assert_eq!(wrong(Failure::Needless), *needless, "{name}");
-        assert_eq!(report.certificate.failure(report.truth.says), None, "{name}");
-        for seen in &report.trials {
+        assert_eq!(report.certificate.failure(report.truth.verdict), None, "{name}");
+        for seen in &report.runs {
             assert!(seen.is_as_expected(), "{name}: {seen:?}");
-            let refused = seen.emulated == Some(Played::Refused);
+            let refused = seen.emulated == Some(BoardResult::Refused);
             assert!(!refused || REFUSED.contains(name), "{name}: {seen:?}");
         }
         assert!(report.holds(), "{name}");
@@ -72,8 +72,12 @@ fn methods_fail_and_the_certificate_had_said_so() {
     // What no rounding can tell from the circle is not run by a board, whatever it is told.
     let mut player = player.unwrap();
     for pole in [1.0 + roots::BESIDE, 1.0 - roots::BESIDE] {
-        let trial = setting::trial("a pole", &roots::scene(pole), PADDLES, End::Rests);
-        assert_eq!(trial.believing(100.0).emulated(&mut player).unwrap(), Played::Refused);
+        let loop_run =
+            setting::loop_run("a pole", &roots::scene(pole), PADDLES, Outcome::Converges);
+        assert_eq!(
+            loop_run.with_claimed_passivity(100.0).emulated(&mut player).unwrap(),
+            BoardResult::Refused
+        );
     }
     player.finish().unwrap();
 }
@@ -82,9 +86,9 @@ fn report(name: &str) -> CaseReport {
     Case::find(name).unwrap().report(&mut None).unwrap()
 }
 
-fn figure(report: &CaseReport, by: &str) -> f64 {
-    let judged = report.claims.iter().find(|judged| judged.claim.by == by);
-    judged.unwrap_or_else(|| panic!("{by}")).claim.figure.unwrap()
+fn figure(report: &CaseReport, method: &str) -> f64 {
+    let judged = report.methods.iter().find(|judged| judged.result.method == method);
+    judged.unwrap_or_else(|| panic!("{method}")).result.figure.unwrap()
 }
 
 fn near(is: f64, should: f64, part: f64) {
@@ -119,8 +123,8 @@ fn the_limits_that_methods_show_are_their_recursions() {
             if semi_implicit_grows(middle, substeps) { high = middle } else { low = middle }
         }
         let steps = if substeps == 1 { "step" } else { "steps" };
-        let by = format!("semi-implicit Euler, {substeps} {steps} a tick");
-        near(figure(&report, &by), low, 1e-6);
+        let method = format!("semi-implicit Euler, {substeps} {steps} a tick");
+        near(figure(&report, &method), low, 1e-6);
     }
     near(figure(&report, "semi-implicit Euler, 1 step a tick"), 199_000.0, 1e-9);
     // The determinant of the exact tick reaches 1.
@@ -166,8 +170,8 @@ fn exact(scene: &Scene) -> Exact {
 
 #[test]
 fn what_grids_and_roots_miss_is_decided_in_rational_arithmetic() {
-    let study = Case::find("grid").unwrap().study().unwrap();
-    let resonance = exact(&study.trials[0].experiment.scene);
+    let result = Case::find("grid").unwrap().evaluate().unwrap();
+    let resonance = exact(&result.runs[0].experiment.scene);
     assert!(!resonance.passes_exact() && !resonance.passes_paper());
     let alpha = resonance.alpha().unwrap();
     assert_eq!(alpha.compare(&q(100.0 * PADDLE.damping)), Ordering::Greater);
@@ -192,9 +196,9 @@ fn the_friction_of_section_8_is_the_least() {
 #[test]
 fn an_observer_asks_for_what_no_motor_has() {
     let report = report("passivity-observer");
-    let [always, guarded] = &report.claims[..] else { panic!("two observers") };
-    assert!(always.claim.because.starts_with("the torque is not a number"), "{always:?}");
-    assert!(guarded.claim.figure.unwrap() > 100.0 * PADDLES.full_scale_torque, "{guarded:?}");
+    let [always, guarded] = &report.methods[..] else { panic!("two observers") };
+    assert!(always.result.reason.starts_with("the torque is not a number"), "{always:?}");
+    assert!(guarded.result.figure.unwrap() > 100.0 * PADDLES.full_scale_torque, "{guarded:?}");
 }
 
 #[test]
@@ -220,10 +224,10 @@ fn walls_rest_below_the_limit_and_not_above_it() {
             segments: Vec::new(),
         });
         let wall = wall::wall(report.delay).unwrap();
-        for (trial, grows) in
+        for (loop_run, grows) in
             wall.below.iter().map(|below| (below, false)).chain([(&wall.above, true)])
         {
-            let controller = Controller::new(&exact(&trial.experiment.scene)).unwrap();
+            let controller = Controller::new(&exact(&loop_run.experiment.scene)).unwrap();
             let radius = controller.spectral_radius(&plant).unwrap();
             assert_eq!(radius > 1.0, grows, "{} samples late: {radius}", report.delay);
         }
@@ -233,8 +237,8 @@ fn walls_rest_below_the_limit_and_not_above_it() {
         for below in &wall.below {
             near(below.experiment.friction, friction, 1e-9);
         }
-        let boards = report.trials.iter().filter_map(|seen| seen.emulated.as_ref());
-        let refused = boards.filter(|played| **played == Played::Refused).count();
+        let boards = report.runs.iter().filter_map(|seen| seen.emulated.as_ref());
+        let refused = boards.filter(|board_result| **board_result == BoardResult::Refused).count();
         // One sample late, the controller alone oscillates above the limit: no board can be told
         // of a device on which it would not.
         assert_eq!(refused, usize::from(report.delay == 1));

@@ -2,10 +2,9 @@
 //! Then it judges the answers that ways to the certificate are compared by.
 
 use analysis::studies::tradeoff::certificate::environments::{
-    ANSWERS, EACH, Environment, Kind, PERIOD,
+    EACH, Environment, Kind, PERIOD, environment, reference_index,
 };
-use analysis::studies::tradeoff::certificate::environments::{answer, environment};
-use analysis::studies::tradeoff::certificate::judges::Judge;
+use analysis::studies::tradeoff::certificate::index_methods::IndexMethod;
 use num_traits::Signed;
 use std::cmp::Ordering;
 use tests::exact::{Q, of_f64, power_of_ten, ratio};
@@ -81,40 +80,37 @@ fn nearest(index: &Index, guess: f64) -> f64 {
 
 /// A guess at the index: the middle of the certificate's enclosure.
 fn guess(environment: &Environment) -> f64 {
-    let said = Judge::Enclosure(0.0).ask(environment, 1.0).and_then(|said| said.alpha);
+    let said = IndexMethod::Enclosure(0.0).evaluate(environment, 1.0).and_then(|said| said.alpha);
     said.map_or(0.0, |(lo, hi)| 0.5 * (lo + hi))
 }
 
-/// `ANSWERS=overwrite` finds all of them again, and takes its time.
+/// `INDICES=overwrite` finds all of them again, and takes its time.
 #[test]
 fn the_answers_that_ways_to_the_certificate_are_compared_by_are_exact() {
     let all = || Kind::ALL.into_iter().flat_map(|kind| (0..EACH).map(move |n| (kind, n)));
     if std::env::var_os("ANSWERS").is_some_and(|value| value == "overwrite") {
-        let asked: Vec<_> = all().collect();
+        let evaluated: Vec<_> = all().collect();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let found = |part: &[(Kind, usize)]| -> String {
-            let line = |&(kind, number): &(Kind, usize)| {
+        let found = |part: &[(Kind, usize)]| -> Vec<u8> {
+            let bytes = |&(kind, number): &(Kind, usize)| {
                 let environment = environment(kind, number);
-                match index(&environment) {
-                    Ok(index) => format!("{:e}\n", nearest(&index, guess(&environment))),
-                    Err(_) => "none\n".to_owned(),
-                }
+                let alpha = index(&environment).map(|index| nearest(&index, guess(&environment)));
+                alpha.unwrap_or(f64::NAN).to_le_bytes()
             };
-            part.iter().map(line).collect()
+            part.iter().flat_map(bytes).collect()
         };
-        let text: String = std::thread::scope(|scope| {
-            let parts = asked.chunks(asked.len().div_ceil(cores));
+        let bytes: Vec<u8> = std::thread::scope(|scope| {
+            let parts = evaluated.chunks(evaluated.len().div_ceil(cores));
             let threads: Vec<_> = parts.map(|part| scope.spawn(move || found(part))).collect();
-            threads.into_iter().map(|thread| thread.join().expect("found")).collect()
+            threads.into_iter().flat_map(|thread| thread.join().expect("found")).collect()
         });
-        let file = "/../analysis/src/studies/tradeoff/certificate/answers.txt";
-        std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), text).expect("written");
+        let file = "/../analysis/src/studies/tradeoff/certificate/indices.f64";
+        std::fs::write([env!("CARGO_MANIFEST_DIR"), file].concat(), bytes).expect("written");
         return;
     }
-    assert_eq!(ANSWERS.len(), all().count());
     let mut without = 0;
     for (kind, number) in all().step_by(61) {
-        let (index, kept) = (index(&environment(kind, number)), answer(kind, number));
+        let (index, kept) = (index(&environment(kind, number)), reference_index(kind, number));
         match (&index, kept) {
             (Ok(index), Some(alpha)) => {
                 let alpha = q(alpha);

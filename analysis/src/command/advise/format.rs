@@ -17,8 +17,10 @@ use crate::command::value_parsers::positive;
 use crate::hand::HandTrajectory;
 use crate::limits::at_period;
 use crate::program::Program;
-use crate::studies::arithmetic::{Advice, Figures, HALF_A_TURN, Motion, Subject, cost};
 use crate::studies::bench::CORE_CLOCK;
+use crate::studies::number_format::{
+    Advice, FormatProblem, HALF_A_TURN, Motion, Requirements, cost,
+};
 use crate::studies::tradeoff::ticks::Ticks;
 use crate::studies::tradeoff::{self, simulation};
 
@@ -68,7 +70,7 @@ const SECONDS: f64 = 5.0;
 /// The scene that a format is sought for.
 struct FormatQuery {
     name: String,
-    subject: Subject,
+    problem: FormatProblem,
     trajectory: HandTrajectory,
 }
 
@@ -80,11 +82,11 @@ pub fn run(
     answer: &JsonOption,
 ) -> Result<CommandStatus, CommandError> {
     let query = query(scene, arguments)?;
-    let scene = &query.subject.scene;
+    let scene = &query.problem.scene;
     // A scene that is refused at this rate needs no format.
     scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let motion = Motion::new(&query.subject, query.trajectory.clone(), SECONDS)?;
-    let figures = Figures {
+    let motion = Motion::new(&query.problem, query.trajectory.clone(), SECONDS)?;
+    let requirements = Requirements {
         hum: arguments.hum,
         error: arguments.error,
         share: arguments.share,
@@ -92,15 +94,15 @@ pub fn run(
         clock: CORE_CLOCK,
     };
     let look = if arguments.measure { measured } else { kept };
-    let advice = look(&motion, &figures)?;
+    let advice = look(&motion, &requirements)?;
     let is_yes = advice.choice().is_some_and(|choice| !advice.hums(choice));
     let answered = FormatReport {
         format: advice.choice().map(|choice| choice.format),
-        message: message(&query.subject, arguments.hum, &advice),
+        message: message(&query.problem, arguments.hum, &advice),
         simulation: simulated(arguments.verdict)?,
         scene: query.name,
         rate: arguments.rate,
-        coupling_stiffness: match query.subject.scene.coupling {
+        coupling_stiffness: match query.problem.scene.coupling {
             Coupling::Rigid => None,
             Coupling::Spring { stiffness } => Some(stiffness),
         },
@@ -123,7 +125,7 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
             let (scene, steps) = (at_rate(&program.scene), Resolution::of(&transducers, friction));
             FormatQuery {
                 name: program.name.to_owned(),
-                subject: Subject { scene, transducers, steps, range },
+                problem: FormatProblem { scene, transducers, steps, range },
                 trajectory: (program.trajectory)(),
             }
         }
@@ -138,7 +140,7 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
             };
             let scene = at_rate(&file.scene);
             FormatQuery {
-                subject: Subject { scene, transducers, steps, range },
+                problem: FormatProblem { scene, transducers, steps, range },
                 trajectory: hand_trajectory(&file),
                 name: file.name,
             }
@@ -147,16 +149,16 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
 }
 
 /// With the instructions that are kept for scenes of this type.
-fn kept(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+fn kept(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let ticks = Ticks::kept()?;
-    let environment = &motion.subject().scene.environment;
-    Ok(Advice::new(motion, figures, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
+    let environment = &motion.problem().scene.environment;
+    Ok(Advice::new(motion, requirements, |arithmetic| Ok(ticks.of(environment, arithmetic)))?)
 }
 
 /// With the instructions that this scene takes on the emulated board.
-fn measured(motion: &Motion, figures: &Figures) -> Result<Advice, CommandError> {
+fn measured(motion: &Motion, requirements: &Requirements) -> Result<Advice, CommandError> {
     let mut board = tradeoff::any_board()?;
-    let advice = Advice::new(motion, figures, |arithmetic| {
+    let advice = Advice::new(motion, requirements, |arithmetic| {
         Ok(cost(&mut board, motion, arithmetic)?.most.into())
     })?;
     board.finish()?;

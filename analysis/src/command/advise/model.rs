@@ -6,7 +6,7 @@ use crate::command::shared_arguments::{JsonOption, folder};
 use crate::command::status::{CommandError, CommandStatus};
 use crate::file::{Purpose, load_for};
 use crate::quantity::significant;
-use crate::studies::model::{Advice, Deviation, Judged, advise, percent};
+use crate::studies::model::{Advice, Deviation, JudgedModel, advise, percent};
 use crate::text_table::markdown_table;
 
 /// Arguments of `haptic advise --model`; the scene needs a table `simulation`.
@@ -68,8 +68,8 @@ fn text(advice: &Advice) -> String {
 }
 
 /// Numbers with how far they are off in brackets.
-fn row(judged: &Judged) -> [String; 10] {
-    let Judged { model, facts, deviation, beyond, .. } = judged;
+fn row(judged: &JudgedModel) -> [String; 10] {
+    let JudgedModel { model, result, deviation, beyond, .. } = judged;
     let Deviation { delta, critical_stiffness, angle, torque } = *deviation;
     let number = |value: Option<f64>, off: Option<f64>| match (value, off) {
         (None, _) => "none".to_owned(),
@@ -78,12 +78,12 @@ fn row(judged: &Judged) -> [String; 10] {
     };
     [
         model.clone(),
-        facts.states.to_string(),
-        significant(facts.steps_per_second, 2),
-        facts.certificate.map_or_else(|| "none".to_owned(), |verdict| verdict.to_string()),
-        facts.stability.to_string(),
-        number(facts.delta, delta),
-        number(facts.critical_stiffness, critical_stiffness),
+        result.states.to_string(),
+        significant(result.steps_per_second, 2),
+        result.certificate.map_or_else(|| "none".to_owned(), |verdict| verdict.to_string()),
+        result.stability.to_string(),
+        number(result.delta, delta),
+        number(result.critical_stiffness, critical_stiffness),
         percent(angle),
         percent(torque),
         beyond.join(", "),

@@ -8,8 +8,8 @@ use firmware::text::RoundUp3;
 use serde::Serialize;
 
 use crate::quantity::significant;
-use crate::studies::arithmetic::{Advice, Candidate, Subject};
 use crate::studies::bench::CORE_CLOCK;
+use crate::studies::number_format::{Advice, Candidate, FormatProblem};
 use crate::text_table::markdown_table;
 
 /// The answer as JSON.
@@ -47,14 +47,14 @@ pub struct SimulationMethod {
 }
 
 /// The answer in sentences.
-pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
+pub fn message(problem: &FormatProblem, allowed: f64, advice: &Advice) -> String {
     let choice = advice.choice();
-    let format = choice.map_or_else(|| none(advice), |choice| chosen(subject, choice));
+    let format = choice.map_or_else(|| none(advice), |choice| chosen(problem, choice));
     let cheapest = choice.or_else(|| advice.candidates.first());
     let rest = cheapest.and_then(|candidate| candidate.rest.as_ref());
     match advice.encoder_hum {
         Some(hum) if cheapest.is_some_and(|candidate| advice.hums(candidate)) => {
-            format!("{}. As to the formats: {format}", coarse(subject, allowed, hum, rest))
+            format!("{}. As to the formats: {format}", coarse(problem, allowed, hum, rest))
         }
         hum => {
             let unknown = match hum {
@@ -70,8 +70,13 @@ pub fn message(subject: &Subject, allowed: f64, advice: &Advice) -> String {
 }
 
 /// That the encoder is too coarse for any format, and what would do.
-fn coarse(subject: &Subject, allowed: f64, hum: f64, rest: Option<&QuantizationBound>) -> String {
-    let counts = subject.transducers.counts_per_turn;
+fn coarse(
+    problem: &FormatProblem,
+    allowed: f64,
+    hum: f64,
+    rest: Option<&QuantizationBound>,
+) -> String {
+    let counts = problem.transducers.counts_per_turn;
     format!(
         "no: in every format the encoder alone causes a limit cycle of {} N m in a device without \
          friction, above {} N m. About {} counts per turn instead of {} are enough, or a softer \
@@ -91,7 +96,7 @@ fn as_certified(rest: Option<&QuantizationBound>) -> String {
 
 /// Why no format was chosen.
 fn none(advice: &Advice) -> String {
-    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.hum);
+    let hum = |candidate: &&Candidate| candidate.losses.map(|losses| losses.alone.torque);
     let built = advice.candidates.iter().filter(|candidate| hum(candidate).is_some());
     let quietest = built.min_by(|a, b| hum(a).partial_cmp(&hum(b)).unwrap_or(Ordering::Equal));
     let reason = quietest.map_or_else(String::new, |candidate| {
@@ -105,14 +110,14 @@ fn none(advice: &Advice) -> String {
 }
 
 /// Why a format was chosen.
-fn chosen(subject: &Subject, choice: &Candidate) -> String {
-    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.hum);
+fn chosen(problem: &FormatProblem, choice: &Candidate) -> String {
+    let hum = choice.losses.map_or(f64::NAN, |losses| losses.alone.torque);
     let its_cycle = match choice.is_still() {
         true => "its own limit cycle without friction would be",
         false => "its own limit cycle is",
     };
     let arithmetic = Arithmetic::ALL.into_iter().find(|format| format.name() == choice.format);
-    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| subject.units(format));
+    let units = arithmetic.filter(|format| format.is_scaled()).map(|format| problem.units(format));
     let scaled = units.map_or_else(String::new, |units| {
         format!(", with angles in {} rad and torques in {} N m,", units.angle, units.torque)
     });
@@ -182,8 +187,8 @@ fn row(candidate: &Candidate) -> [String; 9] {
         format!("{} %", figure(Some(100.0 * candidate.share))),
         figure(losses.map(|losses| losses.error)),
         figure(losses.and_then(|losses| losses.error_elsewhere)),
-        figure(losses.map(|losses| losses.alone.hum)),
-        figure(losses.and_then(|losses| losses.with_encoder).map(|rest| rest.hum)),
+        figure(losses.map(|losses| losses.alone.torque)),
+        figure(losses.and_then(|losses| losses.with_encoder).map(|cycle| cycle.torque)),
         candidate.rest.map_or_else(|| "none".to_owned(), |rest| RoundUp3(rest.hum()).to_string()),
         candidate.rejected.join("; "),
     ]

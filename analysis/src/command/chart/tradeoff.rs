@@ -15,7 +15,7 @@ use crate::progress;
 use crate::quantity::significant;
 use crate::studies::tradeoff::ticks::{self, Ticks};
 use crate::studies::tradeoff::{
-    self, Subject, Tradeoff, certificate, rate, servo, simulation, sine,
+    self, Comparison, Tradeoff, certificate, rate, servo, simulation, sine,
 };
 use crate::table::Table;
 use crate::toolchain::{self, NumberFormat, Tools};
@@ -75,13 +75,13 @@ impl Topic {
         if self == Self::All { TOPICS.to_vec() } else { vec![self] }
     }
 
-    fn subject(self) -> &'static Subject {
+    fn comparison(self) -> &'static Comparison {
         match self {
-            Self::Servo => &servo::SUBJECT,
-            Self::Sine => &sine::SUBJECT,
-            Self::All | Self::Simulation => &simulation::SUBJECT,
-            Self::Certificate => &certificate::SUBJECT,
-            Self::Rate => &rate::SUBJECT,
+            Self::Servo => &servo::COMPARISON,
+            Self::Sine => &sine::COMPARISON,
+            Self::All | Self::Simulation => &simulation::COMPARISON,
+            Self::Certificate => &certificate::COMPARISON,
+            Self::Rate => &rate::COMPARISON,
         }
     }
 
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         move |source| CommandError::Unwritable { path, source }
     };
     if let (Some(picture), Topic::All) = (&arguments.picture, arguments.topic) {
-        let topics = TOPICS.map(|topic| topic.subject().name).join(", ");
+        let topics = TOPICS.map(|topic| topic.comparison().name).join(", ");
         return Err(CommandError::NoTopic { picture: picture.clone(), topics });
     }
     let picture = arguments.picture.as_deref().map(Output::new).transpose()?;
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         std::fs::create_dir_all(folder).map_err(unwritable(folder))?;
     }
     for topic in arguments.topic.topics() {
-        let file = |extension| folder.join(topic.subject().name).with_extension(extension);
+        let file = |extension| folder.join(topic.comparison().name).with_extension(extension);
         let table = file("csv");
         if !arguments.draw_only {
             let measured = topic.measure()?;
@@ -133,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         if arguments.draw_only && !table.exists() {
             return Err(CommandError::NothingKept { table });
         }
-        let tradeoff = Tradeoff::read(topic.subject(), Table::open(&table)?)?;
+        let tradeoff = Tradeoff::read(topic.comparison(), Table::open(&table)?)?;
         match &picture {
             Some(output) => {
                 let panels = arguments.panels(&tradeoff)?;
@@ -148,7 +148,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
 
 /// Draws all panels of a table into a folder, as SVG and as PNG.
 fn draw(tradeoff: &Tradeoff, folder: &Path) -> Result<(), CommandError> {
-    let name = tradeoff.subject.name;
+    let name = tradeoff.comparison.name;
     for (word, panels) in Panels::all(tradeoff) {
         let picture = chart::tradeoff::tradeoff(tradeoff, &panels)?;
         let name = word.map_or_else(|| name.to_owned(), |word| format!("{name}-{word}"));
@@ -164,7 +164,8 @@ impl Arguments {
     /// The panels that are asked for.
     fn panels(&self, tradeoff: &Tradeoff) -> Result<Panels, CommandError> {
         let cases = tradeoff.cases();
-        let columns: Vec<_> = tradeoff.subject.errors.iter().map(|e| e.column.names[0]).collect();
+        let columns: Vec<_> =
+            tradeoff.comparison.errors.iter().map(|e| e.column.names[0]).collect();
         let known = |asked: &[String], there: &[&str], what| match asked
             .iter()
             .find(|word| !there.contains(&word.as_str()))
@@ -221,11 +222,11 @@ fn interrupts() -> Result<Vec<(&'static Program, f64)>, CommandError> {
 
 /// The methods on the fronts with their figures.
 fn fronts(tradeoff: &Tradeoff) -> String {
-    let subject = tradeoff.subject;
-    let mut text = format!("{}\n", subject.title);
+    let comparison = tradeoff.comparison;
+    let mut text = format!("{}\n", comparison.title);
     for case in tradeoff.cases() {
-        for (number, error) in subject.errors.iter().enumerate() {
-            text += &format!("  {case}: {} against {}\n", subject.cost.label, error.label);
+        for (number, error) in comparison.errors.iter().enumerate() {
+            text += &format!("  {case}: {} against {}\n", comparison.cost.label, error.label);
             for method in tradeoff.front(case, number) {
                 let figure = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);
                 let (cost, error) = (figure(method.cost()), figure(method.error(number)));

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::Figure;
 use crate::program::{Program, State};
-use crate::studies::anatomy::{Anatomy, AnatomyError, Part, Share};
+use crate::studies::tick_parts::{Part, Share, TickParts, TickPartsError};
 use crate::toolchain::{self, NumberFormat};
 
 /// What a scene's program has.
@@ -43,12 +43,12 @@ impl Inventory {
     ///
     /// # Errors
     /// Where the program cannot be taken apart.
-    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, AnatomyError> {
-        let anatomy = Anatomy::of_file(&built.path)?;
-        let part = |part: Part| PartShare { part: part.to_string(), share: anatomy.share(part) };
+    pub fn of(program: &Program, built: &toolchain::Program) -> Result<Self, TickPartsError> {
+        let tick = TickParts::of_file(&built.path)?;
+        let part = |part: Part| PartShare { part: part.to_string(), share: tick.share(part) };
         Ok(Self {
             scene: program.name,
-            tick: anatomy.whole(),
+            tick: tick.whole(),
             parts: Part::ALL.map(part).to_vec(),
             state_f32: (program.state)(NumberFormat::F32),
             state_fixed: (program.state)(NumberFormat::Fixed),

@@ -1,9 +1,9 @@
-//! A question about one loop, and what was said of it.
+//! A question about one loop, and the results of the methods that were asked.
 
 use thiserror::Error;
 
-use super::claim::Claim;
-use super::trial::{Trial, TrialError};
+use super::loop_run::{LoopRun, LoopRunError};
+use super::method_result::MethodResult;
 use crate::chain::ChainError;
 use crate::simulation::SimulationError;
 
@@ -15,7 +15,7 @@ pub enum FailureError {
     Simulation(#[from] SimulationError),
     /// A loop cannot be run.
     #[error(transparent)]
-    Trial(#[from] TrialError),
+    Run(#[from] LoopRunError),
     /// There is no such device.
     #[error(transparent)]
     Chain(#[from] ChainError),
@@ -31,28 +31,28 @@ pub struct Case {
     pub name: &'static str,
     /// What is asked, in a few words.
     pub question: &'static str,
-    pub(super) study: fn() -> Result<Study, FailureError>,
+    pub(super) evaluate: fn() -> Result<CaseResult, FailureError>,
 }
 
-/// What was said, and what is so.
+/// The results of all methods, and the loops that show which are right.
 #[derive(Clone, Debug)]
-pub struct Study {
+pub struct CaseResult {
     /// The methods that others use.
-    pub claims: Vec<Claim>,
+    pub methods: Vec<MethodResult>,
     /// The certificate.
-    pub certificate: Claim,
+    pub certificate: MethodResult,
     /// What does not err on this loop.
-    pub truth: Claim,
+    pub truth: MethodResult,
     /// Loops that show it: the one in question, then one that the certificate allows.
-    pub trials: Vec<Trial>,
+    pub runs: Vec<LoopRun>,
 }
 
 impl Case {
-    /// Asks everybody.
+    /// Asks all methods.
     ///
     /// # Errors
     /// Where the loop cannot be had.
-    pub fn study(&self) -> Result<Study, FailureError> {
-        (self.study)()
+    pub fn evaluate(&self) -> Result<CaseResult, FailureError> {
+        (self.evaluate)()
     }
 }

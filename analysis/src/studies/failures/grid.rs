@@ -6,10 +6,10 @@ use firmware::certificate::LoopTransfers;
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::Scene;
 
-use super::case::{FailureError, Study};
-use super::claim::{Claim, Says};
-use super::fate::End;
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial};
+use super::case::{CaseResult, FailureError};
+use super::method_result::{MethodResult, Verdict};
+use super::motion::Outcome;
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run};
 use crate::device::Hand;
 use crate::response::Response;
 use crate::simulation::{Experiment, Integration, SimulationError};
@@ -23,27 +23,27 @@ const DEPTH: f64 = 100.0;
 
 /// A resonance that gives back what it should take: its real part is negative within a millionth
 /// of a radian, and nowhere else by more than the device pays for.
-pub fn grid() -> Result<Study, FailureError> {
+pub fn grid() -> Result<CaseResult, FailureError> {
     let scene = coupled(PADDLE, resonance(DEPTH, angle()));
     let delta = PADDLE.damping;
     let velocity = equivalent(&scene)?.from_velocity(PERIOD);
-    let claims = GRIDS.map(|points| {
+    let methods = GRIDS.map(|points| {
         let angles = (1..points).map(|point| PI * f64::from(point) / f64::from(points));
         let alpha = angles.map(|theta| -velocity.at_angle(theta).re).fold(f64::MIN, f64::max);
-        let because = "the least real part on the grid asks for {} N m s/rad";
-        Claim::new(format!("grid of {points}"), Says::of(alpha < delta), alpha, because)
+        let reason = "the least real part on the grid asks for {} N m s/rad";
+        MethodResult::new(format!("grid of {points}"), Verdict::of(alpha < delta), alpha, reason)
     });
     let alone = Experiment::still(&scene);
     let truth =
-        Claim::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
+        MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
     // A spring with which the device resonates where the minimum is.
     let stiffness = PADDLE.inertia * (angle() / PERIOD).powi(2);
-    let mut grows = trial("in a hand that resonates there", &scene, PADDLES, End::Grows);
+    let mut grows = loop_run("in a hand that resonates there", &scene, PADDLES, Outcome::Diverges);
     grows.experiment.plant =
         grows.experiment.plant.with_hand(Hand { stiffness, ..Hand::default() });
-    let certificate = Claim::certificate(&scene);
-    let trials = vec![grows.pushed(1.0, 300_000)];
-    Ok(Study { claims: claims.into(), certificate, truth, trials })
+    let certificate = MethodResult::certificate(&scene);
+    let runs = vec![grows.pushed(1.0, 300_000)];
+    Ok(CaseResult { methods: methods.into(), certificate, truth, runs })
 }
 
 /// In the middle between two points of the finest grid, a third of the way around.

@@ -2,10 +2,10 @@
 
 use firmware::servo::Transducers;
 
-use super::case::{FailureError, Study};
-use super::claim::{Claim, Says};
-use super::fate::End;
-use super::setting::{KNOB, KNOBS, coupled, rigid, trial, wall_of};
+use super::case::{CaseResult, FailureError};
+use super::method_result::{MethodResult, Verdict};
+use super::motion::Outcome;
+use super::setting::{KNOB, KNOBS, coupled, loop_run, rigid, wall_of};
 use crate::simulation::method::Method;
 use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration};
@@ -20,38 +20,51 @@ fn two_masses() -> Plant {
 }
 
 /// Explicit Euler: a stable device grows.
-pub fn explicit_euler() -> Result<Study, FailureError> {
+pub fn explicit_euler() -> Result<CaseResult, FailureError> {
     let scene = coupled(KNOB, wall_of(500.0, 0.0, 1));
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let mut claims = Vec::new();
+    let mut methods = Vec::new();
     for substeps in [1, 20] {
         let integration = Integration { method: Method::Euler, substeps };
-        claims.push(Claim::eigenvalues(name(Method::Euler, substeps), &experiment, integration)?);
+        methods.push(MethodResult::eigenvalues(
+            name(Method::Euler, substeps),
+            &experiment,
+            integration,
+        )?);
     }
-    let truth = Claim::eigenvalues(Method::Exact.name(), &experiment, Integration::default())?;
-    let mut certified = trial("the certified wall", &scene, KNOBS, End::Rests).pushed(1.0, 3000);
+    let truth =
+        MethodResult::eigenvalues(Method::Exact.name(), &experiment, Integration::default())?;
+    let mut certified =
+        loop_run("the certified wall", &scene, KNOBS, Outcome::Converges).pushed(1.0, 3000);
     certified.experiment.plant = experiment.plant;
-    Ok(Study { claims, certificate: Claim::certificate(&scene), truth, trials: vec![certified] })
+    Ok(CaseResult {
+        methods,
+        certificate: MethodResult::certificate(&scene),
+        truth,
+        runs: vec![certified],
+    })
 }
 
 /// Semi-implicit Euler in few steps: a wall that shakes comes to rest.
-pub fn semi_implicit_euler() -> Result<Study, FailureError> {
+pub fn semi_implicit_euler() -> Result<CaseResult, FailureError> {
     let scene = rigid(KNOB, wall_of(1500.0, 0.0, 0));
     let experiment = Experiment::still(&scene);
-    let mut claims = Vec::new();
+    let mut methods = Vec::new();
     for substeps in [1, 2, 10] {
-        claims.push(by_limit(&experiment, Method::SemiImplicit, substeps, 1500.0)?);
+        methods.push(by_limit(&experiment, Method::SemiImplicit, substeps, 1500.0)?);
     }
     let truth = by_limit(&experiment, Method::Exact, 1, 1500.0)?;
-    let shakes = trial("1500 N m/rad", &scene, KNOBS, End::Grows).pushed(1.0, 3000).believing(2.0);
+    let shakes = loop_run("1500 N m/rad", &scene, KNOBS, Outcome::Diverges)
+        .pushed(1.0, 3000)
+        .with_claimed_passivity(2.0);
     let rests = rigid(KNOB, wall_of(900.0, 0.0, 0));
-    let rests = trial("900 N m/rad", &rests, KNOBS, End::Rests).pushed(1.0, 3000);
-    let certificate = Claim::certificate(&scene);
-    Ok(Study { claims, certificate, truth, trials: vec![shakes, rests] })
+    let rests = loop_run("900 N m/rad", &rests, KNOBS, Outcome::Converges).pushed(1.0, 3000);
+    let certificate = MethodResult::certificate(&scene);
+    Ok(CaseResult { methods, certificate, truth, runs: vec![shakes, rests] })
 }
 
 /// Runge-Kutta of fourth order in one step a tick: two masses in a hand.
-pub fn runge_kutta() -> Result<Study, FailureError> {
+pub fn runge_kutta() -> Result<CaseResult, FailureError> {
     const STIFFNESS: f64 = 2750.0;
     // Friction hides what grows slowly; a finer encoder needs less of it. The motor is strong enough
     // for a motion that friction does not hide.
@@ -59,20 +72,22 @@ pub fn runge_kutta() -> Result<Study, FailureError> {
     let fine = Transducers { counts_per_turn, full_scale_torque: 100.0, ..KNOBS };
     let scene = rigid(KNOB, wall_of(STIFFNESS, 0.0, 0));
     let experiment = Experiment { plant: two_masses(), ..Experiment::still(&scene) };
-    let claims = vec![
+    let methods = vec![
         by_limit(&experiment, Method::Rk4, 1, STIFFNESS)?,
         by_limit(&experiment, Method::Tustin, 1, STIFFNESS)?,
     ];
     let truth = by_limit(&experiment, Method::Exact, 1, STIFFNESS)?;
-    let mut trials = vec![
-        trial("2750 N m/rad", &scene, fine, End::Grows).pushed(2.0, 15_000).believing(3.0),
-        trial("900 N m/rad", &rigid(KNOB, wall_of(900.0, 0.0, 0)), fine, End::Rests)
+    let mut runs = vec![
+        loop_run("2750 N m/rad", &scene, fine, Outcome::Diverges)
+            .pushed(2.0, 15_000)
+            .with_claimed_passivity(3.0),
+        loop_run("900 N m/rad", &rigid(KNOB, wall_of(900.0, 0.0, 0)), fine, Outcome::Converges)
             .pushed(2.0, 15_000),
     ];
-    for trial in &mut trials {
-        trial.experiment.plant = two_masses();
+    for loop_run in &mut runs {
+        loop_run.experiment.plant = two_masses();
     }
-    Ok(Study { claims, certificate: Claim::certificate(&scene), truth, trials })
+    Ok(CaseResult { methods, certificate: MethodResult::certificate(&scene), truth, runs })
 }
 
 /// The name of a method in so many steps.
@@ -90,9 +105,9 @@ fn by_limit(
     method: Method,
     substeps: u32,
     stiffness: f64,
-) -> Result<Claim, FailureError> {
+) -> Result<MethodResult, FailureError> {
     let integration = Integration { method, substeps };
     let limit = critical_stiffness(experiment, integration)?.unwrap_or(f64::INFINITY);
-    let says = Says::of(stiffness < limit);
-    Ok(Claim::new(name(method, substeps), says, limit, "stable up to {} N m/rad"))
+    let verdict = Verdict::of(stiffness < limit);
+    Ok(MethodResult::new(name(method, substeps), verdict, limit, "stable up to {} N m/rad"))
 }

@@ -6,30 +6,30 @@
 //! board as its servo.
 
 mod case;
-pub mod claim;
 pub mod converters;
-pub mod fate;
 pub mod grid;
 pub mod integration;
 pub mod loaded;
+pub mod loop_run;
+pub mod method_result;
 pub mod missed;
+pub mod motion;
 pub mod observer;
 pub mod region;
 pub mod report;
 pub mod roots;
 pub mod rules;
 pub mod setting;
-pub mod trial;
 pub mod walls;
 pub mod zigzag;
 
-pub use case::{Case, FailureError, Study};
+pub use case::{Case, CaseResult, FailureError};
 
 macro_rules! cases {
-    ($($name:literal, $question:literal, $study:path;)*) => {
+    ($($name:literal, $question:literal, $evaluate:path;)*) => {
         /// All cases, in the order in which they are shown.
         pub const ALL: &[Case] =
-            &[$(Case { name: $name, question: $question, study: $study }),*];
+            &[$(Case { name: $name, question: $question, evaluate: $evaluate }),*];
     };
 }
 

@@ -10,38 +10,44 @@ use std::f64::consts::TAU;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
 
-use super::case::{FailureError, Study};
-use super::claim::{Claim, Says};
-use super::fate::{End, Fate};
+use super::case::{CaseResult, FailureError};
 use super::loaded::LoadedDevice;
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, trial, wall_of};
-use super::trial::Trial;
+use super::loop_run::LoopRun;
+use super::method_result::{MethodResult, Verdict};
+use super::motion::{Motion, Outcome};
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, wall_of};
 use crate::simulation::SimulationError;
 use crate::simulation::torque_signal::TorqueSignal;
 use crate::simulation::unquantized_servo::UnquantizedServo;
 
-/// Samples of the trial.
+/// Samples of the run.
 const SAMPLES: usize = 4000;
 /// Torque in N m with which the hand leans on the wall.
 const LEANS: f64 = 0.2;
 
 /// A wall that needs no observer, under two of them.
-pub fn passivity_observer() -> Result<Study, FailureError> {
+pub fn passivity_observer() -> Result<CaseResult, FailureError> {
     let scene = coupled(PADDLE, wall_of(20.0, 0.0, 1));
-    let mut ours = trial("the certified wall", &scene, PADDLES, End::Rests).pushed(0.0, SAMPLES);
+    let mut ours =
+        loop_run("the certified wall", &scene, PADDLES, Outcome::Converges).pushed(0.0, SAMPLES);
     // Slowly in and out, far less than a count a tick.
     let part = |sample: usize| sample as f64 / (SAMPLES / 4) as f64;
     let lean = |sample| LEANS * part(sample).min(2.0 - part(sample)).max(0.0);
     ours.experiment.hand_torque = TorqueSignal::Held((0..SAMPLES).map(lean).collect());
-    let claims = vec![
+    let methods = vec![
         observed(&scene, &ours, "passivity observer", Divide::Always)?,
         observed(&scene, &ours, "the same, not at v = 0", Divide::WhereItMoves)?,
     ];
-    let fate = ours.simulated()?;
-    let because = "left alone, the device ends within {} rad";
-    let says = Says::of(fate.end() == End::Rests);
-    let truth = Claim::new("exact exponential", says, fate.last, because);
-    Ok(Study { claims, certificate: Claim::certificate(&scene), truth, trials: vec![ours] })
+    let motion = ours.simulated()?;
+    let reason = "left alone, the device ends within {} rad";
+    let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+    let truth = MethodResult::new("exact exponential", verdict, motion.last, reason);
+    Ok(CaseResult {
+        methods,
+        certificate: MethodResult::certificate(&scene),
+        truth,
+        runs: vec![ours],
+    })
 }
 
 /// When the controller divides by the velocity.
@@ -52,12 +58,17 @@ enum Divide {
 }
 
 /// The wall with the observer around it: what it asks the motor for.
-fn observed(scene: &Scene, trial: &Trial, by: &str, divide: Divide) -> Result<Claim, FailureError> {
+fn observed(
+    scene: &Scene,
+    loop_run: &LoopRun,
+    method: &str,
+    divide: Divide,
+) -> Result<MethodResult, FailureError> {
     let mut servo = UnquantizedServo::new(scene).map_err(SimulationError::from)?;
-    let mut device = LoadedDevice::new(&trial.experiment, &PADDLES)?;
+    let mut device = LoadedDevice::new(&loop_run.experiment, &PADDLES)?;
     let step = TAU / PADDLES.counts_per_turn;
     let (mut energy, mut last, mut held, mut peak) = (0.0, 0.0, 0.0, 0.0_f64);
-    for sample in 0..trial.experiment.samples {
+    for sample in 0..loop_run.experiment.samples {
         let angle = (device.position() / step).floor() * step;
         let moved = angle - std::mem::replace(&mut last, angle);
         energy += held * moved;
@@ -70,14 +81,19 @@ fn observed(scene: &Scene, trial: &Trial, by: &str, divide: Divide) -> Result<Cl
         };
         held = torque + damping * velocity;
         if !held.is_finite() {
-            let because = "the torque is not a number from {} s on";
-            return Ok(Claim::new(by, Says::Unsafe, sample as f64 * PERIOD, because));
+            let reason = "the torque is not a number from {} s on";
+            return Ok(MethodResult::new(method, Verdict::Unsafe, sample as f64 * PERIOD, reason));
         }
         peak = peak.max(held.abs());
         held = held.clamp(-PADDLES.full_scale_torque, PADDLES.full_scale_torque);
         device.apply(-held);
     }
-    let fate = Fate::of(&device.positions, trial.experiment.samples);
-    let because = format!("{}; it asks the motor for {{}} N m", fate);
-    Ok(Claim::new(by, Says::of(fate.end() == End::Rests), peak, &because))
+    let motion = Motion::of(&device.positions, loop_run.experiment.samples);
+    let reason = format!("{}; it asks the motor for {{}} N m", motion);
+    Ok(MethodResult::new(
+        method,
+        Verdict::of(motion.outcome() == Outcome::Converges),
+        peak,
+        &reason,
+    ))
 }

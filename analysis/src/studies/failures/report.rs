@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::case::{Case, FailureError};
-use super::claim::{Claim, Failure};
-use super::fate::{End, Fate};
-use super::trial::{Played, Trial};
+use super::loop_run::{BoardResult, LoopRun};
+use super::method_result::{Failure, MethodResult};
+use super::motion::{Motion, Outcome};
 use super::walls::{DELAYS, wall};
 use crate::emulator::ServoClient;
 use crate::worst_hand::HandCase;
@@ -17,37 +17,39 @@ pub struct CaseReport {
     pub name: &'static str,
     /// What is asked.
     pub question: &'static str,
-    /// What methods say.
-    pub claims: Vec<Judged>,
-    /// What is so.
-    pub truth: Claim,
-    /// What the certificate says beforehand.
-    pub certificate: Claim,
-    /// What was seen.
-    pub trials: Vec<Seen>,
+    /// The methods that others use.
+    #[serde(rename = "claims")]
+    pub methods: Vec<JudgedMethod>,
+    /// What does not err on this loop.
+    pub truth: MethodResult,
+    /// The certificate.
+    pub certificate: MethodResult,
+    /// The runs.
+    #[serde(rename = "trials")]
+    pub runs: Vec<RunResult>,
 }
 
-/// A claim and how it is wrong.
+/// The result of a method, and how it is wrong.
 #[derive(Clone, Debug, Serialize)]
-pub struct Judged {
-    /// What is said.
+pub struct JudgedMethod {
+    /// The result.
     #[serde(flatten)]
-    pub claim: Claim,
+    pub result: MethodResult,
     /// How it is wrong, if it is.
     pub failure: Option<Failure>,
 }
 
-/// A trial and what was seen.
+/// What a run was to show, and what it showed.
 #[derive(Clone, Debug, Serialize)]
-pub struct Seen {
-    /// What was tried.
+pub struct RunResult {
+    /// What was run, in a few words.
     pub what: &'static str,
-    /// What was to come of it.
-    pub expected: End,
-    /// What became of it in simulation.
-    pub simulated: Fate,
+    /// The outcome that was expected.
+    pub expected: Outcome,
+    /// Its motion in simulation.
+    pub simulated: Motion,
     /// What the emulated board did, if it was asked.
-    pub emulated: Option<Played>,
+    pub emulated: Option<BoardResult>,
 }
 
 /// A wall on both sides of its limit.
@@ -59,26 +61,27 @@ pub struct WallReport {
     pub limit: f64,
     /// The hand in which it oscillates at 1.01 of that.
     pub hand: HandCase,
-    /// What was seen.
-    pub trials: Vec<Seen>,
+    /// The runs.
+    #[serde(rename = "trials")]
+    pub runs: Vec<RunResult>,
 }
 
 impl Case {
-    /// Asks everybody, and runs the loops: on the emulated board, too, if there is one.
+    /// Asks all methods, and runs the loops: on the emulated board, too, if there is one.
     ///
     /// # Errors
     /// Where a loop cannot be had or run.
     pub fn report(&self, player: &mut Option<ServoClient>) -> Result<CaseReport, FailureError> {
-        let study = self.study()?;
-        let truth = study.truth.says;
-        let judged = |claim: Claim| Judged { failure: claim.failure(truth), claim };
+        let result = self.evaluate()?;
+        let truth = result.truth.verdict;
+        let judged = |result: MethodResult| JudgedMethod { failure: result.failure(truth), result };
         Ok(CaseReport {
             name: self.name,
             question: self.question,
-            claims: study.claims.into_iter().map(judged).collect(),
-            truth: study.truth,
-            certificate: study.certificate,
-            trials: seen(&study.trials, player)?,
+            methods: result.methods.into_iter().map(judged).collect(),
+            truth: result.truth,
+            certificate: result.certificate,
+            runs: run_all(&result.runs, player)?,
         })
     }
 }
@@ -90,42 +93,45 @@ impl Case {
 pub fn walls(player: &mut Option<ServoClient>) -> Result<Vec<WallReport>, FailureError> {
     let report = |delay| {
         let wall = wall(delay)?;
-        let trials = [&wall.below[..], &[wall.above]].concat();
-        let trials = seen(&trials, player)?;
-        Ok(WallReport { delay, limit: wall.limit, hand: wall.hand, trials })
+        let runs = [&wall.below[..], &[wall.above]].concat();
+        let runs = run_all(&runs, player)?;
+        Ok(WallReport { delay, limit: wall.limit, hand: wall.hand, runs })
     };
     DELAYS.map(report).collect()
 }
 
-fn seen(trials: &[Trial], player: &mut Option<ServoClient>) -> Result<Vec<Seen>, FailureError> {
-    let see = |trial: &Trial| {
-        let emulated = player.as_mut().map(|player| trial.emulated(player)).transpose()?;
-        let (what, expected) = (trial.what, trial.expected);
-        Ok(Seen { what, expected, simulated: trial.simulated()?, emulated })
+fn run_all(
+    runs: &[LoopRun],
+    player: &mut Option<ServoClient>,
+) -> Result<Vec<RunResult>, FailureError> {
+    let run = |loop_run: &LoopRun| {
+        let emulated = player.as_mut().map(|player| loop_run.emulated(player)).transpose()?;
+        let (what, expected) = (loop_run.what, loop_run.expected);
+        Ok(RunResult { what, expected, simulated: loop_run.simulated()?, emulated })
     };
-    trials.iter().map(see).collect()
+    runs.iter().map(run).collect()
 }
 
-impl Seen {
-    /// Whether that is what was to come of it.
+impl RunResult {
+    /// Whether the outcome is the expected one.
     pub fn is_as_expected(&self) -> bool {
-        let emulated = self.emulated.as_ref().is_none_or(|played| played.shows(self.expected));
-        self.simulated.end() == self.expected && emulated
+        let emulated = self.emulated.as_ref().is_none_or(|board| board.agrees_with(self.expected));
+        self.simulated.outcome() == self.expected && emulated
     }
 }
 
 impl CaseReport {
     /// Whether some method is wrong, the certificate is not, and all was seen as expected.
     pub fn holds(&self) -> bool {
-        self.claims.iter().any(|judged| judged.failure.is_some())
-            && self.certificate.failure(self.truth.says).is_none()
-            && self.trials.iter().all(Seen::is_as_expected)
+        self.methods.iter().any(|judged| judged.failure.is_some())
+            && self.certificate.failure(self.truth.verdict).is_none()
+            && self.runs.iter().all(RunResult::is_as_expected)
     }
 }
 
 impl WallReport {
     /// Whether all was seen as expected.
     pub fn holds(&self) -> bool {
-        self.hand.grows() && self.trials.iter().all(Seen::is_as_expected)
+        self.hand.grows() && self.runs.iter().all(RunResult::is_as_expected)
     }
 }

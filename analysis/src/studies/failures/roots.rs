@@ -4,8 +4,8 @@ use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::Scene;
 use nalgebra::{Complex, DMatrix};
 
-use super::case::{FailureError, Study};
-use super::claim::{Claim, Says};
+use super::case::{CaseResult, FailureError};
+use super::method_result::{MethodResult, Verdict};
 use super::setting::{PADDLE, rigid};
 use crate::stability::{eigenvalues, radius};
 
@@ -15,13 +15,13 @@ pub const BESIDE: f64 = 1.0 / (1 << 20) as f64;
 pub const OTHERS: f64 = 1.0 / (1 << 8) as f64;
 
 /// A pole outside, which the roots of the denominator show inside.
-pub fn outside() -> Result<Study, FailureError> {
-    study(1.0 + BESIDE)
+pub fn outside() -> Result<CaseResult, FailureError> {
+    evaluate(1.0 + BESIDE)
 }
 
 /// The same pole inside, which they show outside.
-pub fn inside() -> Result<Study, FailureError> {
-    study(1.0 - BESIDE)
+pub fn inside() -> Result<CaseResult, FailureError> {
+    evaluate(1.0 - BESIDE)
 }
 
 /// A smooth filter of the fifth order before a spring, with these poles.
@@ -49,20 +49,24 @@ pub fn denominator(pole: f64) -> Vec<f64> {
         .fold(vec![1.0], factor)
 }
 
-fn study(pole: f64) -> Result<Study, FailureError> {
+fn evaluate(pole: f64) -> Result<CaseResult, FailureError> {
     let scene = scene(pole);
     let companion = companion(&denominator(pole));
     let plain: Vec<Complex<f64>> = companion.complex_eigenvalues().iter().copied().collect();
     let root = "outermost root of the denominator";
-    let claims = vec![
-        Claim::modulus("companion matrix", root, radius(&plain)),
-        Claim::modulus("companion matrix, balanced", root, radius(&eigenvalues(&companion)?)),
+    let methods = vec![
+        MethodResult::modulus("companion matrix", root, radius(&plain)),
+        MethodResult::modulus(
+            "companion matrix, balanced",
+            root,
+            radius(&eigenvalues(&companion)?),
+        ),
     ];
     let growth = growth(pole);
-    let because = "factor by factor its output is {} of what it was, 2^20 samples later";
-    let truth = Claim::new("its response", Says::of(growth < 1.0), growth, because);
-    let certificate = Claim::certificate(&scene);
-    Ok(Study { claims, certificate, truth, trials: Vec::new() })
+    let reason = "factor by factor its output is {} of what it was, 2^20 samples later";
+    let truth = MethodResult::new("its response", Verdict::of(growth < 1.0), growth, reason);
+    let certificate = MethodResult::certificate(&scene);
+    Ok(CaseResult { methods, certificate, truth, runs: Vec::new() })
 }
 
 fn companion(descending: &[f64]) -> DMatrix<f64> {

@@ -9,8 +9,8 @@ use firmware::number::Arithmetic;
 use firmware::scene::{Coupling, Device, Scene, Timing};
 use firmware::servo::Transducers;
 
-use super::fate::End;
-use super::trial::Trial;
+use super::loop_run::LoopRun;
+use super::motion::Outcome;
 use crate::device::Motion;
 use crate::simulation::Experiment;
 
@@ -73,14 +73,19 @@ pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
     (0.5 * wall.stiffness + wall.damping / scene.timing.period) * step
 }
 
-/// A trial of a scene on its rigid device, with the friction that its board needs for rest.
-pub fn trial(what: &'static str, scene: &Scene, transducers: Transducers, expected: End) -> Trial {
+/// A run of a scene on its rigid device, with the friction that its board needs for rest.
+pub fn loop_run(
+    what: &'static str,
+    scene: &Scene,
+    transducers: Transducers,
+    expected: Outcome,
+) -> LoopRun {
     let experiment =
         Experiment { friction: friction_for_rest(scene, &transducers), ..Experiment::still(scene) };
-    Trial { what, experiment, transducers, arithmetic: Arithmetic::F32, claimed: None, expected }
+    LoopRun { what, experiment, transducers, arithmetic: Arithmetic::F32, claimed: None, expected }
 }
 
-impl Trial {
+impl LoopRun {
     /// The same pushed off with `velocity` rad/s, for so many samples.
     pub fn pushed(mut self, velocity: f64, samples: usize) -> Self {
         self.experiment.start = Motion { position: 0.0, velocity };
@@ -88,11 +93,11 @@ impl Trial {
         self
     }
 
-    /// The same told that the device has so many times the damping and passivity that it has, which
+    /// The same, with a board that is told that the device has so many times the damping and passivity that it has, which
     /// is how a board can be made to run what it would refuse. The device that moves is the true one,
     /// and so is the torque: no law here but a canceller's, of which there is none, has the device's
     /// damping in it.
-    pub fn believing(mut self, times: f64) -> Self {
+    pub fn with_claimed_passivity(mut self, times: f64) -> Self {
         let device = self.experiment.scene.device;
         let passivity = device.passivity.map(|passivity| times * passivity);
         self.claimed = Some(Device { damping: times * device.damping, passivity, ..device });

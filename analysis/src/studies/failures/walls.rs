@@ -6,9 +6,9 @@
 use firmware::scene::Scene;
 
 use super::case::FailureError;
-use super::fate::End;
-use super::setting::{PADDLE, PADDLES, PERIOD, coupled, rigid, trial, wall_of};
-use super::trial::Trial;
+use super::loop_run::LoopRun;
+use super::motion::Outcome;
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, rigid, wall_of};
 use crate::chain::Chain;
 use crate::limits::{Limit, largest_stiffness, with_wall};
 use crate::worst_hand::{HandCase, plant, search};
@@ -29,9 +29,9 @@ pub struct Wall {
     /// The hand in which it is worst at 1.01 of that.
     pub hand: HandCase,
     /// At 0.99, in no hand and in that one.
-    pub below: [Trial; 2],
+    pub below: [LoopRun; 2],
     /// At 1.01 in that hand.
-    pub above: Trial,
+    pub above: LoopRun,
 }
 
 /// A wall of that delay on the paddle: behind the standard coupling, but for the undelayed one,
@@ -51,25 +51,25 @@ pub fn wall(delay: usize) -> Result<Wall, FailureError> {
     let device = Chain::rigid(PADDLE.inertia, PADDLE.damping)?;
     let hand = search(&above, &device)?.worst;
     let held = |what, scene: &Scene, expected| {
-        let mut trial = trial(what, scene, PADDLES, expected);
-        trial.experiment.plant = plant(&device, 1.0, &hand.hand);
-        trial
+        let mut loop_run = loop_run(what, scene, PADDLES, expected);
+        loop_run.experiment.plant = plant(&device, 1.0, &hand.hand);
+        loop_run
     };
-    let below_in_hand = held("0.99 of it, in the worst hand", &below, End::Rests);
+    let below_in_hand = held("0.99 of it, in the worst hand", &below, Outcome::Converges);
     // As long as friction needs to stop that much inertia, and some seconds.
     let momentum = SLOW * (PADDLE.inertia + hand.hand.inertia);
     let seconds = 3.0 * momentum / below_in_hand.experiment.friction + 4.0;
     // Without friction, which would hide that little: long enough for three times the motion.
     let samples = (2.0 / hand.spectral_radius.ln()).clamp(1000.0, LONGEST) as usize;
-    let mut above = held("1.01 of it, in the worst hand", &above, End::Grows);
+    let mut above = held("1.01 of it, in the worst hand", &above, Outcome::Diverges);
     above.experiment.friction = 0.0;
     Ok(Wall {
         limit,
         hand,
         below: [
-            trial("0.99 of the limit", &below, PADDLES, End::Rests).pushed(1.0, 4000),
+            loop_run("0.99 of the limit", &below, PADDLES, Outcome::Converges).pushed(1.0, 4000),
             below_in_hand.pushed(SLOW, (seconds / PERIOD) as usize),
         ],
-        above: above.pushed(1.0, samples).believing(2.0),
+        above: above.pushed(1.0, samples).with_claimed_passivity(2.0),
     })
 }

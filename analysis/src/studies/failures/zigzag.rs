@@ -8,10 +8,10 @@ use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::torque::LimitReason;
 
-use super::case::{FailureError, Study};
-use super::claim::{Claim, Says};
-use super::fate::End;
-use super::setting::{PADDLE, PADDLES, encoder_friction, rigid, trial, wall_of};
+use super::case::{CaseResult, FailureError};
+use super::method_result::{MethodResult, Verdict};
+use super::motion::Outcome;
+use super::setting::{PADDLE, PADDLES, encoder_friction, loop_run, rigid, wall_of};
 use crate::simulation::SimulationError;
 use crate::simulation::unquantized_servo::UnquantizedServo;
 
@@ -23,20 +23,20 @@ const BESIDE: f64 = 0.1;
 const ALMOST: f64 = 0.99;
 
 /// A wall with almost the friction that it needs: by itself it comes to rest.
-pub fn zigzag() -> Result<Study, FailureError> {
+pub fn zigzag() -> Result<CaseResult, FailureError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
     // Whatever the converter's steps are.
     let steps = Resolution { full_scale: None, ..Resolution::of(&PADDLES, Some(ALMOST * needed)) };
-    let certificate = Claim::at_rest(&scene, Format::F64, &steps);
-    let mut rests = trial("in no hand", &scene, PADDLES, End::Rests).pushed(1.0, 2000);
+    let certificate = MethodResult::at_rest(&scene, Format::F64, &steps);
+    let mut rests = loop_run("in no hand", &scene, PADDLES, Outcome::Converges).pushed(1.0, 2000);
     rests.experiment.encoder_step = Some(TAU / PADDLES.counts_per_turn);
     rests.experiment.friction = ALMOST * needed;
-    let claims = vec![Claim::simulated("simulation in no hand", &rests)?];
+    let methods = vec![MethodResult::simulated("simulation in no hand", &rests)?];
     let gained = gained(&scene, ALMOST * needed)?;
-    let because = "a hand that goes over one edge and back gets {} J out each time";
-    let truth = Claim::new("zigzag", Says::of(gained <= 0.0), gained, because);
-    Ok(Study { claims, certificate, truth, trials: vec![rests] })
+    let reason = "a hand that goes over one edge and back gets {} J out each time";
+    let truth = MethodResult::new("zigzag", Verdict::of(gained <= 0.0), gained, reason);
+    Ok(CaseResult { methods, certificate, truth, runs: vec![rests] })
 }
 
 /// The wall: neither delayed nor coupled, so that its torque is the encoder's step times its gains.

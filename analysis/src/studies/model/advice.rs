@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::{Deviation, Facts, Model, percent};
+use super::{Deviation, Model, ModelResult, percent};
 use crate::file::SceneFile;
 use crate::simulation::{Experiment, SimulationError};
 
@@ -38,7 +38,7 @@ pub struct Advice {
     /// What that leaves out.
     pub left_out: Vec<String>,
     /// All models, the cheapest first; the last is the fullest.
-    pub models: Vec<Judged>,
+    pub models: Vec<JudgedModel>,
     /// Why there is no certificate to compare; `None` where there is.
     pub no_certificate: Option<String>,
     /// The answer as a sentence.
@@ -47,14 +47,14 @@ pub struct Advice {
 
 /// A model beside the fullest one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Judged {
+pub struct JudgedModel {
     /// Its name.
     pub model: String,
     /// What the fullest model has and this has not.
     pub lacks: Vec<String>,
     /// What it says.
     #[serde(flatten)]
-    pub facts: Facts,
+    pub result: ModelResult,
     /// How far that is from what the fullest says.
     pub deviation: Deviation,
     /// What of it is beyond the bound; empty where the model is enough.
@@ -70,14 +70,15 @@ pub struct Judged {
 pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, ModelError> {
     let run = Experiment::of(file, folder)?;
     let fullest = Model::fullest(file);
-    let full = Facts::of(fullest, file, &run)?;
+    let full = ModelResult::of(fullest, file, &run)?;
     if full.motion.position.iter().chain(&full.motion.torque).all(|&value| value == 0.0) {
         return Err(ModelError::Rest { scene: file.name.clone() });
     }
     let mut models = Vec::new();
     for model in fullest.up_to() {
-        let facts = if model == fullest { full.clone() } else { Facts::of(model, file, &run)? };
-        models.push(Judged::of(model, facts, (fullest, &full), bound));
+        let result =
+            if model == fullest { full.clone() } else { ModelResult::of(model, file, &run)? };
+        models.push(JudgedModel::of(model, result, (fullest, &full), bound));
     }
     let enough = models.iter().find(|judged| judged.beyond.is_empty());
     let (enough, left_out) = enough.map_or_else(
@@ -90,17 +91,22 @@ pub fn advise(file: &SceneFile, folder: &Path, bound: f64) -> Result<Advice, Mod
     Ok(Advice { scene, bound, enough, left_out, models, no_certificate, message })
 }
 
-impl Judged {
-    fn of(model: Model, facts: Facts, (fullest, full): (Model, &Facts), bound: f64) -> Self {
-        let deviation = Deviation::of(&facts, full);
+impl JudgedModel {
+    fn of(
+        model: Model,
+        result: ModelResult,
+        (fullest, full): (Model, &ModelResult),
+        bound: f64,
+    ) -> Self {
+        let deviation = Deviation::of(&result, full);
         let mut beyond = Vec::new();
-        if let (Some(full), Some(found)) = (full.certificate, facts.certificate)
+        if let (Some(full), Some(found)) = (full.certificate, result.certificate)
             && full != found
         {
             beyond.push(format!("{found} and not {full}"));
         }
-        if facts.stability != full.stability {
-            beyond.push(format!("{} and not {}", facts.stability, full.stability));
+        if result.stability != full.stability {
+            beyond.push(format!("{} and not {}", result.stability, full.stability));
         }
         let far = deviation.parts().filter(|(_, part)| part.is_nan() || *part > bound);
         beyond.extend(far.map(|(name, part)| match part.is_finite() {
@@ -108,24 +114,24 @@ impl Judged {
             false => format!("{name} not to be compared"),
         }));
         let (model, lacks) = (model.to_string(), model.lacks(fullest));
-        Self { model, lacks, facts, deviation, beyond }
+        Self { model, lacks, result, deviation, beyond }
     }
 
     /// What its omissions cost and save.
-    fn costs(&self, full: &Facts) -> String {
+    fn costs(&self, full: &ModelResult) -> String {
         let of = |(name, part)| format!("{} of the {name}", percent(part));
         let off: Vec<String> = self.deviation.parts().map(of).collect();
-        let (states, all) = (self.facts.states, full.states);
+        let (states, all) = (self.result.states, full.states);
         format!("which costs {}, and leaves {states} states of {all}", off.join(", "))
     }
 }
 
-fn message(models: &[Judged], bound: f64) -> String {
+fn message(models: &[JudgedModel], bound: f64) -> String {
     let within = format!("within {}", percent(bound));
     match (models, models.iter().find(|judged| judged.beyond.is_empty())) {
         ([only], _) => format!("{} is all that the file describes", only.model),
         ([.., full], Some(enough)) if !enough.lacks.is_empty() => {
-            let (lacks, costs) = (enough.lacks.join(" and "), enough.costs(&full.facts));
+            let (lacks, costs) = (enough.lacks.join(" and "), enough.costs(&full.result));
             format!("{} is enough {within}: it leaves out {lacks}, {costs}", enough.model)
         }
         _ => {

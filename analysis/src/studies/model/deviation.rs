@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::facts::Facts;
+use super::model_result::ModelResult;
 use crate::quantity::significant;
 use crate::simulation::Trajectory;
 
@@ -24,15 +24,15 @@ pub struct Deviation {
 
 impl Deviation {
     /// Of a model's facts from the fullest's.
-    pub(super) fn of(facts: &Facts, fullest: &Facts) -> Self {
-        let delta = fullest.delta.map(|full| share(facts.delta, full));
-        let critical_stiffness = match (facts.critical_stiffness, fullest.critical_stiffness) {
+    pub(super) fn of(result: &ModelResult, fullest: &ModelResult) -> Self {
+        let delta = fullest.delta.map(|full| share(result.delta, full));
+        let critical_stiffness = match (result.critical_stiffness, fullest.critical_stiffness) {
             (None, None) => None,
             (_, None) => Some(f64::INFINITY),
             (found, Some(full)) => Some(share(found, full)),
         };
         let of = |column: fn(&Trajectory) -> &[f64]| {
-            largest_difference(column(&facts.motion), column(&fullest.motion))
+            largest_difference(column(&result.motion), column(&fullest.motion))
         };
         let (angle, torque) = (of(|motion| &motion.position), of(|motion| &motion.torque));
         Self { delta, critical_stiffness, angle, torque }

@@ -6,11 +6,11 @@
 
 mod advice;
 mod deviation;
-mod facts;
+mod model_result;
 
-pub use advice::{Advice, Judged, ModelError, advise};
+pub use advice::{Advice, JudgedModel, ModelError, advise};
 pub use deviation::{Deviation, percent};
-pub use facts::Facts;
+pub use model_result::ModelResult;
 
 use std::fmt;
 

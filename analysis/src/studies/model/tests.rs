@@ -50,7 +50,7 @@ fn advice(text: &str, bound: f64) -> Advice {
     advise(&parse(text), Path::new(""), bound).unwrap()
 }
 
-fn judged<'a>(advice: &'a Advice, model: &str) -> &'a Judged {
+fn judged<'a>(advice: &'a Advice, model: &str) -> &'a JudgedModel {
     advice.models.iter().find(|judged| judged.model == model).unwrap()
 }
 
@@ -102,12 +102,12 @@ fn the_bound_decides() {
 fn a_second_mass_changes_whether_the_loop_is_stable() {
     let advice = advice(SOFT, 1.0);
     let [rigid, full] = ["rigid", "2 masses"].map(|model| judged(&advice, model));
-    assert_eq!(rigid.facts.stability, stability::Verdict::Unstable);
-    assert_eq!(full.facts.stability, stability::Verdict::Stable);
+    assert_eq!(rigid.result.stability, stability::Verdict::Unstable);
+    assert_eq!(full.result.stability, stability::Verdict::Stable);
     assert_eq!((advice.enough.as_str(), &advice.left_out), ("2 masses", &Vec::new()));
     assert!(rigid.beyond.contains(&"unstable and not stable".to_owned()), "{rigid:?}");
     // The limit of theory, section 4.1 at full damping: b > K T (n + 1/2), nearly stability's.
-    let limit = rigid.facts.critical_stiffness.unwrap();
+    let limit = rigid.result.critical_stiffness.unwrap();
     assert!((limit - 0.5 / 0.0015).abs() < 0.01 * limit, "{limit}");
 }
 
@@ -122,9 +122,9 @@ fn a_second_mass_changes_the_certificate() {
         .replace("337.0", "250.0");
     let advice = advice(&apart, 1.0);
     let [rigid, full] = ["rigid", "2 masses"].map(|model| judged(&advice, model));
-    assert_eq!((rigid.facts.delta, full.facts.delta), (Some(0.5), Some(0.3)));
-    assert_eq!(rigid.facts.certificate, Some(verdict::Verdict::Certified));
-    assert_eq!(full.facts.certificate, Some(verdict::Verdict::Rejected));
+    assert_eq!((rigid.result.delta, full.result.delta), (Some(0.5), Some(0.3)));
+    assert_eq!(rigid.result.certificate, Some(verdict::Verdict::Certified));
+    assert_eq!(full.result.certificate, Some(verdict::Verdict::Rejected));
     assert_eq!(advice.enough, "2 masses");
 }
 
@@ -134,13 +134,13 @@ fn a_lag_changes_whether_the_loop_is_stable() {
     assert_eq!(advice.enough, "rigid, lag");
     let [prompt, late] = ["rigid", "rigid, lag"].map(|model| judged(&advice, model));
     for (judged, limit) in [(prompt, 1000.0), (late, 500.0)] {
-        let found = judged.facts.critical_stiffness.unwrap();
+        let found = judged.result.critical_stiffness.unwrap();
         assert!((found - limit).abs() < 0.01 * limit, "{found}");
     }
-    assert_eq!(prompt.facts.stability, stability::Verdict::Stable);
-    assert_eq!(late.facts.stability, stability::Verdict::Unstable);
+    assert_eq!(prompt.result.stability, stability::Verdict::Stable);
+    assert_eq!(late.result.stability, stability::Verdict::Unstable);
     // There is no passivity behind a lag, and so no certificate that could differ.
-    assert_eq!((late.facts.delta, late.facts.certificate), (None, None));
+    assert_eq!((late.result.delta, late.result.certificate), (None, None));
     assert_eq!(prompt.deviation.delta, None);
 }
 
@@ -148,7 +148,7 @@ fn a_lag_changes_whether_the_loop_is_stable() {
 fn what_was_measured_holds_for_every_model() {
     let measured = SOFT.replace("device = {", "device = { passivity = 0.4,");
     for judged in advice(&measured, 0.01).models {
-        assert_eq!(judged.facts.delta, Some(0.4), "{}", judged.model);
+        assert_eq!(judged.result.delta, Some(0.4), "{}", judged.model);
     }
 }
 

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::emulator::EmulatorError;
-use crate::studies::arithmetic::ArithmeticError;
+use crate::studies::number_format::FormatError;
 use crate::toolchain::{BuildError, SetupError};
 
 /// Why methods could not be measured on the emulated board.
@@ -11,7 +11,7 @@ use crate::toolchain::{BuildError, SetupError};
 pub enum TradeoffError {
     /// A number format has no figures.
     #[error(transparent)]
-    Arithmetic(#[from] ArithmeticError),
+    Arithmetic(#[from] FormatError),
     /// The machine cannot build or run programs for the board.
     #[error(transparent)]
     Setup(#[from] SetupError),

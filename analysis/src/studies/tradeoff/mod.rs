@@ -1,10 +1,11 @@
 //! Speed against accuracy: tables of measured methods, each with what it costs and how far off it
 //! is, and the methods that no other beats in both.
 //!
-//! A [`Subject`] says what is compared and in which columns; a [`Tradeoff`] is the table that was
+//! A [`Comparison`] says what is compared and in which columns; a [`Tradeoff`] is the table that was
 //! measured, kept as CSV beside the picture that is drawn of it ([`crate::chart::tradeoff`]).
 
 pub mod certificate;
+mod comparison;
 mod error;
 pub mod rate;
 pub mod servo;
@@ -16,6 +17,7 @@ use std::io::{Read, Write};
 use std::path::PathBuf;
 use std::time::Instant;
 
+pub use comparison::{Axis, Comparison, Direction, NUMBER};
 pub use error::TradeoffError;
 
 use crate::emulator::BenchClient;
@@ -28,87 +30,9 @@ use crate::toolchain::{self, BuildError, Toolchain, Tools};
 /// error from a right one.
 const DIGITS: usize = 6;
 
-/// What every number of a table is.
-pub const NUMBER: &str = "a number of 0 or more, `inf`, or nothing where there is none";
-
 const CASE: Column = Column { names: &["case"], bound: "a name" };
 const FAMILY: Column = Column { names: &["family"], bound: "a name" };
 const NAME: Column = Column { names: &["name"], bound: "a name" };
-
-/// Which values of a column are the good ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aim {
-    /// The smaller the better.
-    Least,
-    /// The greater the better.
-    Most,
-}
-
-/// A column of a table that is drawn along an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
-    /// The column in the file.
-    pub column: Column,
-    /// What it is, and its unit, as it stands at the axis.
-    pub label: &'static str,
-    /// Which way is better.
-    pub aim: Aim,
-    /// Values up to this one are all the same and are drawn there: what the reference itself is good
-    /// for, or half of the smallest count. Above 0, because axes are logarithmic.
-    pub floor: f64,
-    /// What a value at the floor is called in the picture.
-    pub at_floor: &'static str,
-}
-
-impl Axis {
-    /// A column of numbers of which the smaller are the better.
-    pub const fn least(names: &'static [&'static str], label: &'static str) -> Self {
-        let column = Column { names, bound: NUMBER };
-        Self { column, label, aim: Aim::Least, floor: f64::MIN_POSITIVE, at_floor: "0" }
-    }
-
-    /// A column of numbers of which the greater are the better.
-    pub const fn most(names: &'static [&'static str], label: &'static str) -> Self {
-        Self { aim: Aim::Most, ..Self::least(names, label) }
-    }
-
-    /// The same with all values up to `floor` taken for the same, called by these words.
-    pub const fn floored(self, floor: f64, at_floor: &'static str) -> Self {
-        Self { floor, at_floor, ..self }
-    }
-
-    /// Whether the first value is better than the second, beyond the floor.
-    pub fn is_better(&self, value: f64, than: f64) -> bool {
-        let [value, than] = [value, than].map(|value| value.max(self.floor));
-        match self.aim {
-            Aim::Least => value < than,
-            Aim::Most => value > than,
-        }
-    }
-}
-
-/// What is compared, in which columns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Subject {
-    /// What its files are called, without the extension.
-    pub name: &'static str,
-    /// Above its picture.
-    pub title: &'static str,
-    /// What a method costs.
-    pub cost: Axis,
-    /// What one gets for it: a panel of the picture each.
-    pub errors: &'static [Axis],
-    /// Columns that are kept but not drawn.
-    pub others: &'static [Column],
-}
-
-impl Subject {
-    /// The columns of numbers in the order of [`Method::values`].
-    pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
-        let drawn = std::iter::once(self.cost.column).chain(self.errors.iter().map(|e| e.column));
-        drawn.chain(self.others.iter().copied())
-    }
-}
 
 /// A method with its figures.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,7 +43,7 @@ pub struct Method {
     pub family: String,
     /// Its own name, short enough to stand beside its mark.
     pub name: String,
-    /// The figures in the order of [`Subject::columns`]; infinite where the method fails, `None`
+    /// The figures in the order of [`Comparison::columns`]; infinite where the method fails, `None`
     /// where it has no such figure.
     pub values: Vec<Option<f64>>,
 }
@@ -146,7 +70,7 @@ impl Method {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tradeoff {
     /// What is compared.
-    pub subject: &'static Subject,
+    pub comparison: &'static Comparison,
     /// The methods.
     pub methods: Vec<Method>,
 }
@@ -171,7 +95,7 @@ impl Tradeoff {
     /// those of the subject, of all that cost no more. From the cheapest to the best. A method that
     /// fails is on no front.
     pub fn front(&self, case: &str, error: usize) -> Vec<&Method> {
-        let (cost, aim) = (&self.subject.cost, &self.subject.errors[error]);
+        let (cost, direction) = (&self.comparison.cost, &self.comparison.errors[error]);
         let figures = |m: &Method| Some((m.cost()?, m.error(error)?));
         let finite = |m: &&Method| figures(m).is_some_and(|(c, e)| c.is_finite() && e.is_finite());
         let mut front: Vec<_> = self.of(case).filter(finite).collect();
@@ -179,14 +103,14 @@ impl Tradeoff {
             let (Some((c, e)), Some((by_c, by_e))) = (figures(m), figures(by)) else {
                 return false;
             };
-            let worse = cost.is_better(c, by_c) || aim.is_better(e, by_e);
-            !worse && (cost.is_better(by_c, c) || aim.is_better(by_e, e))
+            let worse = cost.is_better(c, by_c) || direction.is_better(e, by_e);
+            !worse && (cost.is_better(by_c, c) || direction.is_better(by_e, e))
         };
         let all = front.clone();
         front.retain(|method| !all.iter().any(|other| is_beaten(method, other)));
         let by_cost = |m: &&Method| m.cost().unwrap_or(f64::INFINITY);
         front.sort_by(|a, b| by_cost(a).total_cmp(&by_cost(b)));
-        if cost.aim == Aim::Most {
+        if cost.direction == Direction::Maximize {
             front.reverse();
         }
         front
@@ -197,12 +121,12 @@ impl Tradeoff {
     /// # Errors
     /// Where it is not the table of this subject.
     pub fn read<R: Read>(
-        subject: &'static Subject,
+        comparison: &'static Comparison,
         mut table: Table<R>,
     ) -> Result<Self, TableError> {
         let words = [table.column(CASE)?, table.column(FAMILY)?, table.column(NAME)?];
         let places: Vec<_> =
-            subject.columns().map(|column| table.column(column)).collect::<Result<_, _>>()?;
+            comparison.columns().map(|column| table.column(column)).collect::<Result<_, _>>()?;
         let mut methods = Vec::new();
         while let Some(row) = table.row()? {
             let [case, family, name] = words.map(|place| row.text(place).to_owned());
@@ -214,7 +138,7 @@ impl Tradeoff {
             methods.push(Method { case, family, name, values });
         }
         table.at_least(1)?;
-        Ok(Self { subject, methods })
+        Ok(Self { comparison, methods })
     }
 
     /// Writes it to be kept.
@@ -224,7 +148,7 @@ impl Tradeoff {
     pub fn write(&self, to: impl Write) -> std::io::Result<()> {
         let mut file = csv::Writer::from_writer(to);
         let words = [CASE, FAMILY, NAME].into_iter();
-        file.write_record(words.chain(self.subject.columns()).map(|column| column.names[0]))?;
+        file.write_record(words.chain(self.comparison.columns()).map(|column| column.names[0]))?;
         for method in &self.methods {
             let words = [&method.case, &method.family, &method.name].into_iter().cloned();
             let number = |value: &Option<f64>| value.map_or_else(String::new, written);
@@ -294,77 +218,4 @@ fn distinct<'t>(words: impl Iterator<Item = &'t str>) -> Vec<&'t str> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    static SUBJECT: Subject = Subject {
-        name: "test",
-        title: "A test",
-        cost: Axis::least(&["time"], "time (s)"),
-        errors: &[
-            Axis::least(&["error"], "error (1)").floored(1e-9, "rounding"),
-            Axis::most(&["stiffness"], "stiffness (N m/rad)"),
-        ],
-        others: &[Column { names: &["steps"], bound: NUMBER }],
-    };
-
-    fn table(rows: &[(&str, f64, f64, f64)]) -> Tradeoff {
-        let row = |&(name, time, error, stiffness): &(&str, f64, f64, f64)| {
-            Method::new("a case", "a family", name, &[time, error, stiffness, 1.0])
-        };
-        Tradeoff { subject: &SUBJECT, methods: rows.iter().map(row).collect() }
-    }
-
-    fn names<'t>(front: &[&'t Method]) -> Vec<&'t str> {
-        front.iter().map(|method| &*method.name).collect()
-    }
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let all = table(&[
-            ("dear", 9.0, 1e-12, 5.0),
-            ("beaten", 3.0, 0.2, 1.0),
-            ("cheap", 1.0, 0.5, 1.0),
-            ("fair", 2.0, 0.1, 2.0),
-            ("as good below the floor", 8.0, 1e-10, 9.0),
-            ("fails", 0.1, f64::INFINITY, 0.5),
-        ]);
-        let front = all.front("a case", 0);
-        assert_eq!(names(&front), ["cheap", "fair", "as good below the floor"]);
-        // Of stiffness one wants the most.
-        let front = all.front("a case", 1);
-        assert_eq!(names(&front), ["fails", "cheap", "fair", "as good below the floor"]);
-        assert!(all.front("another case", 0).is_empty());
-    }
-
-    /// A table with its numbers as they are once it has been written and read again.
-    fn rounded(mut all: Tradeoff) -> Tradeoff {
-        let values = all.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
-        values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
-        all
-    }
-
-    #[test]
-    fn a_table_is_read_as_it_was_written() {
-        let mut all = table(&[("one, with a comma", 1.234_567_89e-7, 0.0, f64::INFINITY)]);
-        all.methods[0].values[3] = None;
-        let mut file = Vec::new();
-        all.write(&mut file).unwrap();
-        let table = Table::new("kept.csv", &*file).unwrap();
-        assert_eq!(Tradeoff::read(&SUBJECT, table).unwrap(), rounded(all));
-    }
-
-    #[test]
-    fn what_is_no_such_table_is_refused() {
-        for (text, said) in [
-            ("case,family,name,time,error\na,b,c,1,1\n", "there is no column `stiffness`"),
-            ("case,family,name,time,error,stiffness,steps\n", "too few"),
-            ("case,family,name,time,error,stiffness,steps\na,b,c,-1,1,1,1\n", "0 or more"),
-            ("case,family,name,time,error,stiffness,steps\na,b,c,1,NaN,1,1\n", "0 or more"),
-        ] {
-            let table = Table::new("kept.csv", text.as_bytes()).unwrap();
-            let error = Tradeoff::read(&SUBJECT, table).unwrap_err().to_string();
-            assert!(error.contains(said), "{error}");
-        }
-    }
-}
+mod tests;

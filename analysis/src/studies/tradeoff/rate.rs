@@ -3,14 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff};
+use super::{Axis, Comparison, Method, NUMBER, Tradeoff};
 use crate::limits::{Limit, at_period, largest_stiffness, with_wall};
 use crate::program::Program;
 use crate::studies::bench::CORE_CLOCK;
 use crate::table::Column;
 
 /// What is compared.
-pub static SUBJECT: Subject = Subject {
+pub static COMPARISON: Comparison = Comparison {
     name: "rate",
     title: "Sample rate: walls one sample late behind the standard coupling, 65536 counts a turn",
     cost: Axis::least(&["processor"], "part of a core of 170 MHz (%)"),
@@ -35,7 +35,7 @@ pub fn table(programs: &[(&Program, f64)]) -> Tradeoff {
     let rows = programs.iter().flat_map(|&(program, instructions)| {
         RATES.iter().filter_map(move |&rate| row(program, instructions, rate))
     });
-    Tradeoff { subject: &SUBJECT, methods: rows.collect() }
+    Tradeoff { comparison: &COMPARISON, methods: rows.collect() }
 }
 
 /// A wall at its stiffest; `None` where no stiffness is certified, or each.

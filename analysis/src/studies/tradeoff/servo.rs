@@ -7,15 +7,15 @@ use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
 use firmware::servo::Transducers;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
+use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
 use crate::emulator::BenchClient;
 use crate::hand::HandTrajectory;
 use crate::program::{self, Program};
-use crate::studies::arithmetic::{self, ArithmeticError, HALF_A_TURN, Losses, Motion, cost};
+use crate::studies::number_format::{self, FormatError, HALF_A_TURN, Losses, Motion, cost};
 use crate::table::{Column, Table, TableError};
 
 /// What is compared.
-pub static SUBJECT: Subject = Subject {
+pub static COMPARISON: Comparison = Comparison {
     name: "servo",
     title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
     cost: Axis::least(&["instructions"], "most instructions from count to code"),
@@ -45,7 +45,7 @@ pub struct Case {
     /// Its name.
     pub name: &'static str,
     /// The scene with its sensor and motor.
-    pub subject: arithmetic::Subject,
+    pub problem: number_format::FormatProblem,
     /// What a hand does.
     pub trajectory: HandTrajectory,
 }
@@ -56,13 +56,13 @@ impl Case {
         let transducers = Transducers { counter: CounterWidth::Bits32, ..program.transducers };
         let (scene, range) = (program.scene, HALF_A_TURN);
         let steps = Resolution::of(&transducers, None);
-        let subject = arithmetic::Subject { scene, transducers, steps, range };
-        Self { name: program.name, subject, trajectory: (program.trajectory)() }
+        let problem = number_format::FormatProblem { scene, transducers, steps, range };
+        Self { name: program.name, problem, trajectory: (program.trajectory)() }
     }
 
     /// The same in another environment.
     pub(super) fn with(mut self, name: &'static str, environment: Environment) -> Self {
-        self.subject.scene.environment = environment;
+        self.problem.scene.environment = environment;
         Self { name, ..self }
     }
 
@@ -70,15 +70,15 @@ impl Case {
     ///
     /// # Errors
     /// Where the scene cannot be simulated.
-    pub fn motion(&self) -> Result<Motion, ArithmeticError> {
-        Motion::new(&self.subject, self.trajectory.clone(), SECONDS)
+    pub fn motion(&self) -> Result<Motion, FormatError> {
+        Motion::new(&self.problem, self.trajectory.clone(), SECONDS)
     }
 }
 
 /// The programs' scenes, and a wall that also pulls.
 pub fn cases() -> Vec<Case> {
     let mut cases: Vec<_> = program::ALL.iter().map(Case::of).collect();
-    let pulls = |case: &Case| match case.subject.scene.environment {
+    let pulls = |case: &Case| match case.problem.scene.environment {
         Environment::DamperWall(wall) => {
             let wall = Wall { one_sided: false, ..wall };
             Some(case.clone().with("damper_wall, two-sided", Environment::DamperWall(wall)))
@@ -103,7 +103,7 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
         }
     }
     board.finish()?;
-    Ok(Tradeoff { subject: &SUBJECT, methods })
+    Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
 /// The table that is kept.
@@ -112,7 +112,7 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
 /// Where it is not a table of this subject.
 pub fn kept() -> Result<Tradeoff, TableError> {
     let kept = include_bytes!("../../../pictures/tradeoff/servo.csv");
-    Tradeoff::read(&SUBJECT, Table::new("servo.csv", &kept[..])?)
+    Tradeoff::read(&COMPARISON, Table::new("servo.csv", &kept[..])?)
 }
 
 fn row(
@@ -120,18 +120,18 @@ fn row(
     motion: &Motion,
     board: &mut BenchClient,
     arithmetic: Arithmetic,
-) -> Result<Method, ArithmeticError> {
+) -> Result<Method, FormatError> {
     let cost = cost(board, motion, arithmetic)?;
     let Losses { error, error_elsewhere, alone, with_encoder } = Losses::of(motion, arithmetic)?;
     let values = [
         Some(cost.most.into()),
         Some(error),
         error_elsewhere,
-        Some(alone.hum),
-        Some(alone.cycle),
+        Some(alone.torque),
+        Some(alone.angle),
         Some(cost.mean),
-        with_encoder.map(|rest| rest.hum),
-        with_encoder.map(|rest| rest.cycle),
+        with_encoder.map(|cycle| cycle.torque),
+        with_encoder.map(|cycle| cycle.angle),
     ];
     let method = Method::new(case.name, family(arithmetic), arithmetic.name(), &[]);
     Ok(Method { values: values.to_vec(), ..method })
@@ -149,7 +149,7 @@ fn family(arithmetic: Arithmetic) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::arithmetic::{Rest, Units, at_rest};
+    use crate::studies::number_format::{LimitCycle, Units, at_rest};
 
     /// The kept figures that do not depend on a compiler for the board.
     #[test]
@@ -164,10 +164,10 @@ mod tests {
                 assert_eq!(names, (case.name, arithmetic.name()));
                 let Losses { error, error_elsewhere, alone, with_encoder } =
                     Losses::of(&motion, arithmetic).unwrap();
-                let Rest { hum, cycle } = with_encoder.unwrap();
-                let alone = [Some(alone.hum), Some(alone.cycle)];
+                let LimitCycle { torque, angle } = with_encoder.unwrap();
+                let alone = [Some(alone.torque), Some(alone.angle)];
                 let fresh =
-                    [Some(error), error_elsewhere, alone[0], alone[1], Some(hum), Some(cycle)];
+                    [Some(error), error_elsewhere, alone[0], alone[1], Some(torque), Some(angle)];
                 let at = [1, 2, 3, 4, 6, 7].map(|column| kept.values[column]);
                 for (kept, fresh) in at.into_iter().zip(fresh) {
                     let (kept, fresh) = (kept.unwrap(), fresh.unwrap());
@@ -183,10 +183,10 @@ mod tests {
     #[test]
     fn the_wall_hums_as_much_as_experiments_found() {
         let case = Case::of(Program::find("damper_wall").unwrap());
-        let subject = arithmetic::Subject { range: 0.9, ..case.subject };
-        assert_eq!(subject.units(Arithmetic::I1F31), Units { angle: 1.0, torque: 2.0 });
+        let problem = number_format::FormatProblem { range: 0.9, ..case.problem };
+        assert_eq!(problem.units(Arithmetic::I1F31), Units { angle: 1.0, torque: 2.0 });
         let hum =
-            |arithmetic, with_encoder| at_rest(&subject, arithmetic, with_encoder).unwrap().hum;
+            |arithmetic, with_encoder| at_rest(&problem, arithmetic, with_encoder).unwrap().torque;
         assert!(hum(Arithmetic::F64, false) <= 2e-16);
         let near = |hum: f64, found: f64| assert!(hum < 2.0 * found && hum > 0.1 * found, "{hum}");
         near(hum(Arithmetic::F32, false), 1.6e-7);

@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use firmware_harness::bench_request::{BenchRequest, Output};
 use firmware_harness::sines::Sine;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff, TradeoffError};
+use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
 use crate::table::Column;
 
 /// What is compared.
-pub static SUBJECT: Subject = Subject {
+pub static COMPARISON: Comparison = Comparison {
     name: "sine",
     title: "Sine of a sweep, of a part of a turn in f32, on the emulated Cortex-M4",
     cost: Axis::least(&["instructions"], "most instructions"),
@@ -57,7 +57,7 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
         methods.push(row(sine, &board.compute(&BenchRequest::Sine(sine), &inputs)?));
     }
     board.finish()?;
-    Ok(Tradeoff { subject: &SUBJECT, methods })
+    Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
 fn row(sine: Sine, outputs: &[Output]) -> Method {
@@ -84,7 +84,7 @@ mod tests {
     /// The table that is kept.
     fn kept() -> Tradeoff {
         let kept = include_bytes!("../../../pictures/tradeoff/sine.csv");
-        Tradeoff::read(&SUBJECT, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()
+        Tradeoff::read(&COMPARISON, Table::new("sine.csv", &kept[..]).unwrap()).unwrap()
     }
 
     /// Binary digits behind the point of the reference.

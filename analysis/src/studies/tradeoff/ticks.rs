@@ -14,7 +14,7 @@ use super::NUMBER;
 use super::servo::Case;
 use crate::emulator::BenchClient;
 use crate::program::Program;
-use crate::studies::arithmetic::{ArithmeticError, cost};
+use crate::studies::number_format::{FormatError, cost};
 use crate::table::{Column, Table, TableError};
 
 /// Most instructions of a tick from count to code, by type of scene and format.
@@ -45,10 +45,7 @@ impl Ticks {
     ///
     /// # Errors
     /// Where the board fails, or computes something else than this machine.
-    pub fn measure(
-        board: &mut BenchClient,
-        mut step: impl FnMut(),
-    ) -> Result<Self, ArithmeticError> {
+    pub fn measure(board: &mut BenchClient, mut step: impl FnMut()) -> Result<Self, FormatError> {
         let mut rows = Vec::new();
         for case in cases() {
             let motion = case.motion()?;
@@ -56,7 +53,7 @@ impl Ticks {
             for (most, arithmetic) in most.iter_mut().zip(Arithmetic::ALL) {
                 *most = cost(board, &motion, arithmetic)?.most.into();
             }
-            rows.push((type_of(&case.subject.scene.environment), most));
+            rows.push((type_of(&case.problem.scene.environment), most));
             step();
         }
         Ok(Self { rows })
@@ -204,7 +201,7 @@ mod tests {
     #[test]
     fn every_type_is_kept() {
         let kept = Ticks::kept().unwrap();
-        let names: Vec<_> = cases().iter().map(|c| type_of(&c.subject.scene.environment)).collect();
+        let names: Vec<_> = cases().iter().map(|c| type_of(&c.problem.scene.environment)).collect();
         let rows: Vec<_> = kept.rows.iter().map(|(name, _)| name.clone()).collect();
         assert_eq!(names, rows);
         let unlike = |a: &String| names.iter().filter(|b| a == *b).count() == 1;
@@ -218,7 +215,7 @@ mod tests {
         let (ticks, formats) = (Ticks::kept().unwrap(), servo::kept().unwrap());
         for case in servo::cases() {
             for (method, arithmetic) in formats.of(case.name).zip(Arithmetic::ALL) {
-                let here = ticks.of(&case.subject.scene.environment, arithmetic);
+                let here = ticks.of(&case.problem.scene.environment, arithmetic);
                 let off = (here / method.cost().unwrap() - 1.0).abs();
                 assert!(off < 0.05, "{} in {}: {here}, off by {off}", case.name, method.name);
             }

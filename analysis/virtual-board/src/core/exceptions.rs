@@ -7,8 +7,6 @@ pub type Number = u16;
 pub const NON_MASKABLE: Number = 2;
 /// What the core takes when nothing else may take a fault.
 pub const HARD_FAULT: Number = 3;
-/// The service call.
-pub const SV_CALL: Number = 11;
 /// The request for service at leisure.
 pub const PEND_SV: Number = 14;
 /// The core's own timer.

@@ -70,11 +70,6 @@ impl System {
         self.vectors
     }
 
-    /// Whether the floating-point unit may be used.
-    pub fn has_floating_point(&self) -> bool {
-        self.coprocessors & FLOATING_POINT == FLOATING_POINT
-    }
-
     /// Whether a wait for an interrupt goes on after the exception that ended it.
     pub fn sleeps_on_exit(&self) -> bool {
         self.sleep & (1 << 1) != 0

@@ -99,11 +99,6 @@ impl Serial {
         self.lost
     }
 
-    /// Whether bytes are still on their way to the program.
-    pub fn is_busy(&self) -> bool {
-        !self.line_in.is_empty()
-    }
-
     /// When something happens on the line next.
     pub fn due(&self) -> Option<u64> {
         [self.arrives, self.leaves].into_iter().flatten().min()

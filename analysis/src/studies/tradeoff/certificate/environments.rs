@@ -1,12 +1,12 @@
 //! Ten thousand environments of known answer, drawn from a seed.
 //!
 //! They are drawn with nothing but exact sums, products and halvings, so that every machine draws
-//! the same; their indices are kept beside this file, found in rational arithmetic by the package
-//! `tests`, which checks them (`tests/tests/all/reference.rs`). The damping that a device has to spare
-//! is then set beside the index, so that the right verdict is known.
+//! the same. Their indices were found in rational arithmetic by the package `tests`, which checks them
+//! and can find them again (`tests/tests/all/reference.rs`); that takes minutes, so `indices.f64` beside
+//! this file keeps them. The damping that a device has to spare is then set beside the index, so that the
+//! right verdict is known.
 
 use std::ops::Range;
-use std::sync::LazyLock;
 
 use fastrand::Rng;
 
@@ -35,7 +35,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them, in the order of the answers.
+    /// All of them, in the order of the indices.
     pub const ALL: [Self; 4] = [Self::Walls, Self::Inside, Self::Narrow, Self::Border];
 
     /// Its name in tables and pictures.
@@ -76,14 +76,15 @@ impl Environment {
     }
 }
 
-/// The indices `alpha` in N m s/rad of all environments, kind by kind, each the double next to it or
-/// the one after; `None` where there is none.
-pub static ANSWERS: LazyLock<Vec<Option<f64>>> =
-    LazyLock::new(|| include_str!("answers.txt").lines().map(|line| line.parse().ok()).collect());
+/// The indices `alpha` in N m s/rad of all environments, kind by kind, as doubles with the least byte
+/// first: each the double next to it or the one after, not a number where there is none.
+const INDICES: &[[u8; 8]; Kind::ALL.len() * EACH] =
+    include_bytes!("indices.f64").as_chunks().0.as_array().expect("an index for each environment");
 
 /// The index of an environment.
-pub fn answer(kind: Kind, number: usize) -> Option<f64> {
-    ANSWERS[kind as usize * EACH + number]
+pub fn reference_index(kind: Kind, number: usize) -> Option<f64> {
+    let alpha = f64::from_le_bytes(INDICES[kind as usize * EACH + number]);
+    (!alpha.is_nan()).then_some(alpha)
 }
 
 /// An environment by its kind and its number below [`EACH`].

@@ -4,7 +4,7 @@
 //! never added up.
 
 pub mod environments;
-pub mod judges;
+pub mod index_methods;
 
 mod polynomials;
 
@@ -12,18 +12,18 @@ use std::hint::black_box;
 
 use rayon::prelude::*;
 
-use super::{Axis, Method, NUMBER, Subject, Tradeoff, fastest};
+use super::{Axis, Comparison, Method, NUMBER, Tradeoff, fastest};
 use crate::table::Column;
-use environments::{EACH, Kind, answer, environment};
-use judges::{Answer, Grid, Judge, Verdict};
+use environments::{EACH, Kind, environment, reference_index};
+use index_methods::{Grid, IndexMethod, IndexResult, Verdict};
 
 /// What is compared.
-pub static SUBJECT: Subject = Subject {
+pub static COMPARISON: Comparison = Comparison {
     name: "certificate",
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
     cost: Axis::least(&["microseconds"], "time of a verdict (microseconds)"),
     errors: &[
-        // The answers are doubles, off by one place at most.
+        // The indices are doubles, off by one place at most.
         Axis::least(&["alpha_error"], "error of alpha, 99 of 100 below it (part)")
             .floored(1e-15, "a double's last places"),
         Axis::least(&["wrong_yes"], "not passive, and passed, of 2500").floored(0.5, "none"),
@@ -52,30 +52,30 @@ pub struct Candidate {
     /// Its own name.
     pub name: String,
     /// The way.
-    pub judge: Judge,
+    pub method: IndexMethod,
 }
 
 /// All ways that are compared.
 pub fn candidates() -> Vec<Candidate> {
-    let one = |family, judge| vec![Candidate { family, name: family.to_owned(), judge }];
+    let one = |family, method| vec![Candidate { family, name: family.to_owned(), method }];
     let enclosure = |&tolerance: &f64| Candidate {
         family: "enclosure",
         name: format!("enclosure, {tolerance:e}"),
-        judge: Judge::Enclosure(tolerance),
+        method: IndexMethod::Enclosure(tolerance),
     };
     let grid = |is_logarithmic: bool| {
         move |power: u32| Candidate {
             family: if is_logarithmic { "logarithmic grid" } else { "even grid" },
             name: format!("{}grid, 1e{power}", if is_logarithmic { "log " } else { "" }),
-            judge: Judge::Grid(Grid::new(10_usize.pow(power), is_logarithmic)),
+            method: IndexMethod::Grid(Grid::new(10_usize.pow(power), is_logarithmic)),
         }
     };
-    let mut all = one("closed form", Judge::ClosedForm);
+    let mut all = one("closed form", IndexMethod::ClosedForm);
     all.extend(TOLERANCES.iter().map(enclosure));
-    all.extend(one("decision", Judge::Decision));
+    all.extend(one("decision", IndexMethod::Decision));
     all.extend((2..=5).map(grid(false)));
     all.extend((2..=4).map(grid(true)));
-    all.extend(one("roots", Judge::Roots));
+    all.extend(one("roots", IndexMethod::Roots));
     all
 }
 
@@ -84,49 +84,49 @@ pub fn measure(mut step: impl FnMut()) -> Tradeoff {
     let mut methods = Vec::new();
     for kind in Kind::ALL {
         let candidates = candidates();
-        let knows = |candidate: &&Candidate| asked(&candidate.judge, kind, 0).is_some();
+        let knows = |candidate: &&Candidate| evaluated(&candidate.method, kind, 0).is_some();
         let candidates: Vec<_> = candidates.iter().filter(knows).collect();
         let work = |candidate: &&Candidate| {
-            let judge = candidate.judge.clone();
+            let method = candidate.method.clone();
             let posed: Vec<_> = (0..TIMED)
                 .map(|number| {
                     let environment = environment(kind, number);
-                    let delta = environment.delta(answer(kind, number));
+                    let delta = environment.delta(reference_index(kind, number));
                     (environment, delta)
                 })
                 .collect();
             move || {
                 for (environment, delta) in &posed {
-                    black_box(judge.ask(black_box(environment), *delta));
+                    black_box(method.evaluate(black_box(environment), *delta));
                 }
             }
         };
         let mut works: Vec<_> = candidates.iter().map(work).collect();
         let times = fastest(ROUNDS, &mut works);
         for (candidate, time) in candidates.into_iter().zip(times) {
-            let figures = Figures::of(&candidate.judge, kind, 0..EACH);
-            methods.push(figures.row(kind, candidate, 1e6 * time / TIMED as f64));
+            let errors = MethodErrors::of(&candidate.method, kind, 0..EACH);
+            methods.push(errors.row(kind, candidate, 1e6 * time / TIMED as f64));
             step();
         }
     }
-    Tradeoff { subject: &SUBJECT, methods }
+    Tradeoff { comparison: &COMPARISON, methods }
 }
 
 /// Steps of [`measure`].
 pub fn steps() -> usize {
     let all = candidates();
-    let known = |kind| all.iter().filter(|one| asked(&one.judge, kind, 0).is_some()).count();
+    let known = |kind| all.iter().filter(|one| evaluated(&one.method, kind, 0).is_some()).count();
     Kind::ALL.into_iter().map(known).sum()
 }
 
-fn asked(judge: &Judge, kind: Kind, number: usize) -> Option<Answer> {
+fn evaluated(method: &IndexMethod, kind: Kind, number: usize) -> Option<IndexResult> {
     let environment = environment(kind, number);
-    judge.ask(&environment, environment.delta(answer(kind, number)))
+    method.evaluate(&environment, environment.delta(reference_index(kind, number)))
 }
 
 /// What a judge says of many environments, beside what is right.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Figures {
+pub struct MethodErrors {
     /// It says yes where the answer is no.
     pub wrong_yes: usize,
     /// It says no where the answer is yes.
@@ -138,25 +138,25 @@ pub struct Figures {
     pub errors: Vec<f64>,
 }
 
-impl Figures {
+impl MethodErrors {
     /// Asks a judge about environments of a kind.
-    pub fn of(judge: &Judge, kind: Kind, numbers: std::ops::Range<usize>) -> Self {
-        let one = |number: usize| Some((number, asked(judge, kind, number)?));
+    pub fn of(method: &IndexMethod, kind: Kind, numbers: std::ops::Range<usize>) -> Self {
+        let one = |number: usize| Some((number, evaluated(method, kind, number)?));
         let answers: Vec<_> = numbers.into_par_iter().filter_map(one).collect();
-        let mut figures = Self::default();
+        let mut errors = Self::default();
         for (number, said) in answers {
-            let (environment, truth) = (environment(kind, number), answer(kind, number));
+            let (environment, truth) = (environment(kind, number), reference_index(kind, number));
             match (said.verdict, environment.is_passive(truth)) {
-                (Verdict::Yes, false) => figures.wrong_yes += 1,
-                (Verdict::No, true) => figures.wrong_no += 1,
-                (Verdict::Open, _) => figures.open += 1,
+                (Verdict::Yes, false) => errors.wrong_yes += 1,
+                (Verdict::No, true) => errors.wrong_no += 1,
+                (Verdict::Open, _) => errors.open += 1,
                 _ => {}
             }
-            let looks = !matches!(judge, Judge::Decision);
-            figures.errors.extend(truth.filter(|_| looks).map(|truth| error(said.alpha, truth)));
+            let looks = !matches!(method, IndexMethod::Decision);
+            errors.errors.extend(truth.filter(|_| looks).map(|truth| error(said.alpha, truth)));
         }
-        figures.errors.sort_by(f64::total_cmp);
-        figures
+        errors.errors.sort_by(f64::total_cmp);
+        errors
     }
 
     /// The error that such a part of the environments stays below.

@@ -3,13 +3,13 @@ use crate::table::Table;
 
 fn kept() -> Tradeoff {
     let kept = include_bytes!("../../../../pictures/tradeoff/certificate.csv");
-    Tradeoff::read(&SUBJECT, Table::new("certificate.csv", &kept[..]).unwrap()).unwrap()
+    Tradeoff::read(&COMPARISON, Table::new("certificate.csv", &kept[..]).unwrap()).unwrap()
 }
 
 /// Ways that need a grid of tens of thousands of points are left out: they take long, and are the
 /// same code.
-fn is_quick(judge: &Judge) -> bool {
-    !matches!(judge, Judge::Grid(grid) if grid.count() > 1000)
+fn is_quick(method: &IndexMethod) -> bool {
+    !matches!(method, IndexMethod::Grid(grid) if grid.count() > 1000)
 }
 
 /// All that does not depend on the machine is in the kept table as it is found today. What ordinary
@@ -19,14 +19,19 @@ fn the_kept_errors_and_verdicts_are_those_that_are_found() {
     let kept = kept();
     let mut compared = 0;
     for kind in Kind::ALL {
-        for candidate in candidates().iter().filter(|candidate| is_quick(&candidate.judge)) {
+        for candidate in candidates().iter().filter(|candidate| is_quick(&candidate.method)) {
             let is_it = |row: &&Method| row.case == kind.name() && row.name == candidate.name;
             let Some(was) = kept.methods.iter().find(is_it) else {
-                assert!(asked(&candidate.judge, kind, 0).is_none(), "{kind:?} {}", candidate.name);
+                assert!(
+                    evaluated(&candidate.method, kind, 0).is_none(),
+                    "{kind:?} {}",
+                    candidate.name
+                );
                 continue;
             };
-            let found = Figures::of(&candidate.judge, kind, 0..EACH).row(kind, candidate, 1.0);
-            let proves = !matches!(candidate.judge, Judge::Grid(_) | Judge::Roots);
+            let found =
+                MethodErrors::of(&candidate.method, kind, 0..EACH).row(kind, candidate, 1.0);
+            let proves = !matches!(candidate.method, IndexMethod::Grid(_) | IndexMethod::Roots);
             for (column, (is, was)) in found.values.iter().zip(&was.values).enumerate().skip(1) {
                 let (Some(is), Some(was)) = (is, was) else {
                     assert_eq!(is, was);
@@ -76,7 +81,7 @@ fn a_proof_is_never_wrong_and_grids_and_roots_are() {
 /// A danger and a price: each has a panel of its own, and no panel has their sum.
 #[test]
 fn wrong_passes_are_drawn_apart_from_what_is_refused_or_left_open() {
-    let drawn = SUBJECT.errors.iter().map(|axis| axis.column.names[0]);
+    let drawn = COMPARISON.errors.iter().map(|axis| axis.column.names[0]);
     assert_eq!(drawn.collect::<Vec<_>>(), ["alpha_error", "wrong_yes", "no_yes"]);
     for row in &kept().methods {
         let [wrong_yes, no_yes, wrong_no, open] = [2, 3, 4, 5].map(|column| row.values[column]);
@@ -96,10 +101,10 @@ fn every_way_finds_the_index_of_a_wall() {
     let (stiffness, damping) = environment(Kind::Walls, number).wall.unwrap();
     let truth = 0.5 * stiffness * environments::PERIOD + damping;
     for candidate in candidates() {
-        let said = asked(&candidate.judge, Kind::Walls, number).unwrap();
+        let said = evaluated(&candidate.method, Kind::Walls, number).unwrap();
         let Some((lo, hi)) = said.alpha else { continue };
-        let width = match candidate.judge {
-            Judge::Enclosure(tolerance) => tolerance.max(1e-12),
+        let width = match candidate.method {
+            IndexMethod::Enclosure(tolerance) => tolerance.max(1e-12),
             _ => 1e-12,
         };
         let near = |end: f64| (end / truth - 1.0).abs() <= width;

@@ -6,7 +6,7 @@ mod stepper;
 
 use std::hint::black_box;
 
-use super::{Axis, Method as Row, NUMBER, Subject, Tradeoff, fastest};
+use super::{Axis, Comparison, Method as Row, NUMBER, Tradeoff, fastest};
 use crate::simulation::method::Method;
 use crate::simulation::{Integration, SimulationError, Trajectory, simulate};
 use crate::stability::critical_stiffness;
@@ -18,7 +18,7 @@ use cases::SAMPLES;
 use stepper::Stepper;
 
 /// What is compared.
-pub static SUBJECT: Subject = Subject {
+pub static COMPARISON: Comparison = Comparison {
     name: "simulation",
     title: "Simulation: methods of integration by their steps in a sample of 1 ms",
     cost: Axis::most(&["samples_per_second"], "samples simulated a second"),
@@ -53,7 +53,7 @@ const LOST: f64 = 1e3;
 /// Where it is not a table of this subject.
 pub fn kept() -> Result<Tradeoff, TableError> {
     let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
-    Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..])?)
+    Tradeoff::read(&COMPARISON, Table::new("simulation.csv", &kept[..])?)
 }
 
 /// The cheapest method in a table of this subject whose largest stable stiffness for the rigid
@@ -83,7 +83,7 @@ pub fn measure() -> Result<Tradeoff, SimulationError> {
             methods.push(truth.row(&case, integration, time)?);
         }
     }
-    Ok(Tradeoff { subject: &SUBJECT, methods })
+    Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
 /// What is measured of each case.

@@ -47,14 +47,14 @@ fn apparent_limits_are_those_of_theory() {
 
 fn kept() -> Tradeoff {
     let kept = include_bytes!("../../../../pictures/tradeoff/simulation.csv");
-    Tradeoff::read(&SUBJECT, Table::new("simulation.csv", &kept[..]).unwrap()).unwrap()
+    Tradeoff::read(&COMPARISON, Table::new("simulation.csv", &kept[..]).unwrap()).unwrap()
 }
 
 #[test]
 fn the_exact_exponential_is_on_every_front() {
     let kept = kept();
     for case in kept.cases() {
-        for error in 0..SUBJECT.errors.len() {
+        for error in 0..COMPARISON.errors.len() {
             assert!(kept.front(case, error).iter().any(|method| method.name == "exact"));
         }
     }
@@ -71,7 +71,7 @@ fn the_kept_errors_are_those_that_are_found() {
             let (found, kept) = (truth.row(&case, integration, 1.0).unwrap(), kept.next().unwrap());
             let words = |row: &Row| [row.case.clone(), row.family.clone(), row.name.clone()];
             assert_eq!(words(kept), words(&found));
-            for (error, axis) in SUBJECT.errors.iter().enumerate() {
+            for (error, axis) in COMPARISON.errors.iter().enumerate() {
                 let [is, was] = [&found, kept].map(|row| row.error(error).unwrap());
                 let same = is == was || (is - was).abs() <= 0.01 * was + axis.floor;
                 assert!(same, "{} {}: {is} was {was}", found.case, found.name);

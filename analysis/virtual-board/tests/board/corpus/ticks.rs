@@ -1,7 +1,7 @@
 //! Ticks of the scenes that have a program, in every number format.
 
 use analysis::emulator::BenchClient;
-use analysis::studies::arithmetic::{Motion, Subject, Units};
+use analysis::studies::number_format::{FormatProblem, Motion, Units};
 use analysis::studies::tradeoff::servo;
 use firmware::number::Arithmetic;
 use firmware_harness::bench_request::BenchRequest;
@@ -16,13 +16,13 @@ const TICKS: usize = 448;
 /// full; and so small that it is almost empty.
 const UNITS: [(i32, i32); 4] = [(0, 0), (-4, -3), (12, 2), (24, 24)];
 
-/// A subject in other units.
-fn scaled(subject: Subject, (angle, torque): (i32, i32)) -> Subject {
+/// A problem in other units.
+fn scaled(problem: FormatProblem, (angle, torque): (i32, i32)) -> FormatProblem {
     let units = Units { angle: 2_f64.powi(angle), torque: 2_f64.powi(torque) };
-    Subject {
-        scene: units.scene(&subject.scene),
-        transducers: units.transducers(&subject.transducers),
-        ..subject
+    FormatProblem {
+        scene: units.scene(&problem.scene),
+        transducers: units.transducers(&problem.transducers),
+        ..problem
     }
 }
 
@@ -34,8 +34,8 @@ fn compare(
     arithmetic: Arithmetic,
 ) -> Option<usize> {
     let here = motion.torques(arithmetic).ok()?;
-    let (scene, transducers) = motion.subject().scaled(arithmetic);
-    let unit = motion.subject().units(arithmetic).torque;
+    let (scene, transducers) = motion.problem().scaled(arithmetic);
+    let unit = motion.problem().units(arithmetic).torque;
     let trial = BenchRequest::Servo { scene, transducers, arithmetic };
     let inputs: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
     let there = boards.each_mut().map(|board| board.compute(&trial, &inputs).unwrap());
@@ -61,7 +61,7 @@ fn ticks_are_equal() {
     let mut limited = Vec::new();
     for case in servo::cases() {
         for units in UNITS {
-            let motion = Motion::recorded(&scaled(case.subject, units), counts(&mut rng, TICKS));
+            let motion = Motion::recorded(&scaled(case.problem, units), counts(&mut rng, TICKS));
             let formats = Arithmetic::ALL.into_iter();
             limited.extend(formats.filter_map(|format| compare(&mut boards, &motion, format)));
         }

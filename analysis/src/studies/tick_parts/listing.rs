@@ -18,8 +18,8 @@ pub enum ListingError {
     Lines(#[from] DwarfError),
     /// It does not say where code is, or what it came from.
     #[error(
-        "the program has no {0}; it must be built with the release profile and the settings of \
-         `firmware/flash.toml`, and not stripped"
+        "the program has no {0}; it must be built with the release profile of this repository, and not \
+         stripped"
     )]
     Stripped(&'static str),
 }

@@ -5,17 +5,17 @@ mod advice;
 mod cost;
 mod error;
 mod friction;
+mod limit_cycle;
 mod losses;
 mod motion;
-mod rest;
 mod units;
 
-pub use advice::{Advice, Candidate, Figures};
+pub use advice::{Advice, Candidate, Requirements};
 pub use cost::{Cost, cost};
-pub use error::ArithmeticError;
+pub use error::FormatError;
+pub use limit_cycle::{LimitCycle, at_rest};
 pub use losses::Losses;
 pub use motion::Motion;
-pub use rest::{Rest, at_rest};
 pub use units::Units;
 
 use firmware::certificate::Resolution;
@@ -31,7 +31,7 @@ pub const HALF_A_TURN: f64 = std::f64::consts::PI;
 
 /// A scene with its sensor and motor, to be computed in any format.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject {
+pub struct FormatProblem {
     /// The scene.
     pub scene: Scene,
     /// Its sensor and its motor.
@@ -48,7 +48,7 @@ pub struct FormatServo {
     units: Units,
 }
 
-impl Subject {
+impl FormatProblem {
     /// What the numbers of a format count in this scene.
     pub fn units(&self, arithmetic: Arithmetic) -> Units {
         if arithmetic.is_scaled() {
@@ -69,7 +69,7 @@ impl Subject {
     ///
     /// # Errors
     /// Where the scene is refused, or cannot be had in this format.
-    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, ArithmeticError> {
+    pub fn servo(&self, arithmetic: Arithmetic) -> Result<FormatServo, FormatError> {
         let (scene, transducers) = self.scaled(arithmetic);
         let controller = arithmetic.choose(Build { scene, transducers })?;
         Ok(FormatServo { controller, units: self.units(arithmetic) })
@@ -87,7 +87,7 @@ impl FormatServo {
     ///
     /// # Errors
     /// Where the format does not hold the angle.
-    pub fn tick_at(&mut self, angle: f64) -> Result<f64, ArithmeticError> {
+    pub fn tick_at(&mut self, angle: f64) -> Result<f64, FormatError> {
         Ok(self.controller.tick_at(angle / self.units.angle)? * self.units.torque)
     }
 }
@@ -99,10 +99,10 @@ struct Build {
 }
 
 impl InEach for Build {
-    type Output = Result<Box<dyn Controller>, ArithmeticError>;
+    type Output = Result<Box<dyn Controller>, FormatError>;
 
     fn with<N: Number>(self) -> Self::Output {
-        let certified = self.scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
+        let certified = self.scene.certify().map_err(|r| FormatError::Refused(Box::new(r)))?;
         Ok(controller::<_, N>(&certified, &self.transducers)?)
     }
 }

@@ -9,17 +9,17 @@ use firmware_harness::loop_request::{LoopRequest, StartReply};
 use serde::Serialize;
 use thiserror::Error;
 
-use super::claim::{Claim, Says};
-use super::fate::{End, Fate};
 use super::loaded::LoadedDevice;
+use super::method_result::{MethodResult, Verdict};
+use super::motion::{Motion, Outcome};
 use crate::controller::{Controller, controller};
 use crate::emulator::{EmulatorError, ServoClient};
 use crate::lockstep::run;
 use crate::simulation::{Experiment, Integration, SimulationError, simulate};
 
-/// Why there is no proof.
+/// Why a loop cannot be run.
 #[derive(Debug, Error)]
-pub enum TrialError {
+pub enum LoopRunError {
     /// The loop cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -39,8 +39,8 @@ pub enum TrialError {
 
 /// A loop that is run.
 #[derive(Clone, Debug)]
-pub struct Trial {
-    /// What is tried, in a few words.
+pub struct LoopRun {
+    /// What is run, in a few words.
     pub what: &'static str,
     /// Scene, device, hand, friction, missed ticks.
     pub experiment: Experiment,
@@ -51,45 +51,45 @@ pub struct Trial {
     /// The device that the board is told of, in place of the scene's: one with more damping and
     /// passivity than it has, since no board can be made to run what is refused in any other way.
     pub claimed: Option<Device>,
-    /// What will become of it.
-    pub expected: End,
+    /// The expected outcome.
+    pub expected: Outcome,
 }
 
 /// What a board did with a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Played {
+pub enum BoardResult {
     /// It does not run it, whatever device is claimed.
     Refused,
     /// It ran it, all its codes being those of the same servo on the host.
-    Ran(Fate),
+    Ran(Motion),
 }
 
-impl Played {
-    /// Whether that is what was to come of a trial: a board that refuses lets nothing grow.
-    pub fn shows(&self, expected: End) -> bool {
+impl BoardResult {
+    /// Whether this is the expected outcome: a board that refuses lets nothing diverge.
+    pub fn agrees_with(&self, expected: Outcome) -> bool {
         match self {
-            Self::Refused => expected != End::Rests,
-            Self::Ran(fate) => fate.end() == expected,
+            Self::Refused => expected != Outcome::Converges,
+            Self::Ran(motion) => motion.outcome() == expected,
         }
     }
 }
 
-impl Trial {
-    /// What becomes of the loop in `f64`, without converters but for what the experiment has.
+impl LoopRun {
+    /// The motion of the loop in `f64`, without converters but for what the experiment has.
     ///
     /// # Errors
     /// Where it cannot be simulated.
-    pub fn simulated(&self) -> Result<Fate, TrialError> {
+    pub fn simulated(&self) -> Result<Motion, LoopRunError> {
         let positions = match self.arithmetic {
             Arithmetic::F32 => simulate(&self.experiment, Integration::default())?.position,
             _ => self.without_converters()?,
         };
-        Ok(Fate::of(&positions, self.experiment.samples))
+        Ok(Motion::of(&positions, self.experiment.samples))
     }
 
     /// The same with the servo's own arithmetic.
-    fn without_converters(&self) -> Result<Vec<f64>, TrialError> {
+    fn without_converters(&self) -> Result<Vec<f64>, LoopRunError> {
         let mut servo = self.controller(&self.certified()?)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         while device.positions.len() < self.experiment.samples {
@@ -100,43 +100,43 @@ impl Trial {
         Ok(device.positions)
     }
 
-    /// What becomes of the loop of which the emulated board is the servo. The board is compared
+    /// The motion of the loop of which the emulated board is the servo. The board is compared
     /// with the servo on this machine in every tick.
     ///
     /// # Errors
     /// Where the board fails, or disagrees with this machine.
-    pub fn emulated(&self, player: &mut ServoClient) -> Result<Played, TrialError> {
+    pub fn emulated(&self, player: &mut ServoClient) -> Result<BoardResult, LoopRunError> {
         let request = self.request();
         let (reply, here) = (player.start(&request)?, self.certified());
         let certified = match (reply, here) {
             (StartReply::Ready, Ok(certified)) => certified,
-            (StartReply::Rejected, Err(_)) => return Ok(Played::Refused),
-            (reply, _) => return Err(TrialError::Disagreement(format!("{reply:?}"))),
+            (StartReply::Rejected, Err(_)) => return Ok(BoardResult::Refused),
+            (reply, _) => return Err(LoopRunError::Disagreement(format!("{reply:?}"))),
         };
         let mut servo = self.controller(&certified)?;
         let mut device = LoadedDevice::new(&self.experiment, &self.transducers)?;
         let ticks = request.ticks as usize;
         let run = run(&mut device, servo.as_mut(), Some(player), ticks, || {})?;
         match run.difference {
-            Some(difference) => Err(TrialError::Disagreement(difference.to_string())),
-            None => Ok(Played::Ran(Fate::of(&device.positions, self.experiment.samples))),
+            Some(difference) => Err(LoopRunError::Disagreement(difference.to_string())),
+            None => Ok(BoardResult::Ran(Motion::of(&device.positions, self.experiment.samples))),
         }
     }
 
-    /// The scene as the board is told it.
-    pub fn told(&self) -> Scene {
+    /// The scene that is sent to the board, with the device that is claimed.
+    pub fn scene_for_board(&self) -> Scene {
         let scene = self.experiment.scene;
         Scene { device: self.claimed.unwrap_or(scene.device), ..scene }
     }
 
-    fn certified(&self) -> Result<Certified<Scene>, TrialError> {
-        let refused = |rejection: Rejection| TrialError::Disagreement(rejection.to_string());
-        self.told().certify().map_err(refused)
+    fn certified(&self) -> Result<Certified<Scene>, LoopRunError> {
+        let refused = |rejection: Rejection| LoopRunError::Disagreement(rejection.to_string());
+        self.scene_for_board().certify().map_err(refused)
     }
 
     fn request(&self) -> LoopRequest {
         LoopRequest {
-            scene: self.told(),
+            scene: self.scene_for_board(),
             transducers: self.transducers,
             arithmetic: self.arithmetic,
             ticks: self.ticks() as u32,
@@ -168,14 +168,14 @@ impl InEach for Build<'_> {
     }
 }
 
-impl Claim {
-    /// What becomes of a loop in simulation.
+impl MethodResult {
+    /// The verdict of a simulation.
     ///
     /// # Errors
     /// Where it cannot be simulated.
-    pub fn simulated(by: &str, trial: &Trial) -> Result<Self, TrialError> {
-        let fate = trial.simulated()?;
-        let says = Says::of(fate.end() == End::Rests);
-        Ok(Self::new(by, says, fate.last, "at the end it moves to and fro by {} rad"))
+    pub fn simulated(method: &str, loop_run: &LoopRun) -> Result<Self, LoopRunError> {
+        let motion = loop_run.simulated()?;
+        let verdict = Verdict::of(motion.outcome() == Outcome::Converges);
+        Ok(Self::new(method, verdict, motion.last, "at the end it moves to and fro by {} rad"))
     }
 }

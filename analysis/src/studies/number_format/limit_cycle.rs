@@ -5,17 +5,19 @@ use firmware::environment::Environment;
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
-use super::{ArithmeticError, FormatServo, Subject};
+use super::{FormatError, FormatProblem, FormatServo};
 use crate::device::{Hand, HandSetpoint, Motion, SimulatedEncoder};
 use crate::simulation::held_device::HeldDevice;
 
 /// What is left of the motion of a device that is pushed against a wall, or let go in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Rest {
+pub struct LimitCycle {
     /// Torque in N m from its lowest to its highest, the most that any start ends with.
-    pub hum: f64,
+    #[serde(rename = "hum")]
+    pub torque: f64,
     /// Angle in rad from its lowest to its highest, the least that any start ends with.
-    pub cycle: f64,
+    #[serde(rename = "cycle")]
+    pub angle: f64,
 }
 
 /// Torque in N m that pushes against a wall, or half of the limit where that is less.
@@ -38,44 +40,47 @@ const STEADY: f64 = 0.9;
 /// Where the scene is refused, cannot be had in this format, or does not come to rest in a time that
 /// is worth waiting for.
 pub fn at_rest(
-    subject: &Subject,
+    problem: &FormatProblem,
     arithmetic: Arithmetic,
     with_encoder: bool,
-) -> Result<Rest, ArithmeticError> {
-    let encoder = with_encoder.then(|| SimulatedEncoder::new(subject.transducers.counts_per_turn));
-    let scene = &subject.scene;
+) -> Result<LimitCycle, FormatError> {
+    let encoder = with_encoder.then(|| SimulatedEncoder::new(problem.transducers.counts_per_turn));
+    let scene = &problem.scene;
     let device = HeldDevice::new(scene.device, Hand::default(), scene.timing.period)?;
-    let limit = scene.torque_limit.unwrap_or(subject.transducers.full_scale_torque);
+    let limit = scene.torque_limit.unwrap_or(problem.transducers.full_scale_torque);
     let push = if has_spring(&scene.environment) { PRELOAD.min(0.5 * limit) } else { 0.0 };
-    let window = window(subject, &device, push)?;
-    let mut rest = Rest { hum: 0.0, cycle: f64::INFINITY };
+    let window = window(problem, &device, push)?;
+    let mut largest = LimitCycle { torque: 0.0, angle: f64::INFINITY };
     for start in STARTS {
-        let servo = subject.servo(arithmetic)?;
+        let servo = problem.servo(arithmetic)?;
         let motion = Motion { position: start, velocity: 0.0 };
         let mut settling = Settling { device: &device, servo, encoder, push, motion };
         let left = settling.settle(ticks(window, scene.timing.period))?;
-        rest = Rest { hum: rest.hum.max(left.hum), cycle: rest.cycle.min(left.cycle) };
+        largest = LimitCycle {
+            torque: largest.torque.max(left.torque),
+            angle: largest.angle.min(left.angle),
+        };
     }
-    Ok(rest)
+    Ok(largest)
 }
 
 /// Time in s in which the motion dies away by half at least, where nothing but inertia keeps it up: in
 /// `f64`, with angles that no encoder has counted.
-fn window(subject: &Subject, device: &HeldDevice, push: f64) -> Result<f64, ArithmeticError> {
+fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64, FormatError> {
     let mut window = WINDOW;
     while window <= LONGEST {
         // Four windows at once, in which a slow oscillation shows its whole span.
-        let ticks = ticks(4.0 * window, subject.scene.timing.period);
-        let servo = subject.servo(Arithmetic::F64)?;
+        let ticks = ticks(4.0 * window, problem.scene.timing.period);
+        let servo = problem.servo(Arithmetic::F64)?;
         let motion = Motion { position: STARTS[0], velocity: 0.0 };
         let mut settling = Settling { device, servo, encoder: None, push, motion };
         let (first, second) = (settling.window(ticks)?, settling.window(ticks)?);
-        if second.hum <= first.hum / 16.0 {
+        if second.torque <= first.torque / 16.0 {
             return Ok(window);
         }
         window *= 2.0;
     }
-    Err(ArithmeticError::NoRest { seconds: LONGEST })
+    Err(FormatError::NoRest { seconds: LONGEST })
 }
 
 /// Ticks in a time in s.
@@ -105,11 +110,11 @@ struct Settling<'a> {
 
 impl Settling<'_> {
     /// What is left in a window of so many ticks when it has become as little as it will.
-    fn settle(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
+    fn settle(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
         let mut last = self.window(ticks)?;
         for _ in 1..WINDOWS {
             let next = self.window(ticks)?;
-            if next.hum >= STEADY * last.hum && next.cycle >= STEADY * last.cycle {
+            if next.torque >= STEADY * last.torque && next.angle >= STEADY * last.angle {
                 return Ok(next);
             }
             last = next;
@@ -117,7 +122,7 @@ impl Settling<'_> {
         Ok(last)
     }
 
-    fn window(&mut self, ticks: usize) -> Result<Rest, ArithmeticError> {
+    fn window(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
         let (mut torques, mut angles) = (Span::EMPTY, Span::EMPTY);
         for _ in 0..ticks {
             let angle = self.motion.position;
@@ -130,7 +135,7 @@ impl Settling<'_> {
             self.motion =
                 self.device.step(self.motion, self.push - torque, HandSetpoint::default()).0;
         }
-        Ok(Rest { hum: torques.length(), cycle: angles.length() })
+        Ok(LimitCycle { torque: torques.length(), angle: angles.length() })
     }
 }
 
@@ -164,7 +169,7 @@ mod tests {
     use super::*;
 
     /// A wall whose certificate leaves `margin` N m s/rad, on a device of so much inertia.
-    fn subject(inertia: f64, margin: f64) -> Subject {
+    fn problem(inertia: f64, margin: f64) -> FormatProblem {
         let damping = 1e-4;
         let stiffness = 2.0 * (damping - margin) / 1e-3;
         let environment = Environment::DelayedSpring(Wall {
@@ -189,14 +194,14 @@ mod tests {
             torque_limit: None,
         };
         let steps = Resolution::of(&transducers, None);
-        Subject { scene, transducers, steps, range: 0.5 }
+        FormatProblem { scene, transducers, steps, range: 0.5 }
     }
 
     #[test]
     fn a_motion_that_dies_away_slowly_is_waited_for_and_no_limit_cycle() {
-        let rest = at_rest(&subject(5e-5, 5e-5), Arithmetic::F64, false).unwrap();
-        assert!(rest.hum < 1e-9, "{rest:?}");
-        let endless = at_rest(&subject(5e-3, 1e-7), Arithmetic::F64, false);
-        assert!(matches!(endless, Err(ArithmeticError::NoRest { .. })), "{endless:?}");
+        let largest = at_rest(&problem(5e-5, 5e-5), Arithmetic::F64, false).unwrap();
+        assert!(largest.torque < 1e-9, "{largest:?}");
+        let endless = at_rest(&problem(5e-3, 1e-7), Arithmetic::F64, false);
+        assert!(matches!(endless, Err(FormatError::NoRest { .. })), "{endless:?}");
     }
 }

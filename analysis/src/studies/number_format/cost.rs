@@ -3,7 +3,7 @@
 use firmware::number::Arithmetic;
 use firmware_harness::bench_request::BenchRequest;
 
-use super::{ArithmeticError, Motion};
+use super::{FormatError, Motion};
 use crate::emulator::BenchClient;
 
 /// Instructions of a tick from count to code, on the emulated board.
@@ -24,10 +24,10 @@ pub fn cost(
     board: &mut BenchClient,
     motion: &Motion,
     arithmetic: Arithmetic,
-) -> Result<Cost, ArithmeticError> {
+) -> Result<Cost, FormatError> {
     let here = motion.torques(arithmetic)?;
-    let units = motion.subject().units(arithmetic);
-    let (scene, transducers) = motion.subject().scaled(arithmetic);
+    let units = motion.problem().units(arithmetic);
+    let (scene, transducers) = motion.problem().scaled(arithmetic);
     let request = BenchRequest::Servo { scene, transducers, arithmetic };
     let counts: Vec<_> = motion.counts().iter().map(|count| count.cast_unsigned()).collect();
     let there = board.compute(&request, &counts)?;
@@ -37,7 +37,7 @@ pub fn cost(
         bits(torque, code) != bits(there.value * units.torque, there.code)
     });
     if let Some(tick) = differs {
-        return Err(ArithmeticError::Differs { format: arithmetic.name(), tick });
+        return Err(FormatError::Differs { format: arithmetic.name(), tick });
     }
     let instructions = there.iter().map(|output| output.instructions);
     let most = instructions.clone().max().unwrap_or_default();

@@ -3,9 +3,9 @@
 use firmware::certificate::{QuantizationBound, Resolution};
 use firmware::number::Arithmetic;
 
-use super::Subject;
+use super::FormatProblem;
 
-impl Subject {
+impl FormatProblem {
     /// The most that encoder, converter and a format's numbers move the torque, in N m, and the
     /// device's friction against it (theory, section 8). `None` where nothing bounds it: the
     /// controller's response does not end.

@@ -1,4 +1,4 @@
-//! What somebody or something says about a loop, and whether that is so.
+//! The verdict of a method about a loop, and whether it is right.
 
 use firmware::certificate::{QuantizationBound, Rejection, Resolution, assess, certify};
 use firmware::number::Format;
@@ -10,10 +10,10 @@ use crate::quantity::significant;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues, radius};
 
-/// Does it come to rest?
+/// Whether a loop comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Says {
+pub enum Verdict {
     /// Yes.
     Safe,
     /// No.
@@ -22,7 +22,7 @@ pub enum Says {
     Undecided,
 }
 
-impl Says {
+impl Verdict {
     /// In one word.
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ impl Says {
     }
 }
 
-/// How a claim is wrong.
+/// How a verdict is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Failure {
@@ -48,83 +48,91 @@ pub enum Failure {
     Needless,
 }
 
-/// What is said about a loop, by whom, and why.
+/// The verdict of a method about a loop, and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Claim {
+pub struct MethodResult {
     /// The method.
-    pub by: String,
-    /// Its answer.
-    pub says: Says,
-    /// The number that the answer rests on, if there is one: which, and in which unit, is in
-    /// [`Claim::because`].
+    #[serde(rename = "by")]
+    pub method: String,
+    /// Its verdict.
+    #[serde(rename = "says")]
+    pub verdict: Verdict,
+    /// The number that the verdict rests on, if there is one: which, and in which unit, is in
+    /// [`MethodResult::reason`].
     pub figure: Option<f64>,
     /// Why, in a sentence with numbers.
-    pub because: String,
+    #[serde(rename = "because")]
+    pub reason: String,
 }
 
-impl Claim {
-    /// A claim that rests on a number; `because` has `{}` where that number goes.
-    pub fn new(by: impl Into<String>, says: Says, figure: f64, because: &str) -> Self {
-        let because = because.replacen("{}", &significant(figure, 6), 1);
-        Self { by: by.into(), says, figure: Some(figure), because }
+impl MethodResult {
+    /// A verdict that rests on a number; `reason` has `{}` where that number goes.
+    pub fn new(method: impl Into<String>, verdict: Verdict, figure: f64, reason: &str) -> Self {
+        let reason = reason.replacen("{}", &significant(figure, 6), 1);
+        Self { method: method.into(), verdict, figure: Some(figure), reason }
     }
 
-    /// What the eigenvalues of a loop say, as a method of integration shows them.
+    /// The verdict of the eigenvalues of a loop, as a method of integration shows them.
     ///
     /// # Errors
     /// Where there is no loop, or its eigenvalues are not found.
     pub fn eigenvalues(
-        by: impl Into<String>,
+        method: impl Into<String>,
         experiment: &Experiment,
         integration: Integration,
     ) -> Result<Self, SimulationError> {
         let closed = closed_loop(experiment, integration)?;
-        Ok(Self::modulus(by, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
+        Ok(Self::modulus(method, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
     }
 
-    /// What a modulus says that has to be inside the unit circle; `of` is what has it.
-    pub fn modulus(by: impl Into<String>, of: &str, modulus: f64) -> Self {
+    /// The verdict of a modulus that has to be inside the unit circle; `of` is what has it.
+    pub fn modulus(method: impl Into<String>, of: &str, modulus: f64) -> Self {
         let (is_inside, beside) = (modulus < 1.0, significant((modulus - 1.0).abs(), 6));
         let side = if is_inside { "inside" } else { "outside" };
         Self {
-            by: by.into(),
-            says: Says::of(is_inside),
+            method: method.into(),
+            verdict: Verdict::of(is_inside),
             figure: Some(modulus),
-            because: format!("the {of} is {beside} {side} the unit circle"),
+            reason: format!("the {of} is {beside} {side} the unit circle"),
         }
     }
 
-    /// What the certificate says about a scene: the index that it found, or its refusal.
+    /// The verdict of the certificate about a scene: the index that it found, or its refusal.
     pub fn certificate(scene: &Scene) -> Self {
         let assessment = assess(scene);
         let index = assessment.alpha_coupled.or(assessment.alpha);
-        let (says, because) = match certify(scene) {
-            Ok(_) => (Says::Safe, certified(index, assessment.delta)),
+        let (verdict, reason) = match certify(scene) {
+            Ok(_) => (Verdict::Safe, certified(index, assessment.delta)),
             Err(rejection @ Rejection::Undecided { .. }) => {
-                (Says::Undecided, rejection.to_string())
+                (Verdict::Undecided, rejection.to_string())
             }
-            Err(rejection) => (Says::Unsafe, rejection.to_string()),
+            Err(rejection) => (Verdict::Unsafe, rejection.to_string()),
         };
-        Self { by: "certificate".into(), says, figure: index.map(|alpha| alpha.hi()), because }
+        Self {
+            method: "certificate".into(),
+            verdict,
+            figure: index.map(|alpha| alpha.hi()),
+            reason,
+        }
     }
 
-    /// What the certificate says about a certified scene at rest, on a device with these steps and
+    /// The verdict of the certificate about a certified scene at rest, on a device with these steps and
     /// this friction, computed in a number format; the figure is the friction in N m that is enough.
     pub fn at_rest(scene: &Scene, format: Format, steps: &Resolution) -> Self {
         let rest = QuantizationBound::of(scene, format, steps);
-        let says = match rest.and_then(|rest| rest.comes_to_rest()) {
-            Some(comes) => Says::of(comes),
-            None => Says::Undecided,
+        let verdict = match rest.and_then(|rest| rest.comes_to_rest()) {
+            Some(comes) => Verdict::of(comes),
+            None => Verdict::Undecided,
         };
-        let because = rest.map_or_else(String::new, |rest| format!("certified, but {rest}"));
-        Self { by: "certificate".into(), says, figure: rest.map(|rest| rest.hum()), because }
+        let reason = rest.map_or_else(String::new, |rest| format!("certified, but {rest}"));
+        Self { method: "certificate".into(), verdict, figure: rest.map(|rest| rest.hum()), reason }
     }
 
     /// How it is wrong, if it is.
-    pub fn failure(&self, truth: Says) -> Option<Failure> {
-        match (self.says, truth) {
-            (Says::Safe, Says::Unsafe) => Some(Failure::Dangerous),
-            (Says::Unsafe, Says::Safe) => Some(Failure::Needless),
+    pub fn failure(&self, truth: Verdict) -> Option<Failure> {
+        match (self.verdict, truth) {
+            (Verdict::Safe, Verdict::Unsafe) => Some(Failure::Dangerous),
+            (Verdict::Unsafe, Verdict::Safe) => Some(Failure::Needless),
             _ => None,
         }
     }

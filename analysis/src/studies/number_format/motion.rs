@@ -3,7 +3,7 @@
 use firmware::environment::Environment;
 use firmware::number::Arithmetic;
 
-use super::{ArithmeticError, Subject};
+use super::{FormatError, FormatProblem};
 use crate::controller::controller;
 use crate::hand::HandTrajectory;
 use crate::lockstep::{NoRemote, SimulatedDevice, run};
@@ -11,7 +11,7 @@ use crate::lockstep::{NoRemote, SimulatedDevice, run};
 /// Counts of a device in a hand, as the servo in `f64` moves it.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    subject: Subject,
+    problem: FormatProblem,
     counts: Vec<i32>,
     /// Where the comparison begins.
     begin: usize,
@@ -26,34 +26,34 @@ impl Motion {
     /// # Errors
     /// Where the scene is refused or cannot be simulated.
     pub fn new(
-        subject: &Subject,
+        problem: &FormatProblem,
         trajectory: HandTrajectory,
         seconds: f64,
-    ) -> Result<Self, ArithmeticError> {
-        let Subject { scene, transducers, .. } = *subject;
+    ) -> Result<Self, FormatError> {
+        let FormatProblem { scene, transducers, .. } = *problem;
         let period = scene.timing.period;
         let mut device = SimulatedDevice::new(scene.device, trajectory, period, &transducers)?;
-        let certified = scene.certify().map_err(|r| ArithmeticError::Refused(Box::new(r)))?;
+        let certified = scene.certify().map_err(|r| FormatError::Refused(Box::new(r)))?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;
         let Ok(run) = run::<NoRemote>(&mut device, servo.as_mut(), None, ticks, || {});
         let counts = run.ticks.iter().map(|tick| tick.count as i32).collect();
-        Ok(Self::recorded(subject, counts))
+        Ok(Self::recorded(problem, counts))
     }
 
     /// Recorded raw counts.
-    pub fn recorded(subject: &Subject, counts: Vec<i32>) -> Self {
-        Self { subject: *subject, counts, begin: 0 }
+    pub fn recorded(problem: &FormatProblem, counts: Vec<i32>) -> Self {
+        Self { problem: *problem, counts, begin: 0 }
     }
 
     /// The same motion around the whole count nearest to so many rad, with the wall's face there;
     /// `None` where the environment has its rest at zero and nowhere else.
     pub fn around(&self, angle: f64) -> Option<Self> {
-        let counts_per_radian = self.subject.transducers.counts_per_turn / std::f64::consts::TAU;
+        let counts_per_radian = self.problem.transducers.counts_per_turn / std::f64::consts::TAU;
         let offset = (angle * counts_per_radian).round();
         let place = offset / counts_per_radian;
-        let mut subject = self.subject;
-        match subject.scene.environment {
+        let mut problem = self.problem;
+        match problem.scene.environment {
             Environment::Rational(_) | Environment::Stated(_) => return None,
             ref mut environment => {
                 if let Some(wall) = environment.wall_mut() {
@@ -61,13 +61,13 @@ impl Motion {
                 }
             }
         }
-        let begin = (APPROACH / subject.scene.timing.period).ceil() as usize;
+        let begin = (APPROACH / problem.scene.timing.period).ceil() as usize;
         let approach = (0..begin).map(|tick| {
             let part = tick as f64 / begin as f64;
             (offset * part * part * (3.0 - 2.0 * part)).round() as i32
         });
         let there = self.counts.iter().map(|count| count + offset as i32);
-        Some(Self { subject, counts: approach.chain(there).collect(), begin })
+        Some(Self { problem, counts: approach.chain(there).collect(), begin })
     }
 
     /// The raw counts, one a tick.
@@ -76,16 +76,16 @@ impl Motion {
     }
 
     /// What moves.
-    pub fn subject(&self) -> &Subject {
-        &self.subject
+    pub fn problem(&self) -> &FormatProblem {
+        &self.problem
     }
 
     /// Torques in N m and codes in a format, tick by tick.
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, ArithmeticError> {
-        let mut servo = self.subject.servo(arithmetic)?;
+    pub fn torques(&self, arithmetic: Arithmetic) -> Result<Vec<(f64, u16)>, FormatError> {
+        let mut servo = self.problem.servo(arithmetic)?;
         Ok(self.counts.iter().map(|&count| servo.tick(count)).collect())
     }
 
@@ -93,7 +93,7 @@ impl Motion {
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, ArithmeticError> {
+    pub fn error(&self, arithmetic: Arithmetic) -> Result<f64, FormatError> {
         let (here, reference) = (self.torques(arithmetic)?, self.torques(Arithmetic::F64)?);
         let pairs = here.iter().zip(&reference).skip(self.begin);
         Ok(pairs.fold(0.0, |most, (here, reference)| (here.0 - reference.0).abs().max(most)))

@@ -1,4 +1,4 @@
-//! What becomes of a motion.
+//! Whether a motion ends, and how.
 
 use std::fmt;
 
@@ -6,32 +6,34 @@ use serde::Serialize;
 
 use crate::quantity::significant;
 
-/// What becomes of a motion.
+/// How a motion goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum End {
+pub enum Outcome {
     /// It ends.
-    Rests,
+    #[serde(rename = "rests")]
+    Converges,
     /// It goes on, smaller than it began.
-    Hums,
+    #[serde(rename = "hums")]
+    LimitCycles,
     /// It becomes larger than it was.
-    Grows,
+    #[serde(rename = "grows")]
+    Diverges,
 }
 
-impl End {
+impl Outcome {
     /// In one word.
     pub const fn as_str(self) -> &'static str {
         match self {
-            Self::Rests => "rests",
-            Self::Hums => "hums",
-            Self::Grows => "grows",
+            Self::Converges => "rests",
+            Self::LimitCycles => "hums",
+            Self::Diverges => "grows",
         }
     }
 }
 
 /// How far something moved to and fro, at the start and at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Fate {
+pub struct Motion {
     /// Largest less smallest position in the first tenth of the samples, in rad.
     pub first: f64,
     /// The same in the last tenth; infinite, which is no number in JSON, where it has left the range
@@ -39,7 +41,7 @@ pub struct Fate {
     pub last: f64,
 }
 
-impl Fate {
+impl Motion {
     /// Of positions in rad, all of those that were asked for or as many as there are numbers for.
     pub fn of(positions: &[f64], asked: usize) -> Self {
         let tenth = (asked / 10).max(1).min(positions.len());
@@ -49,24 +51,24 @@ impl Fate {
         Self { first, last }
     }
 
-    /// What became of it.
-    pub fn end(&self) -> End {
+    /// How it went on.
+    pub fn outcome(&self) -> Outcome {
         /// Part of the first swing that is no motion any more.
         const STILL: f64 = 1e-6;
         if !self.last.is_finite() || self.last > self.first {
-            End::Grows
+            Outcome::Diverges
         } else if self.last <= STILL * self.first {
-            End::Rests
+            Outcome::Converges
         } else {
-            End::Hums
+            Outcome::LimitCycles
         }
     }
 }
 
-impl fmt::Display for Fate {
+impl fmt::Display for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (first, last) = (significant(self.first, 3), significant(self.last, 3));
-        write!(f, "{}: {first} to {last} rad", self.end().as_str())
+        write!(f, "{}: {first} to {last} rad", self.outcome().as_str())
     }
 }
 
@@ -89,11 +91,11 @@ mod tests {
         let motion = |factor: f64| -> Vec<f64> {
             (0..1000).map(|k| factor.powi(k) * f64::from(k % 2)).collect()
         };
-        let end = |positions: &[f64]| Fate::of(positions, 1000).end();
-        assert_eq!(end(&motion(0.98)), End::Rests);
-        assert_eq!(end(&motion(0.9995)), End::Hums);
-        assert_eq!(end(&motion(1.001)), End::Grows);
-        assert_eq!(end(&motion(0.98)[..999]), End::Grows);
-        assert_eq!(end(&[f64::NAN; 1000]), End::Grows);
+        let end = |positions: &[f64]| Motion::of(positions, 1000).outcome();
+        assert_eq!(end(&motion(0.98)), Outcome::Converges);
+        assert_eq!(end(&motion(0.9995)), Outcome::LimitCycles);
+        assert_eq!(end(&motion(1.001)), Outcome::Diverges);
+        assert_eq!(end(&motion(0.98)[..999]), Outcome::Diverges);
+        assert_eq!(end(&[f64::NAN; 1000]), Outcome::Diverges);
     }
 }

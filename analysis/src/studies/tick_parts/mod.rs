@@ -20,7 +20,7 @@ use thiserror::Error;
 
 /// Why a program's file could not be taken apart.
 #[derive(Debug, Error)]
-pub enum AnatomyError {
+pub enum TickPartsError {
     /// It could not be read.
     #[error("{path}: {source}")]
     File {
@@ -52,19 +52,20 @@ pub struct Share {
 
 /// The tick of a program, part by part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Anatomy {
+pub struct TickParts {
     shares: [Share; Part::ALL.len()],
 }
 
-impl Anatomy {
+impl TickParts {
     /// Takes the linked program in a file apart.
     ///
     /// # Errors
     /// Where the file cannot be read, or is not as [`of_elf`](Self::of_elf) needs it.
-    pub fn of_file(path: &Path) -> Result<Self, AnatomyError> {
+    pub fn of_file(path: &Path) -> Result<Self, TickPartsError> {
         let elf = fs::read(path)
-            .map_err(|source| AnatomyError::File { path: path.to_owned(), source })?;
-        Self::of_elf(&elf).map_err(|source| AnatomyError::Listing { path: path.to_owned(), source })
+            .map_err(|source| TickPartsError::File { path: path.to_owned(), source })?;
+        Self::of_elf(&elf)
+            .map_err(|source| TickPartsError::Listing { path: path.to_owned(), source })
     }
 
     /// Takes the linked program in an ELF file apart. The tick is in it twice, with and without
@@ -73,16 +74,16 @@ impl Anatomy {
     /// # Errors
     /// Where the file is no program for the board, or has no line tables.
     pub fn of_elf(elf: &[u8]) -> Result<Self, ListingError> {
-        let mut anatomy = Self::default();
+        let mut parts = Self::default();
         listing(elf, |Instruction { functions, bytes, multiplies }| {
             if let Some(part) = Part::of(functions) {
-                let share = &mut anatomy.shares[part as usize];
+                let share = &mut parts.shares[part as usize];
                 share.instructions += 1;
                 share.multiplications += u64::from(multiplies);
                 share.bytes += bytes;
             }
         })?;
-        Ok(anatomy)
+        Ok(parts)
     }
 
     /// What it has of a part; all zero where there is no trace of it.

@@ -10,7 +10,7 @@ use crate::simulation::SimulationError;
 
 /// Why a scene has no figures in a number format.
 #[derive(Debug, Error)]
-pub enum ArithmeticError {
+pub enum FormatError {
     /// The certificate refuses the scene.
     #[error("{0}")]
     Refused(Box<Rejection>),

@@ -3,7 +3,7 @@
 use firmware::number::Arithmetic;
 use serde::Serialize;
 
-use super::{ArithmeticError, Motion, Rest, at_rest};
+use super::{FormatError, LimitCycle, Motion, at_rest};
 
 /// What a format loses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -13,9 +13,9 @@ pub struct Losses {
     /// The same around 1 rad; `None` where the scene cannot be moved there.
     pub error_elsewhere: Option<f64>,
     /// What is left at rest by the format alone.
-    pub alone: Rest,
+    pub alone: LimitCycle,
     /// What is left at rest with the encoder; `None` where nobody has said how fine that is.
-    pub with_encoder: Option<Rest>,
+    pub with_encoder: Option<LimitCycle>,
 }
 
 impl Losses {
@@ -23,14 +23,14 @@ impl Losses {
     ///
     /// # Errors
     /// Where the scene cannot be had in this format.
-    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, ArithmeticError> {
+    pub fn of(motion: &Motion, arithmetic: Arithmetic) -> Result<Self, FormatError> {
         let elsewhere = motion.around(1.0);
         Ok(Self {
             error: motion.error(arithmetic)?,
             error_elsewhere: elsewhere.map(|motion| motion.error(arithmetic)).transpose()?,
-            alone: at_rest(motion.subject(), arithmetic, false)?,
-            with_encoder: match motion.subject().steps.encoder {
-                Some(_) => Some(at_rest(motion.subject(), arithmetic, true)?),
+            alone: at_rest(motion.problem(), arithmetic, false)?,
+            with_encoder: match motion.problem().steps.encoder {
+                Some(_) => Some(at_rest(motion.problem(), arithmetic, true)?),
                 None => None,
             },
         })

@@ -1,4 +1,4 @@
-//! What a model says about a scene: verdicts, motion, and what it costs to ask.
+//! The results of a model of a scene: verdicts, motion, and the cost of computing them.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -13,9 +13,9 @@ use crate::stability;
 use crate::studies::bench::median;
 use crate::verdict::{self, VerdictReport};
 
-/// What a model says.
+/// The results of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Facts {
+pub struct ModelResult {
     /// States of the loop, the servo's included.
     pub states: usize,
     /// Samples that are simulated in a second on one core of this machine.
@@ -34,7 +34,7 @@ pub struct Facts {
     pub motion: Trajectory,
 }
 
-impl Facts {
+impl ModelResult {
     /// Asks a model of a file's machine; `run` is what the file wants to be simulated.
     pub(super) fn of(
         model: Model,

@@ -4,13 +4,13 @@ use firmware::certificate::QuantizationBound;
 use firmware::number::Arithmetic;
 use serde::{Serialize, Serializer};
 
-use super::{ArithmeticError, Losses, Motion};
+use super::{FormatError, Losses, Motion};
 use crate::quantity::significant;
 use crate::verdict::AtRest;
 
 /// What a format has to keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
+pub struct Requirements {
     /// Most torque in N m, from its lowest to its highest, that may be left at rest: by the format,
     /// and by the encoder.
     pub hum: f64,
@@ -77,31 +77,31 @@ impl Advice {
     /// Where the scene is refused or cannot be simulated.
     pub fn new(
         motion: &Motion,
-        figures: &Figures,
-        mut instructions: impl FnMut(Arithmetic) -> Result<f64, ArithmeticError>,
-    ) -> Result<Self, ArithmeticError> {
+        requirements: &Requirements,
+        mut instructions: impl FnMut(Arithmetic) -> Result<f64, FormatError>,
+    ) -> Result<Self, FormatError> {
         let mut candidates = Vec::new();
         let mut encoder_hum = None;
         for arithmetic in Arithmetic::ALL {
             let losses = match Losses::of(motion, arithmetic) {
                 Ok(losses) => Ok(losses),
-                Err(error @ (ArithmeticError::Servo(_) | ArithmeticError::Angle(_))) => Err(error),
+                Err(error @ (FormatError::Servo(_) | FormatError::Angle(_))) => Err(error),
                 Err(error) => return Err(error),
             };
             if let (Arithmetic::F64, Ok(losses)) = (arithmetic, &losses) {
-                encoder_hum = losses.with_encoder.map(|rest| rest.hum);
+                encoder_hum = losses.with_encoder.map(|cycle| cycle.torque);
             }
             let instructions = match losses {
                 Ok(_) => instructions(arithmetic)?,
                 Err(_) => f64::INFINITY,
             };
-            let rest = motion.subject().rest(arithmetic);
-            candidates.push(candidate(arithmetic, instructions, losses, rest, figures));
+            let rest = motion.problem().rest(arithmetic);
+            candidates.push(candidate(arithmetic, instructions, losses, rest, requirements));
         }
         candidates.sort_by(|a, b| {
             a.instructions.total_cmp(&b.instructions).then(hum(a).total_cmp(&hum(b)))
         });
-        Ok(Self { candidates, encoder_hum, hum: figures.hum })
+        Ok(Self { candidates, encoder_hum, hum: requirements.hum })
     }
 
     /// The cheapest format that keeps to the figures: with the encoder, where there is one.
@@ -118,17 +118,17 @@ impl Advice {
 
 /// What a format adds at rest; of two that cost the same the quieter one is better.
 fn hum(candidate: &Candidate) -> f64 {
-    candidate.losses.map_or(f64::INFINITY, |losses| losses.alone.hum)
+    candidate.losses.map_or(f64::INFINITY, |losses| losses.alone.torque)
 }
 
 fn candidate(
     arithmetic: Arithmetic,
     instructions: f64,
-    losses: Result<Losses, ArithmeticError>,
+    losses: Result<Losses, FormatError>,
     rest: Option<QuantizationBound>,
-    figures: &Figures,
+    requirements: &Requirements,
 ) -> Candidate {
-    let share = instructions * figures.rate / figures.clock;
+    let share = instructions * requirements.rate / requirements.clock;
     let mut rejected = Vec::new();
     let mut beyond = |what: &str, value: f64, bound: f64, unit: &str| {
         if value > bound {
@@ -140,12 +140,12 @@ fn candidate(
     match &losses {
         Ok(losses) => {
             let hums = !is_still(rest.as_ref())
-                && beyond("limit cycle", losses.alone.hum, figures.hum, " N m");
-            if let Some(bound) = figures.error {
+                && beyond("hum", losses.alone.torque, requirements.hum, " N m");
+            if let Some(bound) = requirements.error {
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");
             }
-            beyond("share of the core", 100.0 * share, 100.0 * figures.share, " %");
+            beyond("share of the core", 100.0 * share, 100.0 * requirements.share, " %");
             let too_little = rest.filter(|rest| hums && rest.friction.is_some());
             rejected.extend(too_little.map(|rest| rest.to_string()));
         }

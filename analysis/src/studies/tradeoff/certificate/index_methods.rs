@@ -31,7 +31,7 @@ pub enum Verdict {
 
 /// What a judge says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct IndexResult {
     /// The ends of what it says of the index in N m s/rad, one number twice where it has no bounds;
     /// `None` where it says nothing.
     pub alpha: Option<(f64, f64)>,
@@ -41,7 +41,7 @@ pub struct Answer {
 
 /// A way to an index and a verdict.
 #[derive(Clone, Debug)]
-pub enum Judge {
+pub enum IndexMethod {
     /// The formula of theory, section 5.
     ClosedForm,
     /// The certificate's enclosure, so tight relative to the index.
@@ -92,10 +92,10 @@ impl Grid {
     }
 }
 
-impl Judge {
+impl IndexMethod {
     /// What it says of an environment on a device of passivity `delta`; `None` where it knows
     /// nothing of such environments.
-    pub fn ask(&self, environment: &Environment, delta: f64) -> Option<Answer> {
+    pub fn evaluate(&self, environment: &Environment, delta: f64) -> Option<IndexResult> {
         let period = Interval::exact(PERIOD);
         match self {
             Self::ClosedForm => {
@@ -115,7 +115,7 @@ impl Judge {
                 let found = proved(index_near(transfer(environment), period, false, limit), delta);
                 let is_proved = found.verdict == Verdict::Yes;
                 let verdict = if is_proved { Verdict::Yes } else { Verdict::No };
-                Some(Answer { alpha: None, verdict })
+                Some(IndexResult { alpha: None, verdict })
             }
             Self::Grid(grid) => Some(seen(environment, delta, || Some(grid.least(environment)))),
             Self::Roots => Some(seen(environment, delta, || least_at_roots(environment))),
@@ -131,27 +131,27 @@ fn transfer(environment: &Environment) -> Transfer {
     }
 }
 
-fn enclosed(alpha: Interval, delta: f64) -> Answer {
+fn enclosed(alpha: Interval, delta: f64) -> IndexResult {
     let verdict = match () {
         () if alpha.hi() < delta => Verdict::Yes,
         () if alpha.lo() >= delta => Verdict::No,
         () => Verdict::Open,
     };
-    Answer { alpha: Some((alpha.lo(), alpha.hi())), verdict }
+    IndexResult { alpha: Some((alpha.lo(), alpha.hi())), verdict }
 }
 
-fn proved(found: Result<RealPart, IndexError>, delta: f64) -> Answer {
+fn proved(found: Result<RealPart, IndexError>, delta: f64) -> IndexResult {
     match found {
         Ok(found) => enclosed(found.minimum, delta),
-        Err(IndexError::Undecided(_)) => Answer { alpha: None, verdict: Verdict::Open },
-        Err(_) => Answer { alpha: None, verdict: Verdict::No },
+        Err(IndexError::Undecided(_)) => IndexResult { alpha: None, verdict: Verdict::Open },
+        Err(_) => IndexResult { alpha: None, verdict: Verdict::No },
     }
 }
 
 /// What ordinary arithmetic sees: poles by their roots, the sign of the residue at 1, then the
 /// least real part.
-fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> Answer {
-    let nothing = |verdict| Answer { alpha: None, verdict };
+fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) -> IndexResult {
+    let nothing = |verdict| IndexResult { alpha: None, verdict };
     let Some(poles) = roots(&environment.denominator) else { return nothing(Verdict::Open) };
     let at_one = |values: &[f64]| values.iter().sum::<f64>();
     let residue = at_one(&environment.numerator) / at_one(&environment.denominator);
@@ -161,7 +161,7 @@ fn seen(environment: &Environment, delta: f64, least: impl Fn() -> Option<f64>) 
     match least() {
         Some(least) => {
             let verdict = if -least < delta { Verdict::Yes } else { Verdict::No };
-            Answer { alpha: Some((-least, -least)), verdict }
+            IndexResult { alpha: Some((-least, -least)), verdict }
         }
         None => nothing(Verdict::Open),
     }

@@ -1,0 +1,72 @@
+use super::*;
+
+static COMPARISON: Comparison = Comparison {
+    name: "test",
+    title: "A test",
+    cost: Axis::least(&["time"], "time (s)"),
+    errors: &[
+        Axis::least(&["error"], "error (1)").floored(1e-9, "rounding"),
+        Axis::most(&["stiffness"], "stiffness (N m/rad)"),
+    ],
+    others: &[Column { names: &["steps"], bound: NUMBER }],
+};
+
+fn table(rows: &[(&str, f64, f64, f64)]) -> Tradeoff {
+    let row = |&(name, time, error, stiffness): &(&str, f64, f64, f64)| {
+        Method::new("a case", "a family", name, &[time, error, stiffness, 1.0])
+    };
+    Tradeoff { comparison: &COMPARISON, methods: rows.iter().map(row).collect() }
+}
+
+fn names<'t>(front: &[&'t Method]) -> Vec<&'t str> {
+    front.iter().map(|method| &*method.name).collect()
+}
+
+#[test]
+fn the_front_holds_what_nothing_beats() {
+    let all = table(&[
+        ("dear", 9.0, 1e-12, 5.0),
+        ("beaten", 3.0, 0.2, 1.0),
+        ("cheap", 1.0, 0.5, 1.0),
+        ("fair", 2.0, 0.1, 2.0),
+        ("as good below the floor", 8.0, 1e-10, 9.0),
+        ("fails", 0.1, f64::INFINITY, 0.5),
+    ]);
+    let front = all.front("a case", 0);
+    assert_eq!(names(&front), ["cheap", "fair", "as good below the floor"]);
+    // Of stiffness one wants the most.
+    let front = all.front("a case", 1);
+    assert_eq!(names(&front), ["fails", "cheap", "fair", "as good below the floor"]);
+    assert!(all.front("another case", 0).is_empty());
+}
+
+/// A table with its numbers as they are once it has been written and read again.
+fn rounded(mut all: Tradeoff) -> Tradeoff {
+    let values = all.methods.iter_mut().flat_map(|method| &mut method.values).flatten();
+    values.for_each(|value| *value = written(*value).parse().unwrap_or(*value));
+    all
+}
+
+#[test]
+fn a_table_is_read_as_it_was_written() {
+    let mut all = table(&[("one, with a comma", 1.234_567_89e-7, 0.0, f64::INFINITY)]);
+    all.methods[0].values[3] = None;
+    let mut file = Vec::new();
+    all.write(&mut file).unwrap();
+    let table = Table::new("kept.csv", &*file).unwrap();
+    assert_eq!(Tradeoff::read(&COMPARISON, table).unwrap(), rounded(all));
+}
+
+#[test]
+fn what_is_no_such_table_is_refused() {
+    for (text, said) in [
+        ("case,family,name,time,error\na,b,c,1,1\n", "there is no column `stiffness`"),
+        ("case,family,name,time,error,stiffness,steps\n", "too few"),
+        ("case,family,name,time,error,stiffness,steps\na,b,c,-1,1,1,1\n", "0 or more"),
+        ("case,family,name,time,error,stiffness,steps\na,b,c,1,NaN,1,1\n", "0 or more"),
+    ] {
+        let table = Table::new("kept.csv", text.as_bytes()).unwrap();
+        let error = Tradeoff::read(&COMPARISON, table).unwrap_err().to_string();
+        assert!(error.contains(said), "{error}");
+    }
+}

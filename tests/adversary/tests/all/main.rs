@@ -1,0 +1,6 @@
+//! The tests of the search, in one program, so that it links once.
+//! `cargo test -p adversary --test all NAME::` runs those of one file.
+
+mod device;
+mod search;
+mod teeth;
