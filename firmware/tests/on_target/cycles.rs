@@ -121,7 +121,7 @@ pub fn measure() -> Result<(), Failure> {
     let servo_loop = ServoLoop::new(rendering, &Options::DEFAULT, hardware.period(), None);
     requests.arm();
     let mut hardware = Muted(hardware);
-    hardware.0.zero();
+    hardware.0.zero_encoder();
     start_timer(&mut hardware.0);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {

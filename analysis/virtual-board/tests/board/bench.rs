@@ -158,7 +158,7 @@ impl Bench {
 
     /// Address of the words that keep a fault's record.
     pub fn record(&self) -> u32 {
-        self.symbol("8retained6MEMORY").0
+        self.symbol("12fault_memory6MEMORY").0
     }
 
     /// Flips bits of a word in memory.

@@ -228,7 +228,7 @@ fn breaks_in_a_tick(bench: &mut Bench, register: Register) -> u64 {
 
 /// Where the servo has the angle of a count, as a number in single precision.
 pub fn coefficient(bench: &mut Bench) -> u32 {
-    let (place, size) = bench.symbol("5PLACE");
+    let (place, size) = bench.symbol("9ISR_STATE");
     let angle = std::f32::consts::TAU / 61_440.0;
     let core = bench.machine.core_mut();
     let is_it = |address: &u32| {
