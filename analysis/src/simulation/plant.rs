@@ -24,7 +24,7 @@ pub enum Input {
     Motor = 0,
     /// Torque of the hand, on the mass that it holds; the speed of its grip where that [moves].
     ///
-    /// [moves]: Plant::led
+    /// [moves]: Plant::with_moving_hand
     Hand = 1,
     /// Torque of dry friction, on the motor's mass.
     Friction = 2,

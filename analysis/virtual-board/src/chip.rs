@@ -6,35 +6,7 @@ use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::Pins;
 use crate::peripheral::serial::UsartVariant;
 use crate::peripheral::{clock_f4, clock_g4, dac, flash, power};
-
-/// A peripheral of either chip, by what it is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Reset and clock control.
-    Clock,
-    /// Power control.
-    Power,
-    /// The flash memory's interface.
-    Flash,
-    /// System configuration.
-    Configuration,
-    /// What is there for debuggers.
-    Debug,
-    /// A port of pins: 0 is A.
-    Pins(usize),
-    /// TIM6.
-    TickTimer,
-    /// The free-running clock.
-    FreeClock,
-    /// The encoder's counter.
-    Encoder,
-    /// The DAC.
-    Dac,
-    /// The serial port.
-    Serial,
-    /// The independent watchdog.
-    Watchdog,
-}
+use crate::unit::Unit;
 
 /// Entry of the memory map: address and name of a unit.
 #[derive(Clone, Copy, Debug)]

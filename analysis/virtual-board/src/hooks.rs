@@ -5,8 +5,8 @@ use unicorn_engine::{HookType, MemType, RegisterARM, Unicorn};
 
 use crate::board::Board;
 use crate::core::exceptions::Masks;
+use crate::halt::Halt;
 use crate::it_block::PcHistory;
-use crate::processor::Halt;
 
 /// The regions of peripherals, and of the core's own registers.
 const REGIONS: [(u64, u64); 2] = [(0x4000_0000, 0x2000_0000), (0xE000_0000, 0x0010_0000)];

@@ -6,11 +6,13 @@
 //!
 //! - [`machine`]: the board with its power on.
 //! - [`board`]: the units, and the device that is wired to them.
-//! - [`chip`]: the chips: their memory maps, and the pins that the boards use.
+//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`]: what a peripheral
+//!   is for.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
-//! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile.
+//! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile; [`halt`]:
+//!   why it stops.
 //! - [`error`]: why a board cannot be switched on or cannot go on.
 //! - [`semihosting`]: a debugger that answers a program's calls.
 //!
@@ -23,6 +25,7 @@ pub mod core;
 pub mod device;
 pub mod error;
 mod frame;
+pub mod halt;
 mod hooks;
 pub mod image;
 mod it_block;
@@ -33,3 +36,4 @@ pub mod peripheral;
 pub mod processor;
 mod rtt;
 pub mod semihosting;
+pub mod unit;

@@ -13,9 +13,10 @@ use crate::core::system::FaultStatus;
 use crate::device::Device;
 use crate::error::{BoardError, BootError};
 use crate::frame::THUMB;
+use crate::halt::Halt;
 use crate::image::Image;
 use crate::peripheral::clock::Cause;
-use crate::processor::{Halt, Processor};
+use crate::processor::Processor;
 use crate::rtt;
 
 /// A board with its power on.

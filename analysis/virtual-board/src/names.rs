@@ -1,7 +1,7 @@
 //! Names of registers, as the reference manuals (RM0440, RM0090) have them: for whoever reads that one
 //! is not modelled.
 
-use crate::chip::Unit;
+use crate::unit::Unit;
 
 /// Registers one after the other, a word each; "" for a gap.
 type Row = &'static [&'static str];

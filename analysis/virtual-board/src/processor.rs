@@ -11,31 +11,8 @@ use unicorn_engine::{Arch, ArmCpuModel, Mode, Prot, RegisterARM, Unicorn, uc_err
 use crate::board::Board;
 use crate::chip::{COUPLED, FLASH, RAM};
 use crate::core::exceptions::Masks;
+use crate::halt::Halt;
 use crate::hooks::{self, Context, Engine};
-
-/// Why the core has stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Halt {
-    /// Something may have to be done before the next instruction.
-    Attention,
-    /// It waits for an interrupt.
-    Waiting,
-    /// It returns from an exception, with this word.
-    Returning(u32),
-    /// The bus has nothing there: an instruction, or data at the address.
-    NoMemory {
-        /// Whether an instruction was fetched.
-        fetch: bool,
-        /// The address.
-        address: u32,
-    },
-    /// No such instruction.
-    Undefined,
-    /// A breakpoint in the program.
-    Breakpoint,
-    /// Not in a state to execute: not Thumb.
-    Invalid,
-}
 
 /// The core.
 pub struct Processor {

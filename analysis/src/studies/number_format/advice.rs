@@ -140,7 +140,7 @@ fn candidate(
     match &losses {
         Ok(losses) => {
             let hums = !is_still(rest.as_ref())
-                && beyond("hum", losses.alone.torque, requirements.hum, " N m");
+                && beyond("limit cycle", losses.alone.torque, requirements.hum, " N m");
             if let Some(bound) = requirements.error {
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");

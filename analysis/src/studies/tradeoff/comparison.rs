@@ -79,7 +79,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// The columns of numbers in the order of [`Method::values`].
+    /// The columns of numbers in the order of the [values](super::Method::values) of a method.
     pub fn columns(&self) -> impl Iterator<Item = Column> + use<> {
         let drawn = std::iter::once(self.cost.column).chain(self.errors.iter().map(|e| e.column));
         drawn.chain(self.others.iter().copied())

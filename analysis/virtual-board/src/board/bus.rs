@@ -1,7 +1,7 @@
 //! The board's bus: what a program reads and writes there, or why there is no answer.
 
 use super::Board;
-use crate::chip::{MapEntry, Unit};
+use crate::chip::MapEntry;
 use crate::core::System;
 use crate::core::exceptions::Number;
 use crate::core::system::{SYSTEM, WATCH};
@@ -11,6 +11,7 @@ use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::serial::Serial;
+use crate::unit::Unit;
 
 /// What an address leads to; where that is registers, with the place behind the first one.
 enum Target {

@@ -6,9 +6,10 @@ use firmware::servo_loop::State;
 use firmware::wire::message::{FaultCode, Outcome, Refusal};
 use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
-use virtual_board::chip::{Chip, TICK_INTERRUPT, Unit};
+use virtual_board::chip::{Chip, TICK_INTERRUPT};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
 use virtual_board::peripheral::pins::Level;
+use virtual_board::unit::Unit;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
 use crate::stub::{Masks, hold_up};

@@ -1,0 +1,30 @@
+//! What the chips' peripherals are for.
+
+/// A peripheral of either chip, by what it is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Reset and clock control.
+    Clock,
+    /// Power control.
+    Power,
+    /// The flash memory's interface.
+    Flash,
+    /// System configuration.
+    Configuration,
+    /// What is there for debuggers.
+    Debug,
+    /// A port of pins: 0 is A.
+    Pins(usize),
+    /// TIM6.
+    TickTimer,
+    /// The free-running clock.
+    FreeClock,
+    /// The encoder's counter.
+    Encoder,
+    /// The DAC.
+    Dac,
+    /// The serial port.
+    Serial,
+    /// The independent watchdog.
+    Watchdog,
+}
