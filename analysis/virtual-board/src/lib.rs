@@ -6,8 +6,8 @@
 //!
 //! - [`machine`]: the board with its power on.
 //! - [`board`]: the units, and the device that is wired to them.
-//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`]: what a peripheral
-//!   is for.
+//! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`](mod@unit): what a
+//!   peripheral is for.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
