@@ -49,6 +49,8 @@ pub enum BuildError {
         /// The most that there is.
         largest: usize,
     },
+    /// The law of an environment that is said to be late gives torques for the present position.
+    NotLate,
     /// The environment is known by its bounds alone, and its law is in another crate.
     LawElsewhere,
     /// A numerator of higher degree than its denominator, or a denominator that is zero.
@@ -150,6 +152,9 @@ impl BuildError {
                     " in contact, and must be positive; a stiffer coupling or a delayed \
                      environment has one",
                 );
+            }
+            Self::NotLate => {
+                t.push("the environment says that it is late, and its law is not");
             }
             Self::LawElsewhere => {
                 t.push(

@@ -83,7 +83,7 @@ parameters! {
     DeviceDamping: "device.damping", "device damping", "N m s/rad", Range::NotNegative;
     Passivity: "device.passivity", "device passivity", "N m s/rad", Range::Finite;
     Period: "servo.period", "period", "s", Range::Positive;
-    WorstPeriod: "servo.worst_period", "worst period", "s", Range::Positive;
+    WorstPeriod: "servo.worst_period", "worst period", "s", Range::Finite;
     CouplingStiffness: "coupling.stiffness", "coupling stiffness", "N m/rad", Range::Positive;
     Stiffness: "environment.stiffness", "stiffness", "N m/rad", Range::Finite;
     Damping: "environment.damping", "damping", "N m s/rad", Range::Finite;

@@ -220,7 +220,7 @@ keys! {
     PERIOD = of(Parameter::Period),
         Needed, "0.001";
     /// Longest tolerated time between two updates, not less than the period.
-    WORST_PERIOD = of(Parameter::WorstPeriod),
+    WORST_PERIOD = Key { bound: POSITIVE, ..of(Parameter::WorstPeriod) },
         Optional("the period: no update may be missed"), "0.001";
 
     /// The virtual spring between device and environment.

@@ -85,8 +85,12 @@ fn environment(lines: &mut Vec<String>, environment: &Environment) {
     let Some(kind) = Kind::of(environment) else { return };
     lines.push(format!("type = \"{}\"", kind.name));
     for key in kind.keys() {
-        let is_default =
-            |value| !kind.needed.contains(&key) && key.presence == Presence::Default(value);
+        // By its bits: -0.0 is another number than 0.0.
+        let is_default = |value: f64| {
+            let left_out = |default: f64| default.to_bits() == value.to_bits();
+            !kind.needed.contains(&key)
+                && matches!(key.presence, Presence::Default(default) if left_out(default))
+        };
         // A spring that is written as a wall has a damping of 0.
         let value = match key.parameter {
             Some(Parameter::Damping) => environment.get(Parameter::Damping).or(Some(0.0)),

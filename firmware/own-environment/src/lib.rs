@@ -32,20 +32,24 @@ pub struct ProgressiveSpring<const DELAY: usize> {
 }
 
 /// What a coefficient that is rounded is off by at most: half a unit of the last place of `I16F16`, the
-/// coarsest of the servo's formats, twice, since two coefficients add up to the steepest slope.
-const ROUNDING: f64 = 1.0 / 65536.0;
+/// coarsest of the fixed-point formats, or of `f32`, relative to its magnitude.
+const ROUNDING: f64 = 1.0 / 131_072.0;
+const ROUNDING_F32: f64 = f32::EPSILON as f64;
 
 impl<const DELAY: usize> ProgressiveSpring<DELAY> {
     /// What it is to the certificate at this period in s, for constants.
     ///
     /// The torque depends on one position and never falls as that rises, as long as neither stiffness is
-    /// negative: it is a monotone spring, no steeper than the larger of the two. Of any other nothing is
-    /// claimed.
+    /// negative, and it is zero at zero, as long as the knee is not negative: it is a monotone spring, no
+    /// steeper than the larger of the two. Of any other nothing is claimed. The servo multiplies by two
+    /// coefficients, each rounded, which add up to the steepest slope.
     pub const fn stated_at(&self, period: f64) -> StatedModel {
-        let steepest = self.soft.max(self.stiff) + ROUNDING;
-        let is_monotone = self.soft >= 0.0 && self.stiff >= 0.0;
-        let steepest = if is_monotone { steepest } else { f64::INFINITY };
-        StatedModel::nonlinear(DELAY, StatedBound::of_monotone_spring(steepest, DELAY, period))
+        let is_spring = self.soft >= 0.0 && self.stiff >= 0.0 && self.knee >= 0.0;
+        let coefficients = self.soft + (self.stiff - self.soft).abs();
+        let rounding = 2.0 * ROUNDING + ROUNDING_F32 * coefficients;
+        let steepest = if is_spring { self.soft.max(self.stiff) + rounding } else { f64::NAN };
+        let bound = StatedBound::of_monotone_spring(steepest, DELAY, period);
+        StatedModel::Bounded { delay: DELAY, bound }
     }
 }
 

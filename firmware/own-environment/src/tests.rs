@@ -1,8 +1,9 @@
 use firmware::certificate::{Certified, Rejection, certify_scene, timing_checked};
 use firmware::encoder::{CounterWidth, RawCount};
+use firmware::environment::DelayedSpring;
 use firmware::number::Format;
 use firmware::scene::{Coupling, Device, Scene, Timing};
-use firmware::servo::{Latched, RenderingOptions, Servo, Step, Transducers};
+use firmware::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
 use firmware::tuning;
 use proptest::prelude::*;
 
@@ -44,23 +45,29 @@ fn the_certificate_is_about_what_the_type_states() {
     assert!(matches!(refused, Rejection::Shortage { .. }), "{refused:?}");
     assert_eq!(
         refused.to_string(),
-        "rejected: the environment needs alpha = 0.02200500763 N m s/rad of damping, not below the \
+        "rejected: the environment needs alpha = 0.02200501025 N m s/rad of damping, not below the \
          delta = 0.022 N m s/rad that the device has"
     );
 }
 
 #[test]
-fn what_is_not_monotone_states_no_bound_and_is_refused() {
+fn what_is_no_spring_states_no_bound_and_is_refused() {
     let refused = certify_scene(pedal(-1.0), Format::F64).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "rejected: the stated index is inf N m s/rad, and must be finite and not below 0"
+        "rejected: the stated index is NaN N m s/rad, and must be finite and not below 0"
     );
+    // Its torque would be 0.4 N m everywhere: a motor, without any slope.
+    let motor = [(Parameter::Stiffness, 0.0), (Parameter::Face, -0.1)];
+    let options = RenderingOptions::DEFAULT;
+    let refused = tuning::prepare::<_, f32, Latched>(&PEDAL, &motor, &TRANSDUCERS, &options);
+    assert_eq!(refused.unwrap_err(), Step::Certificate);
 }
 
 #[test]
-fn a_constant_that_states_too_little_is_found_out_when_a_board_starts() {
-    let modest = StatedModel::nonlinear(1, StatedBound { index: 0.001, gain: 0.001 });
+fn a_constant_that_states_too_little_is_found_out_when_a_servo_is_built() {
+    let bound = StatedBound { index: 0.001, gain: 0.001 };
+    let modest = StatedModel::Bounded { delay: 1, bound };
     let too_stiff = pedal(60.0);
     assert!(too_stiff.certify_as(modest).is_ok());
     assert_eq!(
@@ -68,6 +75,57 @@ fn a_constant_that_states_too_little_is_found_out_when_a_board_starts() {
         Step::Certificate
     );
     assert!(timing_checked::<_, Latched>(PEDAL, Format::F32).is_ok());
+    let told = too_stiff.certified_as(modest).certified_in(Format::F32);
+    assert!(!told.is_what_is_stated() && CERTIFIED.is_what_is_stated());
+    assert!(Servo::<_, f32>::new(&told, &TRANSDUCERS).is_err());
+    let timed = told.timing_checked::<Latched>();
+    let options = RenderingOptions::DEFAULT;
+    assert!(PreparedServo::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).is_err());
+}
+
+/// As data a statement has no law: nothing is built of it.
+#[test]
+fn a_statement_alone_is_not_rendered() {
+    let scene = *CERTIFIED.as_data();
+    let certified = scene.certify().unwrap();
+    let error = Servo::<_, f32>::new(&certified, &TRANSDUCERS).unwrap_err();
+    assert_eq!(error, BuildError::LawElsewhere);
+}
+
+/// A spring without delay that says that it is late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Hasty;
+
+impl NamedParameters for Hasty {
+    fn value(&mut self, _: Parameter) -> Option<&mut f64> {
+        None
+    }
+}
+
+impl StatedEnvironment for Hasty {
+    fn stated(&self, _: &LawContext) -> StatedModel {
+        StatedModel::Bounded { delay: 1, bound: StatedBound { index: 0.001, gain: 0.02 } }
+    }
+}
+
+impl Delayed for Hasty {}
+
+impl<N: Number> Discretize<N> for Hasty {
+    type Law = <DelayedSpring<0> as Discretize<N>>::Law;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        DelayedSpring::<0> { stiffness: 20.0 }.law(context)
+    }
+}
+
+#[test]
+fn a_law_that_is_not_late_is_not_latched() {
+    let Scene { device, timing, coupling, torque_limit, .. } = PEDAL;
+    let scene = Scene { device, timing, coupling, torque_limit, environment: Hasty };
+    let options = RenderingOptions::DEFAULT;
+    let timed = timing_checked::<_, Latched>(scene, Format::F32).unwrap();
+    let error = PreparedServo::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).unwrap_err();
+    assert_eq!(error, BuildError::NotLate);
 }
 
 #[test]
@@ -106,20 +164,28 @@ fn it_is_tuned_like_any_other() {
     assert_eq!(prepare(&[(Parameter::Damping, 0.0)]).unwrap_err(), Step::Change);
 }
 
-/// Torques over a motion, one a tick, limited to a level that changes from tick to tick.
+/// The index that a spring states.
+fn index<const DELAY: usize>(spring: ProgressiveSpring<DELAY>) -> f64 {
+    match spring.stated_at(0.001) {
+        StatedModel::Bounded { bound, .. } => bound.index,
+        StatedModel::Linear(_) => panic!("a bound is stated"),
+    }
+}
+
+/// Torques over a motion, one a tick, limited to a level.
 fn torques<const DELAY: usize>(
     spring: ProgressiveSpring<DELAY>,
     positions: &[f64],
-    levels: &[f64],
+    level: f64,
 ) -> Vec<f64> {
     let context = LawContext { period: 0.001, damping: 0.022, coupling: Coupling::Rigid };
     let mut law = <ProgressiveSpring<DELAY> as Discretize<f64>>::law(&spring, &context).unwrap();
-    let tick = |(x, level): (&f64, &f64)| {
+    let tick = |x: &f64| {
         let Response::Held(torque) = law.evaluate(*x) else { panic!("it is late") };
         law.update(*x);
-        torque.clamp(-level, *level)
+        torque.clamp(-level, level)
     };
-    positions.iter().zip(levels).map(tick).collect()
+    positions.iter().map(tick).collect()
 }
 
 /// Energy that a spring of the index `alpha` may not give: `sum F d + alpha / T sum d^2` over a motion
@@ -127,10 +193,10 @@ fn torques<const DELAY: usize>(
 fn least_energy<const DELAY: usize>(
     spring: ProgressiveSpring<DELAY>,
     positions: &[f64],
-    levels: &[f64],
+    level: f64,
 ) -> f64 {
-    let index = spring.stated_at(0.001).bound.unwrap().index;
-    let torques = torques(spring, positions, levels);
+    let index = index(spring);
+    let torques = torques(spring, positions, level);
     let steps = positions.windows(2).map(|pair| pair[1] - pair[0]);
     steps.zip(&torques[1..]).map(|(step, torque)| step * (torque + index / 0.001 * step)).sum()
 }
@@ -151,9 +217,8 @@ proptest! {
             positions.extend((1..=ticks).map(|i| from + (target - from) * i as f64 / ticks as f64));
         }
         positions.extend([0.0; 4]);
-        let levels = vec![level; positions.len()];
-        let one = least_energy(ProgressiveSpring::<1> { soft, stiff, knee }, &positions, &levels);
-        let two = least_energy(ProgressiveSpring::<2> { soft, stiff, knee }, &positions, &levels);
+        let one = least_energy(ProgressiveSpring::<1> { soft, stiff, knee }, &positions, level);
+        let two = least_energy(ProgressiveSpring::<2> { soft, stiff, knee }, &positions, level);
         prop_assert!(one > -1e-9 && two > -1e-9, "{} {}", one, two);
     }
 }
@@ -166,12 +231,11 @@ fn a_smaller_index_is_disproved() {
     let mut positions = vec![0.0; 4];
     positions.extend((0..1000).map(|k| if k % 2 == 0 { 0.05 } else { -0.05 }));
     positions.extend([0.0; 4]);
-    let levels = vec![1e9; positions.len()];
-    let torques = torques(spring, &positions, &levels);
+    let torques = torques(spring, &positions, 1e9);
     let steps: Vec<f64> = positions.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let given: f64 = steps.iter().zip(&torques[1..]).map(|(step, torque)| step * torque).sum();
     let squares: f64 = steps.iter().map(|step| step * step).sum();
     let needed = -given / squares * 0.001;
-    let stated = spring.stated_at(0.001).bound.unwrap().index;
+    let stated = index(spring);
     assert!(needed > 0.99 * stated && needed < stated, "{needed} of {stated}");
 }

@@ -123,6 +123,10 @@ macro_rules! scene_program {
             $(friction = Some($friction);)?
             let steps = $crate::certificate::Resolution::of(&PROGRAM.transducers, friction);
             let injection = PROGRAM.rendering.injection;
+            if !CERTIFIED_AS_IT_RUNS.is_what_is_stated() {
+                eprintln!("the constant was certified as something else than its environment states");
+                ::std::process::exit(1);
+            }
             print!(
                 "{}",
                 $crate::board::report::Report::new(&CERTIFIED_AS_IT_RUNS, &steps, injection)

@@ -10,7 +10,7 @@ use super::model::{LoopIntervals, LoopTransfers};
 use super::quantization::{QuantizationBound, Resolution};
 use super::rules::is_nonlinear;
 use super::timed::limited_bound;
-use crate::environment::Environment;
+use crate::environment::{Environment, StatedModel};
 use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::Transfer;
@@ -315,7 +315,11 @@ impl Assumptions {
 fn stated(environment: &Environment) -> Option<Assumption> {
     match environment {
         Environment::Stated(stated) => {
-            Some(Assumption::StatedModel { index: stated.bound.map(|bound| bound.index) })
+            let index = match stated {
+                StatedModel::Bounded { bound, .. } => Some(bound.index),
+                StatedModel::Linear(_) => None,
+            };
+            Some(Assumption::StatedModel { index })
         }
         _ => None,
     }

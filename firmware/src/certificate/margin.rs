@@ -51,7 +51,7 @@ impl Assessment {
         if n.missed.is_some() {
             return searched(scene, self);
         }
-        let Ok(posed) = PassivityProblem::with(scene, n) else { return None };
+        let Ok(posed) = PassivityProblem::in_format(scene, self.format) else { return None };
         match posed.at_port(&Precision::TIGHT) {
             Ok(found) => Some(n.delta.sub(found.minimum).lo()),
             Err(_) => None,

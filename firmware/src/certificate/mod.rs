@@ -195,6 +195,14 @@ pub fn timing_checked<E: EnvironmentModel + SupportsTiming<M>, M: OutputMode>(
         .map(|limited| TimingChecked::new(scene, format, limited))
 }
 
+impl<E: EnvironmentModel> Certified<Scene<E>> {
+    /// Whether what was judged is what the environment states of itself: always, but for a constant of an
+    /// environment of another crate that was certified as something else.
+    pub fn is_what_is_stated(&self) -> bool {
+        scene_data(&self.scene) == self.data
+    }
+}
+
 impl<E: Copy> Certified<Scene<E>> {
     /// For constants: the same scene's certificate in the number format that it runs in,
     /// or a compile error that says why it has none there.

@@ -411,7 +411,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
                 None => None,
             }
         }
-        Environment::Stated(StatedModel { bound: Some(bound), .. }) => {
+        Environment::Stated(StatedModel::Bounded { bound, .. }) => {
             Some(Interval::decimal(bound.index))
         }
         _ => None,
@@ -442,9 +442,7 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
                 None => return None,
             }
         }
-        Environment::Stated(StatedModel { bound: Some(bound), .. }) => {
-            Interval::decimal(bound.gain)
-        }
+        Environment::Stated(StatedModel::Bounded { bound, .. }) => Interval::decimal(bound.gain),
         _ => return None,
     };
     Some(gain.mul(solved))

@@ -95,14 +95,14 @@ impl Environment {
     pub const fn rational(&self) -> Option<&Rational> {
         match self {
             Self::Rational(rational) => Some(rational),
-            Self::Stated(StatedModel { transfer: Some(rational), .. }) => Some(rational),
+            Self::Stated(StatedModel::Linear(rational)) => Some(rational),
             _ => None,
         }
     }
 
     /// Whether it is linear with neither face nor torque limit counted.
     pub const fn has_transfer(&self) -> bool {
-        !matches!(self, Self::Stated(StatedModel { transfer: None, .. }))
+        !matches!(self, Self::Stated(StatedModel::Bounded { .. }))
     }
 
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
@@ -118,8 +118,12 @@ impl Environment {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => wall.delay,
-            Self::FreeMode { delay, .. } | Self::Stated(StatedModel { delay, .. }) => *delay,
-            Self::Rational(rational) => rational.whole_delay(),
+            Self::FreeMode { delay, .. } | Self::Stated(StatedModel::Bounded { delay, .. }) => {
+                *delay
+            }
+            Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
+                rational.whole_delay()
+            }
         }
     }
 
@@ -129,8 +133,12 @@ impl Environment {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => &mut wall.delay,
-            Self::FreeMode { delay, .. } | Self::Stated(StatedModel { delay, .. }) => delay,
-            Self::Rational(rational) => &mut rational.delay,
+            Self::FreeMode { delay, .. } | Self::Stated(StatedModel::Bounded { delay, .. }) => {
+                delay
+            }
+            Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
+                &mut rational.delay
+            }
         }
     }
 }
@@ -234,9 +242,7 @@ impl<N: Number> Discretize<N> for Environment {
                 EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
             }
             Self::DamperWall(wall) => EnvironmentLaw::Wall(wall.law(setting)?),
-            Self::Stated(StatedModel { transfer: Some(rational), .. }) => {
-                EnvironmentLaw::Rational(rational.law(setting)?)
-            }
+            // What it states is not what it does.
             Self::Stated(_) => return Err(BuildError::LawElsewhere),
             Self::FreeMode { residual, delay } => EnvironmentLaw::FreeMode(FreeModeLaw {
                 canceller: canceller(*residual, setting)?,

@@ -17,7 +17,8 @@ use crate::parameter::NamedParameters;
 ///
 /// To run on a board it is [`Delayed`](super::Delayed) as well.
 pub trait StatedEnvironment: NamedParameters + Copy + 'static {
-    /// What it is to the certificate, in a scene with this period, damping and coupling.
+    /// What it is to the certificate, in a scene with this period, damping and coupling. These may be
+    /// any numbers: they are looked at later.
     fn stated(&self, context: &LawContext) -> StatedModel;
 }
 

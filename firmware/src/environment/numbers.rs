@@ -1,6 +1,7 @@
 //! The numbers of any environment by name.
 
 use super::any::Environment;
+use super::stated::StatedModel;
 use crate::parameter::{NamedParameters, Parameter};
 
 impl Environment {
@@ -12,9 +13,12 @@ impl Environment {
 
     /// The same without a copy of the environment.
     pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
-        match (parameter, &self) {
-            (Parameter::Delay, _) => Some(*self.delay_mut() as f64),
-            (Parameter::UnitZeros, Self::Rational(rational)) => Some(rational.unit_zeros as f64),
+        match parameter {
+            Parameter::Delay => Some(*self.delay_mut() as f64),
+            Parameter::UnitZeros => match self.rational() {
+                Some(rational) => Some(rational.unit_zeros as f64),
+                None => None,
+            },
             _ => match self.number(parameter) {
                 Some(value) => Some(*value),
                 None => None,
@@ -22,19 +26,20 @@ impl Environment {
         }
     }
 
-    /// The environment with this value; `None` where there is no place for it. A whole number is
-    /// what is left of `value` without its fraction.
+    /// The environment with this value; `None` where there is no place for it, and for a delay or a
+    /// number of zeros that is no whole number in its range.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut changed = *self;
+        let is_whole = parameter.range().admits(value);
         match (parameter, &mut changed) {
-            (Parameter::Delay, _) => *changed.delay_mut() = value as usize,
-            (Parameter::UnitZeros, Self::Rational(rational)) => {
-                rational.unit_zeros = value as usize
+            (Parameter::Delay, _) if is_whole => *changed.delay_mut() = value as usize,
+            (
+                Parameter::UnitZeros,
+                Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)),
+            ) if is_whole => rational.unit_zeros = value as usize,
+            (Parameter::Filter, Self::DamperWall(wall) | Self::FreeModeWall { wall, .. }) => {
+                wall.filter = Some(value);
             }
-            (Parameter::Filter, _) => match changed.wall_mut() {
-                Some(wall) => wall.filter = Some(value),
-                None => return None,
-            },
             _ => match changed.number(parameter) {
                 Some(place) => *place = value,
                 None => return None,
@@ -52,14 +57,12 @@ impl Environment {
                 Parameter::Residual,
                 Self::FreeMode { residual, .. } | Self::FreeModeWall { residual, .. },
             ) => Some(residual),
-            (Parameter::StatedIndex, Self::Stated(stated)) => match &mut stated.bound {
-                Some(bound) => Some(&mut bound.index),
-                None => None,
-            },
-            (Parameter::StatedGain, Self::Stated(stated)) => match &mut stated.bound {
-                Some(bound) => Some(&mut bound.gain),
-                None => None,
-            },
+            (Parameter::StatedIndex, Self::Stated(StatedModel::Bounded { bound, .. })) => {
+                Some(&mut bound.index)
+            }
+            (Parameter::StatedGain, Self::Stated(StatedModel::Bounded { bound, .. })) => {
+                Some(&mut bound.gain)
+            }
             (_, environment) => match environment.wall_mut() {
                 Some(wall) => wall.number(parameter),
                 None => None,

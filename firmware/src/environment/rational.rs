@@ -250,7 +250,8 @@ impl Rational {
     /// Poles at `z = 0` that are delay: without them the rest is proper, and the delay can be stored.
     const fn poles_at_zero(&self) -> usize {
         let zeros = if self.numerator.is_zero() { 0 } else { self.unit_zeros };
-        let above = self.denominator.degree().saturating_sub(self.numerator.degree() + zeros);
+        let above =
+            self.denominator.degree().saturating_sub(self.numerator.degree().saturating_add(zeros));
         let mut poles = 0;
         while self.delay + poles < MAX_DELAY
             && poles < above

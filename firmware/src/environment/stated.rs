@@ -2,21 +2,23 @@
 
 use super::rational::Rational;
 
-/// What an environment of another crate is to the certificate.
+/// What an environment of another crate is to the certificate: a bound, which a board asks for, since it
+/// limits every torque, or a transfer function, which is enough for a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-pub struct StatedModel {
-    /// Whole samples from a position to the first torque that depends on it. A
-    /// [`transfer`](Self::transfer) says the same by itself.
-    pub delay: usize,
-    /// The transfer function from position to torque, where the law is linear. Its coefficients are
-    /// judged as a [`Rational`] has them in the number format of the servo.
-    // No board says so on its wire: what a board renders passes by its bound.
+#[expect(clippy::large_enum_variant, reason = "there is no heap, and a scene has one")]
+pub enum StatedModel {
+    /// A law that need not be linear.
+    Bounded {
+        /// Whole samples from a position to the first torque that depends on it; at least one.
+        delay: usize,
+        /// What holds for it.
+        bound: StatedBound,
+    },
+    /// A linear law. Its coefficients are judged as the law of a [`Rational`] rounds them.
+    // No board renders one, and none says so on its wire.
     #[cfg_attr(feature = "wire", serde(skip))]
-    pub transfer: Option<Rational>,
-    /// What holds for the law with its torque limited at any level, which a board asks for: it limits
-    /// every torque. A law that is not linear has nothing else.
-    pub bound: Option<StatedBound>,
+    Linear(Rational),
 }
 
 /// Bounds of a law that need not be linear. They hold for the coefficients of every number format
@@ -37,28 +39,21 @@ pub struct StatedBound {
 }
 
 impl StatedBound {
-    /// Of a law whose torque depends on one position, `delay` samples ago, and never falls as that
-    /// rises, by no more than `steepest` N m/rad: a spring of any shape.
+    /// Of a law whose torque depends on one position, `delay` samples ago, is zero at some position,
+    /// and never falls as the position rises, by no more than `steepest` N m/rad: a spring of any shape.
+    /// Without the zero it could be a motor: a constant torque has no slope. No number, which is refused,
+    /// where `steepest` is negative or the period is not positive.
     ///
     /// Its potential is convex and `steepest`-smooth, so that the torque of the present position is
     /// passive by `(difference of torques)^2 / (2 steepest)` a tick; each sample of delay takes
     /// `steepest T`, the first of them half of it (equation 31). A clipped law is one of the same kind.
     pub const fn of_monotone_spring(steepest: f64, delay: usize, period: f64) -> Self {
+        if !(steepest >= 0.0 && period > 0.0) {
+            return Self { index: f64::NAN, gain: f64::NAN };
+        }
         let gain = steepest * period;
         let samples = if delay == 0 { 0.0 } else { delay as f64 - 0.5 };
         // Rounded up twice each: both products of the index.
         Self { index: (gain * samples).next_up().next_up(), gain: gain.next_up() }
-    }
-}
-
-impl StatedModel {
-    /// A linear law. A board renders it only with a bound, too.
-    pub const fn linear(transfer: Rational, bound: Option<StatedBound>) -> Self {
-        Self { delay: transfer.delay, transfer: Some(transfer), bound }
-    }
-
-    /// A law that need not be linear, late by at least one sample.
-    pub const fn nonlinear(delay: usize, bound: StatedBound) -> Self {
-        Self { delay, transfer: None, bound: Some(bound) }
     }
 }

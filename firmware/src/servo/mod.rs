@@ -70,13 +70,15 @@ pub struct Servo<E: Discretize<N>, N: Number> {
 
 impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
     /// The servo of a certified scene, at rest at zero. A certificate of other coefficients than
-    /// this number format's, such as the scene's as it was written, is taken again.
+    /// this number format's, such as the scene's as it was written, is taken again, and so is one of
+    /// a statement that is not what the environment states now.
     ///
     /// # Errors
     /// Where the scene or the transducers cannot be had in this number format; see [`BuildError`].
     pub fn new(scene: &Certified<Scene<E>>, transducers: &Transducers) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if scene.assessment().format != format && certify_scene(*scene.scene(), format).is_err() {
+        let is_of_this = scene.assessment().format == format && scene.is_what_is_stated();
+        if !is_of_this && certify_scene(*scene.scene(), format).is_err() {
             return Err(BuildError::Uncertified { format });
         }
         Self::build(scene.scene(), transducers)
@@ -101,6 +103,12 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
             torque: N::ZERO,
             radians_per_count,
         })
+    }
+
+    /// Whether no torque depends on the position of its own tick.
+    pub(crate) fn is_late(&self) -> bool {
+        let slopes = self.law.slopes();
+        slopes.line == 0.0 && slopes.wall == 0.0
     }
 
     /// One tick. Angle, coupling and environment solved with the limited torque, DAC code:

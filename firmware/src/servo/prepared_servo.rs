@@ -10,7 +10,7 @@ use crate::encoder::RawCount;
 use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
 use crate::number::Number;
-use crate::output_timing::{OutputMode, READ_WITHIN};
+use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
 use crate::scene::{Scene, Timing};
 use crate::transducers::Transducers;
 
@@ -85,9 +85,9 @@ impl<E, N: Number, M: OutputMode> PreparedServo<E, N, M>
 where
     E: EnvironmentModel + Discretize<N> + SupportsTiming<M>,
 {
-    /// The servo of a timed scene, at rest at zero and with its clamp shut. A certificate of other
-    /// coefficients than this number format's, such as the scene's as it was written, is taken
-    /// again.
+    /// The servo of a timed scene, at rest at zero and with its clamp shut. The certificate is taken again
+    /// in this number format: it may be of other coefficients, such as the scene's as it was written, or of
+    /// a statement that is not what the environment states now.
     ///
     /// # Errors
     /// Where the scene, the transducers or the options cannot be had in this number format.
@@ -97,9 +97,6 @@ where
         options: &RenderingOptions,
     ) -> Result<Self, BuildError> {
         let format = N::FORMAT;
-        if timed.format() == format {
-            return Self::build(timed, transducers, options);
-        }
         let again = timing_checked(*timed.scene(), format);
         let again = again.map_err(|_| BuildError::Uncertified { format })?;
         Self::build(&again, transducers, options)
@@ -122,6 +119,9 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         let ticks = (options.fade / period).max(1.0);
         let mut servo = Servo::build(scene, transducers)?.fading(bound, ticks)?;
         servo.shut();
+        if matches!(M::TIMING, OutputTiming::Latched) && !servo.is_late() {
+            return Err(BuildError::NotLate);
+        }
         let room = timed.injectable_damping();
         let injector = match options.injection {
             None => None,

@@ -4,7 +4,8 @@ use firmware::environment::{DelayedSpring, StatedBound, StatedModel};
 use firmware::scene::Scene;
 use refusals::scene;
 
-const NOTHING: StatedModel = StatedModel::nonlinear(1, StatedBound { index: 0.0, gain: 0.0 });
+const NOTHING: StatedModel =
+    StatedModel::Bounded { delay: 1, bound: StatedBound { index: 0.0, gain: 0.0 } };
 
 const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
     scene(DelayedSpring { stiffness: 1000.0 }).certified_as(NOTHING);
