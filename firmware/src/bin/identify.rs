@@ -1,7 +1,7 @@
 //! Drives a device with sines of torque, open loop, so that the host can measure its inertia, its
 //! damping and its passivity (theory, section 3.3).
 //!
-//! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian, or
+//! Do not hold the device meanwhile: it turns back and forth by up to a fifth of a radian, or
 //! twice that to one side.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

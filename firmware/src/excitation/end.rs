@@ -15,7 +15,7 @@ pub mod byte {
     pub const STOP: u8 = b'x';
 }
 
-/// Time in s without a byte from the host after which a sweep ends: nobody would see it go wrong.
+/// Time in s without a byte from the host after which a sweep ends, as it is not supervised.
 pub const SILENCE: f64 = 0.5;
 
 /// How a sweep ended.

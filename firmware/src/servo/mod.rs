@@ -84,7 +84,7 @@ impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
 }
 
 impl<E: Discretize<N>, N: Number> Servo<E, N> {
-    /// The servo of a scene that somebody else has judged.
+    /// The servo of a scene that the caller has certified.
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;

@@ -27,7 +27,7 @@ pub struct RenderingOptions {
 }
 
 impl RenderingOptions {
-    /// Fades within a tenth of a second: slow for a step to be felt, quick for whoever waits.
+    /// Fades within a tenth of a second: too slow to feel as a step, and a short wait.
     /// Injects nothing.
     pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
 }

@@ -22,7 +22,7 @@ pub enum Arming {
     AtPowerOn(Reason),
 }
 
-/// Why a device may start by itself: whoever reads the program, or the board's log, is told.
+/// Why a device may arm itself at power-on, stated in the program and in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reason(&'static str);
 

@@ -6,7 +6,7 @@ use super::*;
 use crate::fault::FaultRecord;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// Whatever is not a tick of a running servo that nobody asks anything.
+    /// Every tick but that of a running servo without requests.
     #[cold]
     #[inline(never)]
     pub(super) fn run_state_machine(

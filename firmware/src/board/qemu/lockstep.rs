@@ -67,7 +67,7 @@ pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
 /// The interrupt that uses the pipes must not be enabled yet.
 pub(super) unsafe fn open() -> Result<(), NoHost> {
     let (counts, codes) = pipes()?;
-    // SAFETY: nobody uses the place yet, as the caller promises.
+    // SAFETY: the caller guarantees that the cell is unused.
     unsafe { PIPES.init(Pipes { counts, codes }) };
     Ok(())
 }
@@ -83,9 +83,9 @@ pub(super) fn zero_count() {
 /// # Safety
 /// The pipes must be open.
 pub(super) unsafe fn receive() -> Option<u32> {
-    // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
+    // SAFETY: the caller opened the pipes, and only shared references exist.
     let mut counts = unsafe { &PIPES.borrow().counts };
-    // SAFETY: the bytes of the atomics, which nobody else looks at meanwhile.
+    // SAFETY: no other code accesses the atomics' bytes meanwhile.
     let bytes =
         unsafe { from_raw_parts_mut(LATEST_INPUT.as_ptr().cast_mut().cast(), LATEST_INPUT.len()) };
     if counts.read_exact(bytes).is_err() {

@@ -118,7 +118,7 @@ impl<P: Parts> Log<P> {
     pub unsafe fn open(scale: Scale, parts: P) -> Self {
         static QUEUE: StaticCell<Queue<Measured, LENGTH>> = StaticCell::new();
         let (push, ticks) = QUEUE.init(Queue::new()).split();
-        // SAFETY: nobody uses the place yet, as the caller promises.
+        // SAFETY: the caller guarantees that the cell is unused.
         unsafe { TICKS.init(push) };
         let [interrupt, lockstep, below] = [InstructionStats::EMPTY; 3];
         Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }

@@ -86,7 +86,7 @@ pub(super) unsafe fn receive() {
     }
 }
 
-/// Bytes that were lost because nobody took those before them.
+/// Bytes that were lost because earlier ones were not read.
 #[cfg(feature = "log")]
 pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)

@@ -90,7 +90,7 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     assert_eq!(board.events, [Event::Amplifier(false), Event::Write(2048)]);
 }
 
-/// After whatever reset, nothing moves before somebody asks for it.
+/// After any reset the servo stays off until it is armed.
 #[test]
 fn no_reset_arms_a_servo_that_nobody_has_asked_to_arm() {
     for reset in ResetCause::ALL {

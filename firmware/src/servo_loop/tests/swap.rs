@@ -145,7 +145,7 @@ fn a_swap_takes_the_torque_away_for_as_long_as_it_says() {
     assert_eq!(codes.last(), Some(&full));
 }
 
-/// Nobody leans on a wall that was not there yet.
+/// No hand presses on a wall without torque.
 #[test]
 fn a_swap_does_not_hurry_an_arming() {
     let mut bench = bench(&SPRING);
