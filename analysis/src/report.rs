@@ -17,7 +17,7 @@ pub struct Page<'p> {
     pub report: &'p VerdictReport,
     /// What it was read from.
     pub file: &'p SceneFile,
-    /// Where that is, as somebody named it.
+    /// Its path, as the user gave it.
     pub path: &'p str,
     /// The day, as 2026-03-14.
     pub date: String,

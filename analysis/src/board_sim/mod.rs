@@ -146,7 +146,7 @@ impl Drop for SimulatedBoard {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // What went wrong in it, somebody who wanted to know has asked for.
+            // `end` reports errors of the thread; here they are dropped.
             let _ = thread.join();
         }
     }

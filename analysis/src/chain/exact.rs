@@ -8,8 +8,8 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Pow, Zero};
 
-/// `digits * 10^power`: the shortest decimal that a finite double stands for, which is what
-/// somebody wrote.
+/// `digits * 10^power`: the shortest decimal of a finite double, which is the number as the
+/// user wrote it.
 pub struct Decimal {
     digits: BigInt,
     power: i32,

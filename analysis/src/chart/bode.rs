@@ -17,7 +17,7 @@ const ROW: i32 = 20;
 const PANELS: [i32; 2] = [290, 270];
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 40;
-/// Decades above and below a gain of 1 that are shown unless somebody asks for more.
+/// Decades that are shown above and below a gain of 1 by default.
 const DECADES: f64 = 3.0;
 /// A margin's line.
 const MARK: Dash = Dash::new(&[3, 3]);

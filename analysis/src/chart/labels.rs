@@ -153,7 +153,7 @@ impl Labels {
         own.map(spot(false)).or_else(|| led().map(spot(true)))
     }
 
-    /// Whether nobody takes a name there for that of another point.
+    /// Whether a name there is closest to its own point.
     fn is_own(&self, point: (i32, i32), block: &Block) -> bool {
         let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
         let own = block.distance(point);

@@ -86,7 +86,7 @@ fn broken(
     DashedLineSeries::new(points, units(ink), units(gap), pen(width))
 }
 
-/// Ranges of the axes that somebody asks for in place of the usual ones.
+/// Ranges of the axes, in place of the default ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
     /// Along the horizontal axis.

@@ -48,7 +48,7 @@ const RATE: f64 = 1000.0;
 /// Time between two pictures.
 const PICTURE: Duration = Duration::from_millis(33);
 
-/// Shows or records what a board says, until the time is up or somebody has seen enough.
+/// Shows or records a board's telemetry until the time is up or the user quits.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let to_output = match &arguments.csv {
         Some(path) => path == Path::new("-"),

@@ -240,7 +240,7 @@ pub enum CommandError {
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nobody can be listened to there.
+    /// The address cannot be bound.
     #[error("cannot listen on {address}: {source}")]
     Listen {
         /// The address.

@@ -285,7 +285,7 @@ fn is_unprintable(character: char) -> bool {
     character.is_control() && character != '\t'
 }
 
-/// A piece of somebody's text made safe to print: one line, no control characters, bounded.
+/// An excerpt of foreign text, safe to print: one line, no control characters, bounded.
 pub fn excerpt(text: &str) -> String {
     let mut short = String::new();
     for (count, character) in text.trim().chars().enumerate() {

@@ -51,7 +51,7 @@ fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
     lines.extend(value.map(|value| format!("{key} = {value:?}")));
 }
 
-/// A passivity is written where somebody declared it: not where it is what the chain has.
+/// Writes the passivity only if it was declared and differs from the chain's own.
 fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Option<f64>) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
     let declared = device.passivity.filter(|passivity| !passivity.is_nan());

@@ -10,7 +10,7 @@ use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// How long a board has to say what it is, and how long no row may come.
 const TIMEOUT: Duration = Duration::from_secs(2);
-/// Time between two bytes that say that somebody listens; the board waits five times as long.
+/// Time between two keep-alive bytes of the host; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board that was still at it falls silent.
 const SETTLE: Duration = Duration::from_millis(200);
@@ -51,7 +51,7 @@ pub enum PortError {
     /// The port cannot be opened, or is gone.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nobody who plays a sweep is there.
+    /// No board with a sweep answers.
     #[error(
         "no board with the program `identify` answers on {address} within {} s: flash it (cargo \
          haptic flash --board BOARD identify), and check the port and its speed",
@@ -166,7 +166,7 @@ pub struct SweepPort {
     transport: Box<dyn Transport>,
     /// Bytes that are no whole line yet.
     rest: Vec<u8>,
-    /// When the board was last told that somebody listens.
+    /// When the last keep-alive byte was sent.
     told: Instant,
     description: Description,
 }

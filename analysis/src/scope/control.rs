@@ -1,4 +1,4 @@
-//! What somebody who watches a board may ask of it, by keys.
+//! Commands to the board that the scope has keys for.
 
 use firmware::wire::message::{Changes, Id, ToBoard};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
@@ -86,7 +86,7 @@ pub enum Action {
     None,
     /// Ask the board.
     Request(Request),
-    /// Somebody has seen enough.
+    /// The user quits.
     Quit,
 }
 

@@ -1,5 +1,5 @@
-//! Installing Debian's packages: never without having said what that does to the machine, and never
-//! with the removal of another package that nobody has agreed to.
+//! Installs Debian packages: prints the changes to the machine first, and never removes another
+//! package without the user's consent.
 
 use std::fmt;
 use std::io::{self, BufRead, IsTerminal, Write};
@@ -35,7 +35,7 @@ pub enum AptError {
         /// The end of what it said.
         output: String,
     },
-    /// Packages would be removed, and nobody has said yes.
+    /// Packages would be removed, without consent.
     #[error(
         "installing {wanted} would remove packages of this machine, so nothing was done: it \
          {changes}\ncheck these changes; if they are right, run this yourself:\n  {command}"
@@ -80,7 +80,7 @@ impl Apt {
     /// `agrees` is asked before.
     ///
     /// # Errors
-    /// Where it fails, or nobody agrees: then nothing has changed.
+    /// It fails, or consent is refused: then nothing has changed.
     pub fn install(
         &self,
         packages: &[&str],
@@ -166,7 +166,7 @@ impl fmt::Display for Changes {
     }
 }
 
-/// Asks the person at the terminal; where there is none, nobody agrees.
+/// Asks the user at the terminal; without a terminal the answer is no.
 pub fn person_agrees(changes: &Changes) -> bool {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return false;

@@ -1,4 +1,4 @@
-//! The program as somebody runs it: exit status, standard output, standard error.
+//! The program as a process: exit status, standard output, standard error.
 
 use std::io::{Read, Write};
 use std::process::{Output, Stdio};
@@ -258,7 +258,7 @@ fn a_batch_answers_before_its_input_ends() {
             stdout.read_exact(&mut byte).unwrap();
         }
     }
-    // Whoever read the answers goes away: no complaint.
+    // The reader closes the pipe: no error.
     drop(stdout);
     drop(stdin.write_all(format!("{WALL}\n").repeat(10).as_bytes()));
     drop(stdin);

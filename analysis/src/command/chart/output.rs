@@ -45,7 +45,7 @@ pub struct Files {
 }
 
 impl OutputArguments {
-    /// Looks at the names of the files, so that nobody waits for a picture that cannot be kept.
+    /// Checks the file names before the work: the picture could not be saved otherwise.
     pub(super) fn files(&self) -> Result<Files, ChartError> {
         let is_data = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
         match &self.csv {

@@ -207,7 +207,7 @@ fn report<'a>(
     }
 }
 
-/// What somebody must know before relying on the numbers.
+/// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
     if found.skew.is_significant() {

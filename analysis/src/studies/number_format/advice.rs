@@ -63,8 +63,8 @@ fn at_rest<S: Serializer>(rest: &Option<QuantizationBound>, to: S) -> Result<S::
 pub struct Advice {
     /// The formats.
     pub candidates: Vec<Candidate>,
-    /// Torque in N m by which the encoder alone hums, in the finest format; `None` where nobody has
-    /// said how fine it is.
+    /// Torque in N m of the limit cycle by the encoder alone, in the finest format; `None` if its
+    /// resolution is not stated.
     pub encoder_hum: Option<f64>,
     /// Most of that which is wanted.
     hum: f64,

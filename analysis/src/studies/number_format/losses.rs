@@ -14,7 +14,7 @@ pub struct Losses {
     pub error_elsewhere: Option<f64>,
     /// What is left at rest by the format alone.
     pub alone: LimitCycle,
-    /// What is left at rest with the encoder; `None` where nobody has said how fine that is.
+    /// The same with the encoder; `None` if its resolution is not stated.
     pub with_encoder: Option<LimitCycle>,
 }
 

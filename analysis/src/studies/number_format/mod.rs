@@ -36,7 +36,7 @@ pub struct FormatProblem {
     pub scene: Scene,
     /// Its sensor and its motor.
     pub transducers: Transducers,
-    /// What somebody has said of their steps, and of the device's friction.
+    /// The stated resolution, and the device's friction.
     pub steps: Resolution,
     /// Largest angle in rad to each side that a scaled format has to hold.
     pub range: f64,
