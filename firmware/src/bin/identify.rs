@@ -29,8 +29,8 @@ const fn part(part: f64) -> f64 {
 /// heavier device needs more torque or lower frequencies; the host says so where the motion is lost
 /// in counts.
 ///
-/// A torque that the converter cannot give, or a part of a tone that is no whole number of samples,
-/// stops the compiler here.
+/// A torque outside the DAC range, or a part of a tone that is not a whole number of samples, is a
+/// compile error here.
 pub static SWEEP: Sweep<10> = Sweep::planned(
     PERIOD,
     &TRANSDUCERS,

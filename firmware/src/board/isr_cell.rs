@@ -8,8 +8,8 @@ use core::mem::MaybeUninit;
 /// no test whether it is there.
 pub struct IsrCell<T>(UnsafeCell<MaybeUninit<T>>);
 
-// SAFETY: both functions pass on to their callers that one owner at a time uses the cell; what is in
-// it goes from the main program to the interrupt, which `Send` permits.
+// SAFETY: both functions require of their callers that one owner at a time uses the cell; the value
+// moves from the main program to the interrupt, which `Send` permits.
 unsafe impl<T: Send> Sync for IsrCell<T> {}
 
 impl<T> IsrCell<T> {
@@ -46,7 +46,7 @@ impl<T> IsrCell<T> {
     /// The cell must be filled, and [`borrow_mut`](Self::borrow_mut) must never be used with it.
     #[inline(always)]
     pub unsafe fn borrow(&'static self) -> &'static T {
-        // SAFETY: filled and never borrowed for more than looking, as the caller promises.
+        // SAFETY: the caller guarantees a filled cell and only shared borrows.
         unsafe { (*self.0.get()).assume_init_ref() }
     }
 }

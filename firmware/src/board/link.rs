@@ -19,7 +19,7 @@ pub trait Port {
 pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The port.
     pub port: P,
-    /// What is said there.
+    /// Its session.
     pub session: Session<'static, E, N, M, FRAMES>,
 }
 

@@ -1,4 +1,4 @@
-//! The state of the servo's interrupt, and the ends of what it shares with the task below it.
+//! The state of the servo's interrupt, and the endpoints that it shares with the task below.
 
 use static_cell::StaticCell;
 
@@ -14,7 +14,7 @@ pub const FRAMES: usize = 32;
 
 /// State of the servo's interrupt.
 pub struct ServoIsr<H, E: Discretize<N> + 'static, N: Number, M: 'static> {
-    /// The servo, and what it is doing.
+    /// The servo and its state.
     pub servo_loop: ServoLoop<E, N, M>,
     /// The board's registers.
     pub hardware: H,

@@ -1,4 +1,4 @@
-//! Boards that are simulated: whatever their program does, it is in time.
+//! Simulated boards: their program is always in time.
 
 use crate::boot::Startup;
 use crate::dac::DacCode;

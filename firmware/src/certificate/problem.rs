@@ -125,11 +125,11 @@ impl PassivityProblem {
         }
     }
 
-    /// The answer of the rule that the verdict follows, as [`super::assess`] comes to it: what is
-    /// not certified is told apart into what is rejected and what is left undecided.
+    /// The answer of the rule that the verdict follows, as in [`super::assess`]: a scene that is
+    /// not certified is either rejected or undecided.
     pub const fn answer(&self) -> Answer {
         match self.rule {
-            // What is clear enough for "not certified" may not be for "rejected".
+            // "Rejected" may need more precision than "not certified".
             Rule::Exact => {
                 match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
                     Answer::Undecided => self.exact(&self.coupled(None, &Precision::TIGHT)),

@@ -30,8 +30,8 @@ struct Pipes {
 }
 
 static PIPES: IsrCell<Pipes> = IsrCell::empty();
-/// What the host has said last. In memory of its own, so that a fault at whatever instruction finds
-/// there what was read.
+/// The last input from the host. In a static of its own, so that it is there after a fault at any
+/// instruction.
 static LATEST_INPUT: [AtomicU8; TickInput::BYTES] = [const { AtomicU8::new(0) }; TickInput::BYTES];
 /// Number of the last tick that was shown.
 static SHOWN: AtomicU16 = AtomicU16::new(0);

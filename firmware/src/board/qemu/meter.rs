@@ -35,8 +35,8 @@ pub struct Scale {
     pub per_instruction: u32,
     /// Instructions that a [`measurement`](measure) counts of itself.
     pub overhead: u32,
-    /// Instructions that the measurement of an interrupt counts of itself: one that does nothing
-    /// but return has one of its own.
+    /// Overhead of the measurement of an interrupt in instructions: an empty interrupt has one
+    /// instruction of its own.
     pub around: u32,
 }
 

@@ -44,7 +44,7 @@ unsafe fn DefaultHandler(number: i16) {
 #[macro_export]
 macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
-        /// The scene, whose torque is as late as it says.
+        /// The scene, with its delay checked.
         const TIMED: $crate::certificate::TimingChecked<
             $crate::scene::Scene<$environment>,
             $crate::board::qemu::Mode,
