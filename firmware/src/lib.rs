@@ -20,7 +20,7 @@ pub mod torque;
 
 pub mod dac;
 
-// Sensor and motor, as a servo is told of them.
+// Numbers of sensor and motor, for a servo.
 pub mod transducers;
 
 // What a device is measured with, before anything is certified for it.
@@ -47,7 +47,7 @@ pub mod period;
 pub mod step;
 pub mod text;
 
-// What a board says to its host, and what it hears.
+// The protocol between a board and its host.
 #[cfg(feature = "wire")]
 pub mod wire;
 

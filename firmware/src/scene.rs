@@ -1,4 +1,4 @@
-//! What a person asks for, in plain SI numbers: a device, a period, a coupling, an environment.
+//! A scene in SI units: a device, a period, a coupling, an environment.
 //!
 //! Nothing here is checked. [`crate::certificate`] turns a [`Scene`] into a `Certified<Scene>`,
 //! and only that can become a servo.
@@ -26,7 +26,7 @@ pub struct Scene<E = Environment> {
     pub environment: E,
     /// Largest coupling torque in N m, applied between environment and coupling so that
     /// saturation stays inside the certificate (theory, end of section 5). `None`: the scene is
-    /// linear, and the certificate assumes that the converter never saturates.
+    /// linear, and the certificate assumes that the DAC never saturates.
     pub torque_limit: Option<f64>,
 }
 
@@ -54,7 +54,7 @@ pub struct Timing {
 }
 
 impl<E> Scene<E> {
-    /// What an environment is told of the rest of the scene.
+    /// The rest of the scene, for the environment.
     pub(crate) const fn context(&self) -> LawContext {
         LawContext {
             period: self.timing.period,

@@ -148,7 +148,7 @@ impl fmt::Display for ShortF64 {
     }
 }
 
-/// A figure for a person, to three digits and not below what it is, to a part in 10^12.
+/// A number for people, rounded up to three digits, to a part in 10^12.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundUp3(pub f64);
 

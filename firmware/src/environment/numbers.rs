@@ -22,8 +22,8 @@ impl Environment {
         }
     }
 
-    /// The environment with this value; `None` where there is no place for it. A whole number is
-    /// what is left of `value` without its fraction.
+    /// The environment with this value; `None` if it has no such number. For a whole number the
+    /// fraction of `value` is dropped.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut changed = *self;
         match (parameter, &mut changed) {
@@ -43,10 +43,10 @@ impl Environment {
         Some(changed)
     }
 
-    /// The number of this name, if it has one that is no whole number.
+    /// The number of this name, unless it is a whole number.
     const fn number(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (parameter, self) {
-            // A spring has no damper, whatever its wall says.
+            // A spring ignores its wall's damping.
             (Parameter::Damping | Parameter::Filter, Self::DelayedSpring(_)) => None,
             (
                 Parameter::Residual,

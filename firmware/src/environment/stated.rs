@@ -7,15 +7,15 @@ use super::rational::Rational;
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct StatedModel {
     /// Whole samples from a position to the first torque that depends on it. A
-    /// [`transfer`](Self::transfer) says the same by itself.
+    /// [`transfer`](Self::transfer) implies the same.
     pub delay: usize,
     /// The transfer function from position to torque, where the law is linear. Its coefficients are
     /// judged as a [`Rational`] has them in the number format of the servo.
-    // No board says so on its wire: what a board renders passes by its bound.
+    // Not on the wire: a scene on a board passes by its bound.
     #[cfg_attr(feature = "wire", serde(skip))]
     pub transfer: Option<Rational>,
-    /// What holds for the law with its torque limited at any level, which a board asks for: it limits
-    /// every torque. A law that is not linear has nothing else.
+    /// Properties of the law with its torque limited at any level. A board requires them, as it limits
+    /// every torque. A nonlinear law has nothing else.
     pub bound: Option<StatedBound>,
 }
 
@@ -28,8 +28,8 @@ pub struct StatedBound {
     /// `F_k` of every motion, `sum F_k (x_k - x_(k-1)) + alpha / T sum (x_k - x_(k-1))^2` is bounded
     /// from below, with the torque limited to any level.
     ///
-    /// A servo moves that level while it fades: a level that falls may only take energy away, and one
-    /// that rises may put in what the environment stores where it is, once. So it is for a spring.
+    /// A servo moves that level while it fades: a falling level may only remove energy, and a rising
+    /// level may add, once, the energy that the environment stores there, as for a spring.
     pub index: f64,
     /// Upper bound in N m s/rad on the change of the torque over that of the position, in the l2 norm
     /// and times the period (equation 37).

@@ -136,7 +136,7 @@ proptest! {
             prop_assert_eq!(nearest, coefficient::<N>(value));
             prop_assert!(inward.abs() <= value.abs() && value.abs() <= outward.abs());
             prop_assert!(nearest == inward || nearest == outward);
-            // Nothing lies between the two: what is there is one of them.
+            // No number lies between the two.
             let between = 0.5 * (inward + outward);
             prop_assert!([inward, outward].contains(&coefficient::<N>(between)));
             Ok(())

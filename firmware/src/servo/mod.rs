@@ -26,7 +26,7 @@ use crate::torque::{LimitReason, Limiter};
 pub struct Output {
     /// What the DAC shall hold.
     pub code: DacCode,
-    /// Why this is less than the scene asked for.
+    /// The reason if this torque is limited.
     pub limit: LimitReason,
 }
 

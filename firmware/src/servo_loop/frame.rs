@@ -1,4 +1,4 @@
-//! One tick as it is told to the host.
+//! One tick as sent to the host.
 
 use super::State;
 use crate::dac::DacCode;
@@ -13,7 +13,7 @@ pub struct Frame {
     pub count: i32,
     /// The code that was written.
     pub code: DacCode,
-    /// Why it is less than the scene asked for.
+    /// The reason if it is limited.
     pub limit: LimitReason,
     /// What the servo was doing.
     pub state: State,

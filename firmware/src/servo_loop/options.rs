@@ -6,16 +6,16 @@ pub enum LinkPolicy {
     /// Nothing: the host is not needed.
     #[default]
     Ignore,
-    /// Goes on with the running set, and says in its status that the host was lost.
+    /// Continues with the running set, and reports the lost host in its status.
     Hold,
     /// Fades out and switches the amplifier off: a fault.
     Release,
 }
 
-/// When the amplifier goes on.
+/// When to arm the servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arming {
-    /// Only when the host asks for it.
+    /// Only on the host's request.
     #[default]
     WhenAsked,
     /// Also without a host, when the supply is switched on; after no other reset.
@@ -54,7 +54,7 @@ pub struct Options {
     pub link: LinkPolicy,
     /// Time in s without a message after which the host counts as lost.
     pub link_timeout: f64,
-    /// When the amplifier goes on.
+    /// When to arm the servo.
     pub arming: Arming,
 }
 

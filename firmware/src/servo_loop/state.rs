@@ -1,4 +1,4 @@
-//! What the servo is doing, and what it tells those who ask.
+//! The state of the servo, its status and its notices.
 
 use core::fmt;
 
@@ -59,10 +59,10 @@ impl fmt::Display for State {
     }
 }
 
-/// What the servo says of itself when it is asked.
+/// The servo's reply to a request for its status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// What it is doing.
+    /// Its state.
     pub state: State,
     /// The fault that stopped it, or that was left from before the last reset; until it is armed.
     pub fault: Option<Fault>,
@@ -97,7 +97,7 @@ pub enum Notice {
     NotArmed(Fault),
     /// The amplifier is off.
     Disarmed,
-    /// The submitted set is now the one that runs.
+    /// The submitted set is running now.
     Applied,
     /// The servo has stopped.
     Stopped(Fault),

@@ -33,7 +33,7 @@ pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;
 /// The host's number for a request, which comes back with the answer.
 pub type Id = u16;
 
-/// What a host asks for.
+/// Requests of a host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToBoard {
     /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] where a fault
@@ -66,7 +66,7 @@ pub enum ToBoard {
     Describe,
 }
 
-/// What a board says. `S` is the text.
+/// Replies and telemetry. `S` is text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost<S> {
     /// Who answers. The same in every version of the protocol, so that a host of another version
@@ -92,7 +92,7 @@ pub enum ToHost<S> {
     },
     /// What stopped this board before it was last started.
     PreviousFault(PreviousFault),
-    /// Ticks that were asked for with [`ToBoard::Stream`].
+    /// Ticks, requested with [`ToBoard::Stream`].
     Telemetry(Batch),
     /// The scene that runs, and how.
     Described(Description),
@@ -129,7 +129,7 @@ pub struct ActiveParameters {
 /// What became of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// It is done: what was asked for runs.
+    /// The request has taken effect.
     Done,
     /// It is refused, and nothing has changed.
     Refused(Refusal),
@@ -144,7 +144,7 @@ pub enum Refusal {
     Disarming,
     /// What stopped the servo is still there.
     Fault(FaultCode),
-    /// The set cannot run, by this step; [`Description::explain`] says why.
+    /// This step failed; [`Description::explain`] has the reason.
     Set(Step),
 }
 

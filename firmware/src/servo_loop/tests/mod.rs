@@ -65,8 +65,8 @@ fn boots_in_an_order_in_which_nothing_can_move() {
     bench.board.events.clear();
     bench.tick(900);
     assert_eq!(bench.board.events, [Event::Write(2048), Event::Amplifier(true), Event::Feed]);
-    // From there on the clamp opens by a hundredth of the torque limit a tick, whatever the
-    // spring asks for: 1 N m is 895.5 codes, and at 900 counts the spring wants 725.3.
+    // From there on the clamp opens by a hundredth of the torque limit a tick, for any torque of
+    // the spring: 1 N m is 895.5 codes, and at 900 counts the spring has 725.3.
     for ticks in 1..=80 {
         let (code, level) = (bench.tick(900).code, 8.955 * f64::from(ticks));
         assert!((f64::from(-code.offset()) - level).abs() <= 0.51, "{code:?} for {level}");

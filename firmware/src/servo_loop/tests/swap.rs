@@ -119,7 +119,7 @@ fn a_new_set_starts_at_rest_where_the_device_is() {
     let spring = *bench.board.codes().last().unwrap();
     bench.requests.submit(set(&program, &[(Parameter::Damping, 0.014)])).unwrap();
     assert_eq!(swing(&mut bench), spring);
-    // And so does one that is armed: what it remembers of a fault is not what the motor did.
+    // And so does one that is armed: its state from a fault is not that of the motor.
     bench.board.elapsed = PERIOD;
     bench.stand(900, 20);
     bench.requests.arm();
