@@ -77,7 +77,7 @@ pub struct AtRest {
     pub numbers: f64,
     /// The most that the converter's step moves it; `None`: not stated.
     pub converter: Option<f64>,
-    /// All of them: what it may hum by, and the friction that prevents that.
+    /// The sum: bound on the limit cycle, and the friction that prevents it.
     pub hum: f64,
     /// Declared friction of the device; `None`: not stated.
     pub friction: Option<f64>,

@@ -20,7 +20,7 @@ use crate::link::Address;
 /// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
 const BYTES: usize = 256;
 
-/// What is wrong with an address that is none of a socket.
+/// The error for an address that is not a socket's.
 const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH, not \
                          on a serial port";
 
@@ -96,7 +96,7 @@ impl Listener {
         }
     }
 
-    /// Sends what the stream takes of these bytes, and gives what has come in.
+    /// Sends as many bytes as the stream takes, and returns those received.
     pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
         self.reject_other_clients();
         let Some(client) = &mut self.client else {
@@ -156,7 +156,7 @@ impl Listener {
     }
 }
 
-/// What has come in; [`ErrorKind::UnexpectedEof`] once the other end is closed.
+/// Received bytes; [`ErrorKind::UnexpectedEof`] once the other end is closed.
 fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a [u8]> {
     match client.read(bytes) {
         Ok(0) => Err(ErrorKind::UnexpectedEof.into()),

@@ -16,7 +16,7 @@ pub struct Decimal {
 }
 
 impl Decimal {
-    /// The decimal of a finite number; 0 for what is not finite.
+    /// The decimal of a number; 0 if it is not finite.
     pub fn of(value: f64) -> Self {
         let text = format!("{value:e}");
         let (mantissa, exponent) = text.split_once('e').unwrap_or(("0", "0"));

@@ -186,7 +186,7 @@ impl<'a, 'b, F: Fn(f64) -> f64> Logarithmic<'a, 'b, F> {
     }
 }
 
-/// What is said about each loop, in a line each.
+/// The margins of each loop, in a line each.
 pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
     let of = |(name, found): &(String, OpenLoop)| {
         let at = |margin: Margin| format!("at {} Hz", significant(margin.hertz, 3));

@@ -64,8 +64,8 @@ impl Arguments {
     }
 }
 
-/// Ends the program with a help that was asked for, or with what is wrong with its arguments, which
-/// clap does not break into lines.
+/// Ends the program with the requested help, or with the error in its arguments, which clap does
+/// not wrap.
 fn refuse(error: &clap::Error) -> ! {
     let rendered = error.render();
     let text = |is_terminal| match terminal::has_colour(is_terminal) {

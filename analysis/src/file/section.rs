@@ -54,7 +54,7 @@ impl<'t> Section<'t> {
         (self.title, self.needed) = (title, needed);
     }
 
-    /// Leaves out a key that cannot be read because of what was reported: it may be a good one.
+    /// Skips a key that cannot be read because of a reported error: it may be valid.
     pub fn skip(&mut self, key: &Key) {
         self.take(key);
     }
@@ -86,12 +86,12 @@ impl<'t> Section<'t> {
         Ok(Some(Found { value, span }))
     }
 
-    /// Whether a key of that name is there, asked for or not.
+    /// Whether a key of that name is there, read or not.
     pub fn has(&self, key: &Key) -> bool {
         self.entries.iter().any(|entry| entry.name == key.name())
     }
 
-    /// What is written there, fit to print.
+    /// The text there, safe to print.
     pub fn written(&self, span: &Span) -> String {
         excerpt(&self.text[span.clone()])
     }

@@ -13,7 +13,7 @@ use super::kind::Kind;
 use super::scene::SceneFile;
 use crate::chain::{Chain, EncoderPlace};
 
-/// The text of a scene file in TOML: everything that the file says, and nothing that it did not.
+/// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
     let SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction } =
         file;

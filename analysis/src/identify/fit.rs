@@ -57,7 +57,7 @@ pub struct Disk {
     pub omega: f64,
 }
 
-/// What a record says about a device.
+/// The device found in a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// Inertia in kg m^2.
@@ -241,7 +241,7 @@ impl System {
             system.add(response, unknowns, with_skew);
         }
         if !with_skew {
-            // An unknown that is held: its equation says that it does not change.
+            // A fixed unknown: its equation keeps it unchanged.
             system.matrix[(SKEW, SKEW)] = 1.0;
         }
         system

@@ -89,7 +89,7 @@ impl MeasuredDevice {
 /// A rig with a rigid device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig {
-    /// What is measured.
+    /// The device.
     pub device: Device,
     /// With what.
     pub sensing: Sensing,

@@ -20,9 +20,9 @@ pub type Message = ToHost<String>;
 /// What became of a request, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RequestResult {
-    /// It is done: what was asked for runs.
+    /// The request has taken effect.
     Done,
-    /// It is refused, and nothing has changed. The sentence says why.
+    /// It is refused, for this reason, and nothing has changed.
     Refused(String),
 }
 
@@ -171,7 +171,7 @@ impl Link {
                 Err(LinkError::Protocol { address, program, theirs })
             }
             Ok(None) => Err(LinkError::Silent { address, after: QUERY_TIMING.end }),
-            // A socket says so; a serial line is only silent.
+            // A socket reports it; a serial line is silent.
             Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
                 Err(LinkError::InUse { address })
             }

@@ -60,7 +60,7 @@ pub enum LinkError {
     Unanswered {
         /// The address.
         address: Address,
-        /// What was asked.
+        /// The request.
         what: &'static str,
         /// How long was waited.
         after: Duration,

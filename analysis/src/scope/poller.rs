@@ -1,5 +1,5 @@
-//! What a board says, as it comes in, from a thread that keeps asking and connects again when the
-//! link is lost.
+//! Messages of a board, as they arrive, from a thread that polls it and reconnects when the link
+//! is lost.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const RETRY: Duration = Duration::from_millis(500);
 /// Silence after which a link that gives no error counts as lost all the same.
 const SILENCE: Duration = Duration::from_secs(3);
 
-/// What a board says.
+/// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// A board has said who it is.
@@ -117,7 +117,7 @@ enum PollEnd {
     Over,
     /// The link.
     Lost(LinkError),
-    /// The board has forgotten what it was asked for.
+    /// The board has restarted without its settings.
     Restarted,
 }
 
@@ -281,8 +281,8 @@ impl PollerThread {
         Ok(())
     }
 
-    /// Drops what was asked for without a link: a motor is not switched on by a key that was pressed
-    /// some time ago.
+    /// Drops requests without a link: a key that was pressed some time ago must not switch a motor
+    /// on.
     fn reject_requests(&self) {
         for request in self.requests.try_iter() {
             // The receiver may be gone; the next check of `ended` tells.

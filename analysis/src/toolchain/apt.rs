@@ -28,11 +28,11 @@ pub enum AptError {
     /// It failed.
     #[error("`{command}` ended with {status}:\n{output}")]
     Failed {
-        /// What was run.
+        /// The command.
         command: String,
         /// Its exit status.
         status: ExitStatus,
-        /// The end of what it said.
+        /// The end of its output.
         output: String,
     },
     /// Packages would be removed, without consent.
@@ -76,8 +76,8 @@ impl Apt {
         self.run(&["update"], &[]).map(drop)
     }
 
-    /// Says what installing packages changes, and installs them. Where others would be removed,
-    /// `agrees` is asked before.
+    /// Prints the changes, and installs the packages. If others would be removed, calls `agrees`
+    /// first.
     ///
     /// # Errors
     /// It fails, or consent is refused: then nothing has changed.
@@ -109,7 +109,7 @@ impl Apt {
             .args(["-o", "DPkg::Lock::Timeout=600"])
             .args(arguments)
             .args(packages)
-            // What is read of it is not to depend on the person's language.
+            // The parsed output must not depend on the user's language.
             .env("LC_ALL", "C")
             .env("DEBIAN_FRONTEND", "noninteractive")
             .stdin(Stdio::null());

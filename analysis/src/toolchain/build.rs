@@ -44,7 +44,7 @@ impl fmt::Display for NumberFormat {
 /// Why a program could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// The source is not what it should be.
+    /// The sources are invalid.
     #[error(transparent)]
     Sources(#[from] SourcesError),
     /// A file could not be read or written.

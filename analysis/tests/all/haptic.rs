@@ -497,7 +497,7 @@ fn friction_of_the_device_ends_a_hum() {
         let converter = rest["converter"].as_f64().unwrap();
         assert!((converter / (1.0 / 1791.0) - 1.0).abs() < 1e-3, "{format}");
     }
-    // What a coarse format rounds takes more friction than there is: it hums as if there were none.
+    // A coarse format's rounding needs more friction than there is: the limit cycle stays.
     let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();
     assert_eq!(coarse["rest"]["comes_to_rest"], false, "{coarse}");
     let reasons = coarse["rejected"].to_string();

@@ -62,7 +62,7 @@ impl OutputArguments {
 }
 
 impl Files {
-    /// Writes what is asked for of a chart.
+    /// Writes the files of a chart.
     pub(super) fn write(&self, Chart { picture, data }: Chart) -> Result<(), ChartError> {
         if let Some(output) = &self.picture {
             output.write(&picture)?;

@@ -68,7 +68,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// What is known of the measurement, with so much to settle where nothing is said.
+    /// The stated corrections of the measurement, with `settle` as the default.
     fn correction(&self, counts_per_turn: f64, settle: f64) -> Correction {
         Correction {
             torque_delay: self.torque_delay,
