@@ -19,7 +19,7 @@ use crate::step::Step;
 use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
 
-/// What a board has besides, before its servo runs.
+/// The hardware before the servo runs.
 pub trait Startup: Hardware {
     /// Sets the encoder's counter to zero: where the device is now is its zero.
     fn zero_encoder(&mut self);
@@ -33,7 +33,7 @@ pub trait Startup: Hardware {
     fn period(&self) -> u32;
 }
 
-/// What a program brings.
+/// Data of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Program<E> {
     /// The scene that was certified when the program was compiled.
@@ -42,7 +42,7 @@ pub struct Program<E> {
     pub transducers: Transducers,
     /// How the scene is rendered.
     pub rendering: RenderingOptions,
-    /// What the cycle does beside it.
+    /// Options of the cycle.
     pub options: Options,
 }
 
@@ -129,7 +129,7 @@ where
     Ok(Booted { servo_loop, margin, reset, previous_fault, arms_because })
 }
 
-/// Why a servo may arm itself: only where its program says so, and only where the supply was switched
+/// Why a servo may arm itself: only if its program permits it, and only where the supply was switched
 /// on. Any other reset may come while a hand is on the device.
 fn reason_to_arm(
     options: &Options,

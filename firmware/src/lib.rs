@@ -23,7 +23,7 @@ pub mod dac;
 // Numbers of sensor and motor, for a servo.
 pub mod transducers;
 
-// What a device is measured with, before anything is certified for it.
+// Measurement of a device, before certification.
 pub mod excitation;
 
 // What carries the servo on a board: one interrupt a period, from reset to fault.
@@ -38,7 +38,7 @@ pub mod passivity;
 pub mod scene;
 pub mod servo;
 
-// What the modules above share.
+// Shared by the modules above.
 pub mod build_error;
 pub mod number;
 pub mod output_timing;

@@ -36,7 +36,7 @@ impl<H: Hardware, E: Discretize<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, 
 /// its own, since the types are its scene's.
 pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
 
-/// The ends of what the interrupt and the task share.
+/// Endpoints of interrupt and task.
 pub struct Endpoints<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The task's end of the mailbox.
     pub requests: Requests<'static, PreparedServo<E, N, M>>,

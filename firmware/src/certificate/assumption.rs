@@ -1,4 +1,4 @@
-//! What a verdict rests on: only what the scene uses, each with its condition (theory, section 8)
+//! Assumptions of a verdict: only those of the scene, each with its condition (theory, section 8)
 //! and with whether that holds.
 
 use core::f64::consts::PI;

@@ -132,7 +132,7 @@ impl Limited {
         Some(Self { bound, limit, gain, coupling, delta: n.delta, missed: n.missed })
     }
 
-    /// What the limit leaves over the bound, in N m s/rad.
+    /// Limit less bound, in N m s/rad.
     pub const fn injectable_damping(&self) -> f64 {
         self.limit.sub(self.bound).lo()
     }

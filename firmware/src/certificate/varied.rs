@@ -31,7 +31,7 @@ impl Varied<'_> {
     /// The values that pass, from the nearest on: to three digits on the side that passes, and
     /// certified.
     ///
-    /// `own` is what the scene lacks as it is.
+    /// `own` is the scene's shortage.
     pub const fn remedy(&self, own: Option<f64>) -> Option<Remedy> {
         let parameter = self.parameter;
         let side = match parameter {

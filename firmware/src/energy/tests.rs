@@ -208,7 +208,7 @@ fn let_go(injection: Option<f64>) -> (f64, EnergyMonitor) {
         let code = rendering.tick(RawCount::from(count), &energy).code;
         energy.observe::<Latched>(count - last, code);
         last = count;
-        // An exact hold: the speed decays to the one that the torque keeps up.
+        // An exact hold: the speed decays to its steady state.
         let decay = (-damping / inertia * PERIOD).exp();
         let kept: f64 = latched / damping;
         angle += kept * PERIOD + (speed - kept) * (1.0 - decay) * inertia / damping;

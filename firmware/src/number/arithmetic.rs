@@ -60,7 +60,7 @@ impl Arithmetic {
         }
     }
 
-    /// What the certificate knows it by.
+    /// Its number format.
     pub fn format(self) -> Format {
         self.choose(OfNumber)
     }

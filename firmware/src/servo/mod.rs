@@ -21,10 +21,10 @@ use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
 
-/// What a tick gives.
+/// Result of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// What the DAC shall hold.
+    /// Code for the DAC.
     pub code: DacCode,
     /// The reason if this torque is limited.
     pub limit: LimitReason,

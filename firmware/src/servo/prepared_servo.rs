@@ -66,7 +66,7 @@ pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
     mode: PhantomData<M>,
 }
 
-/// What the time between two updates may be.
+/// Limits on the time between updates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingLimits {
     /// The period in s.
@@ -170,7 +170,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         }
     }
 
-    /// What the time between two updates may be.
+    /// Limits on the time between updates.
     pub const fn timing_limits(&self) -> TimingLimits {
         self.pace
     }

@@ -15,7 +15,7 @@ pub struct Frame {
     pub code: DacCode,
     /// The reason if it is limited.
     pub limit: LimitReason,
-    /// What the servo was doing.
+    /// The servo's state.
     pub state: State,
     /// Timer counts that were left of the period; 0 where the tick was late.
     pub slack: u32,

@@ -186,7 +186,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &self.rendering
     }
 
-    /// What the servo is doing.
+    /// The servo's state.
     pub const fn state(&self) -> State {
         self.state
     }

@@ -1,4 +1,4 @@
-//! What a cycle does beside its scene.
+//! Options of a cycle.
 
 /// What the servo does when the host falls silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Reason {
     }
 }
 
-/// What a cycle does beside its scene.
+/// Options of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What to do when the host falls silent.

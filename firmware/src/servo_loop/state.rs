@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::fault::Fault;
 
-/// What the servo is doing.
+/// The servo's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -86,7 +86,7 @@ pub struct Status {
     pub link_lost: bool,
 }
 
-/// What the interrupt tells the low-priority side.
+/// A notice to the low-priority task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {
     /// The answer to a question for the status.

@@ -77,13 +77,13 @@ pub enum ToHost<S> {
         /// Name of the program.
         program: S,
     },
-    /// What the numbers of the other messages mean on this board.
+    /// Units of the other messages on this board.
     Board(Board),
     /// The active parameters.
     ActiveParameters(ActiveParameters),
     /// How it is going.
     Status(Status),
-    /// What became of a request.
+    /// Result of a request.
     Answer {
         /// The request's.
         id: Id,
@@ -98,7 +98,7 @@ pub enum ToHost<S> {
     Described(Description),
 }
 
-/// What the numbers of the other messages mean on this board.
+/// Units of the other messages on this board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Board {
     /// Period of the servo in s.
@@ -126,7 +126,7 @@ pub struct ActiveParameters {
     pub values: Changes,
 }
 
-/// What became of a request.
+/// Result of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// The request has taken effect.
@@ -142,7 +142,7 @@ pub enum Refusal {
     Busy,
     /// It is to be disarmed, which goes first.
     Disarming,
-    /// What stopped the servo is still there.
+    /// The fault is still there.
     Fault(FaultCode),
     /// This step failed; [`Description::explain`] has the reason.
     Set(Step),
@@ -172,7 +172,7 @@ impl fmt::Display for Refusal {
 /// How it is going.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// What the servo is doing.
+    /// The servo's state.
     pub state: State,
     /// What stopped it, until it is armed again.
     pub fault: Option<FaultCode>,

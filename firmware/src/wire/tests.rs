@@ -13,7 +13,7 @@ type Message = Vec<u8, LONGEST>;
 /// Two bytes say how long it is, four are its checksum.
 type FrameDecoder = Decoder<{ LONGEST + 6 }>;
 
-/// What a decoder hears in noise.
+/// Decoding of noise.
 const NOTHING: [Message; 0] = [];
 
 fn framed(message: &Message) -> std::vec::Vec<u8> {

@@ -23,7 +23,7 @@ use crate::servo_loop::State;
 #[derive(Clone, Copy, Debug)]
 pub struct NoHost;
 
-/// Counts from the host, and what the board shows to it.
+/// Counts from the host, and the board's output.
 struct Pipes {
     counts: File,
     codes: File,
@@ -99,7 +99,7 @@ pub(super) unsafe fn receive() -> Option<u32> {
     Some(missed.into())
 }
 
-/// What the host has said last, and the number of that tick.
+/// The last input from the host, and its tick.
 fn latest_input() -> (TickInput, u16) {
     TickInput::from_bytes(LATEST_INPUT.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
 }

@@ -28,7 +28,7 @@ pub fn uncertified_servo<E: Discretize<N>, N: Number>(
     Servo::build(scene, transducers)
 }
 
-/// What the counter's numbers mean.
+/// Scale of the counter.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
     /// Counts that one instruction takes.

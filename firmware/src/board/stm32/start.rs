@@ -46,7 +46,7 @@ pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>
 
 /// The static places of a program, whose types are its scene's.
 pub struct Statics<E: Discretize<N> + 'static, N: Number> {
-    /// What the servo's interrupt works with.
+    /// State of the servo's interrupt.
     pub servo: &'static ServoCell<E, N>,
     /// Where it meets the task below.
     pub mailbox: &'static MailboxCell<E, N, Mode>,

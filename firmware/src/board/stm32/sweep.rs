@@ -33,9 +33,9 @@ use crate::torque::LimitReason;
 /// The state of the sweep's interrupt.
 pub type SweepCell = IsrCell<SweepIsr>;
 
-/// What a sweep's device is measured with, and kept within.
+/// Transducers and limits of a sweep.
 pub struct Setup {
-    /// What the sweep was planned for.
+    /// The plan of the sweep.
     pub transducers: Transducers,
     /// How far and how fast the device may move.
     pub limits: MotionLimits,
@@ -72,7 +72,7 @@ pub struct SweepIsr {
     /// The position at the sweep's beginning, and in the last tick.
     start: i32,
     last: i32,
-    /// What the DAC has held since this tick's update.
+    /// The DAC's code since this tick's update.
     held: DacCode,
     hardware: Registers,
     rows: Frames<'static, ROWS>,

@@ -100,7 +100,7 @@ impl TickTimer {
         rcc::enable_and_reset::<peripherals::TIM6>();
         TIMER.psc().write_value((period.prescale - 1) as u16);
         TIMER.arr().write(|w| w.set_arr((period.counts - 1) as u16));
-        // The update is what the DAC is triggered by.
+        // The update triggers the DAC.
         TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
         // Prescaler and period are taken over at an update; this one shall be no tick.
         TIMER.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));

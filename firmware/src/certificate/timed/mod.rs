@@ -197,7 +197,7 @@ impl Assessment {
     }
 }
 
-/// Whether a board may render a scene; if so, what it is with its torque limited.
+/// Whether a board may render a scene; if so, the scene with its torque limited.
 ///
 /// A board limits every torque, so that the nonlinear bound has to pass the paper's rule, whatever
 /// rule the scene's verdict follows. That proves the scene on its own: the bound is one on the index
@@ -234,7 +234,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     }
 }
 
-/// Whether a scene with this assessment agrees with a mode; if so, what it is with its torque limited.
+/// Whether a scene with this assessment agrees with a mode; if so, the scene with its torque limited.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
@@ -285,7 +285,7 @@ const fn stands_counts_read_late<M: OutputMode>(
     }
 }
 
-/// What the bound has to stay below for that.
+/// Upper limit of the bound for that.
 const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
     let late = Interval::exact(READ_WITHIN).div(n.period);
     Missed::read_late(n, late).limit(limited.coupling)

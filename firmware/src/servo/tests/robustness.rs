@@ -1,4 +1,4 @@
-//! Limits, refusals, and what no input can do.
+//! Limits, refusals, and robustness.
 
 use super::*;
 
