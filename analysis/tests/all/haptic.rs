@@ -396,7 +396,7 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     assert!(answer["message"].as_str().unwrap().contains("counts per turn instead of 1000"));
 }
 
-/// The converter's largest code is the torque that a file says, whatever the scene is limited to.
+/// The DAC's largest code is the file's full-scale torque, with any torque limit of the scene.
 #[test]
 fn a_file_says_what_the_converter_gives() {
     let limits = r#""limits": {"torque": 0.5, "full_scale": 2}, "environment""#;
@@ -467,7 +467,7 @@ fn advice_has_an_answer_to_every_type_of_scene() {
 }
 
 /// Theory, sections 6 and 8: the paper's wall, whose peak torque a position is 924 N m/rad, needs
-/// half a count times that of friction, and what converter and numbers ask for.
+/// half a count times that of friction, and the shares of DAC and numbers.
 #[test]
 fn friction_of_the_device_ends_a_hum() {
     let advise = |friction: f64| {
