@@ -13,8 +13,8 @@ fn main() {
         return;
     }
     let manifest = env::var("CARGO_MANIFEST_DIR").expect("cargo names the package's folder");
-    // All boards share the map in the workspace's root; a package without it (the library taken
-    // by somebody else) links nothing here.
+    // All boards share the memory map in the workspace's root; without it (the library as a
+    // dependency) nothing is linked here.
     let mut roots = Path::new(&manifest).ancestors().skip(1).take(2);
     let Some(root) = roots.find(|root| root.join("memory.x").exists()) else { return };
     println!("cargo:rerun-if-changed={}", root.join("memory.x").display());

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::{env, fs};
 
-/// The scene of a build that nobody has asked one of, as that of a whole workspace.
+/// The scene of a build without `HAPTIC_SCENE`, such as that of a whole workspace.
 const DEFAULT: &str = "damper_wall";
 
 fn main() {

@@ -104,8 +104,8 @@ fn read_chunk(
     source: &mut BufReader<impl Read>,
 ) -> Result<Vec<Line>, BatchError> {
     let mut lines = Vec::new();
-    // Only what has already arrived joins the first line: whoever writes one scene and waits for
-    // its answer gets it.
+    // Takes only buffered lines besides the first, so that a client that sends one scene and
+    // waits gets its answer.
     while lines.is_empty() || (lines.len() < CHUNK && source.buffer().contains(&b'\n')) {
         let unreadable = |error: std::io::Error| {
             let line = first_line + lines.len();

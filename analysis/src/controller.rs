@@ -20,7 +20,7 @@ pub struct Tick {
     pub torque: f64,
     /// Code of the DAC.
     pub code: u16,
-    /// Why the torque is less than the scene asked for.
+    /// The reason if the torque is limited.
     pub limit: LimitReason,
 }
 

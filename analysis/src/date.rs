@@ -5,7 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 use time::OffsetDateTime;
 
-/// What somebody sets so that the same input gives the same page (reproducible-builds.org).
+/// Environment variable for reproducible pages (reproducible-builds.org).
 const EPOCH: &str = "SOURCE_DATE_EPOCH";
 
 /// The time that was asked for is none.

@@ -1,18 +1,18 @@
 //! Host side of the haptic servo, with the program `haptic` in front ([`command`]).
 //!
-//! A [`mod@file`] says what is asked, [`verdict`] what the certificate answers, [`batch`] both for
-//! many scenes; [`simulation`] says what a scene would do, certified or not. The modules below are in
-//! layers: each uses those of its own layer and of the layers under it, and none above it. "Theory" and
-//! "equation" are those of `firmware/THEORY.md`.
+//! A [`mod@file`] holds a scene, [`verdict`] the certificate's answer, [`batch`] both for many scenes;
+//! [`simulation`] computes a scene's motion, certified or not. The modules below are in layers: each uses
+//! those of its own layer and of the layers under it, and none above it. "Theory" and "equation" are those
+//! of `firmware/THEORY.md`.
 
 // The program `haptic`.
 pub mod command;
 
-// What is shown: pictures, and pages with pictures.
+// Output: charts, and pages with charts.
 pub mod chart;
 pub mod report;
 
-// What is measured once and kept: methods, formats and models against each other.
+// Measured once and kept: comparisons of methods, formats and models.
 pub mod studies;
 
 // What runs: a program's scene in a servo, with a simulated device, a recording or a board around
@@ -50,7 +50,7 @@ pub mod unit_circle_poles;
 pub mod verdict;
 pub mod worst_hand;
 
-// What is asked: a scene, its device, its hand and its servo.
+// Input: a scene, its device, its hand and its servo.
 pub mod chain;
 pub mod controller;
 pub mod device;

@@ -19,7 +19,7 @@ pub enum Limit {
     Any,
 }
 
-/// A stiffness this many times the standard coupling's can no longer be told from a rigid wall.
+/// A stiffness this many times the standard coupling's counts as a rigid wall.
 const RIGID: f64 = 1e6;
 /// The softest that is tried, over the standard coupling's.
 const SOFT: f64 = 1e-6;
@@ -79,7 +79,7 @@ pub fn largest_stiffness(scene: &Scene) -> Limit {
     if passes(stiffest.exp()) {
         return Limit::Any;
     }
-    // Down from above: there are walls of which the softest are not the ones that pass.
+    // From above: for some walls a soft one fails and a stiffer one passes.
     let step = (stiffest - softest) / f64::from(STEPS);
     let tried = (0..=STEPS).rev().map(|index| softest + step * f64::from(index));
     let Some(mut low) = tried.into_iter().find(|logarithm| passes(logarithm.exp())) else {
@@ -124,7 +124,7 @@ pub struct Point {
     pub ripple: Option<f64>,
 }
 
-/// What is asked about limits.
+/// A request for limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// From the lowest to the highest sample rate in Hz.

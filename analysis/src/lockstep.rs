@@ -55,8 +55,8 @@ pub struct SimulatedDevice {
 }
 
 impl SimulatedDevice {
-    /// A device at rest at zero, stepped by `period` s, with the encoder and the motor that the
-    /// servo is told of.
+    /// A device at rest at zero, stepped by `period` s, with the encoder and the motor of the
+    /// servo.
     ///
     /// # Errors
     /// Where device and hand are too fast for their motion over a period to be computed.

@@ -61,7 +61,7 @@ impl GeneralizedPlant {
         (0.5 * (f + root)).sqrt()
     }
 
-    /// What `mu <= 1` asks for, without a square root: `f <= 1 + D0^2` and `D0 <= 1`. Both
+    /// The condition `mu <= 1` without a square root: `f <= 1 + D0^2` and `D0 <= 1`. Both
     /// differences, left less right; neither is positive exactly if `mu <= 1`.
     pub fn excess(&self) -> [f64; 2] {
         let (f, determinant) = self.invariants();

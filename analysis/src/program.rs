@@ -1,5 +1,5 @@
-//! The scenes that have a program for the board, as that program's own file says them: three, and one
-//! more in the build of `haptic` that the package `haptic-scene` makes for it.
+//! The scenes with a program for the board, from that program's own file: three, and one more in the
+//! build of `haptic` that the package `haptic-scene` makes for it.
 
 #[path = "../../firmware/src/bin/damper_wall.rs"]
 pub mod damper_wall;
@@ -126,7 +126,7 @@ static MORE: OnceLock<Program> = OnceLock::new();
 
 /// Adds the one program that [`Program::find`] is to know besides [`ALL`].
 pub fn add(program: Program) {
-    // A second one is not found, which `find` says.
+    // `find` does not find a second one.
     let _ = MORE.set(program);
 }
 

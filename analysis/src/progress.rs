@@ -1,4 +1,4 @@
-//! Progress bars: on standard error, only where somebody is watching, only for what takes long.
+//! Progress bars on standard error: only on a terminal and only for long operations.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 

@@ -15,9 +15,9 @@ use crate::verdict::{Enclosure, RuleAnswer, Verdict, VerdictReport};
 pub struct Page<'p> {
     /// The judged scene.
     pub report: &'p VerdictReport,
-    /// What it was read from.
+    /// Its source file.
     pub file: &'p SceneFile,
-    /// Where that is, as somebody named it.
+    /// Its path, as the user gave it.
     pub path: &'p str,
     /// The day, as 2026-03-14.
     pub date: String,
@@ -125,7 +125,7 @@ fn origin(page: &Page<'_>) -> Markup {
     html! { p id="origin" { "Of " (page.path) ", by haptic " (version) ", on " (page.date) "." } }
 }
 
-/// Environment, device and hand, with all that the file says of them.
+/// Environment, device and hand, with all of their keys.
 fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     let mut rows = vec![("Environment", write::kind(&file.scene.environment).to_owned())];
     let number = |name, value: f64, unit| (name, format!("{} {unit}", significant(value, 6)));

@@ -42,7 +42,7 @@ pub enum TableError {
         file: String,
         /// The line.
         line: u64,
-        /// What is wrong with it.
+        /// The error in it.
         message: String,
     },
     /// A field is not what its column holds.
@@ -78,7 +78,7 @@ pub enum TableError {
 /// A column by its names, and what stands in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// What it may be called, in small letters, the first that is there before the others.
+    /// Its possible names, in small letters; the first one present is taken.
     pub names: &'static [&'static str],
     /// What a field of it must be.
     pub bound: &'static str,
@@ -210,7 +210,7 @@ impl Row<'_> {
         value.ok_or_else(|| self.bad(place, place.bound))
     }
 
-    /// What is wrong with the field in a column, where that depends on the rows before.
+    /// The error for a field in a column that conflicts with the rows before.
     pub fn bad(&self, place: FoundColumn, bound: &str) -> TableError {
         TableError::BadField {
             file: self.file.to_owned(),

@@ -1,11 +1,11 @@
-//! What the terminal is that somebody reads on: its colours and its width.
+//! Properties of the terminal: its colours and its width.
 
 use std::io::{stderr, stdout};
 
 use terminal_size::{Height, Width, terminal_size_of};
 
-/// Whether colours may be written to a stream that is a terminal: not where somebody has set
-/// `NO_COLOR` (no-color.org), and not where the terminal can do nothing but letters.
+/// Whether colours may be written to a stream that is a terminal: not if `NO_COLOR`
+/// (no-color.org) is set, and not if the terminal shows letters only.
 pub fn has_colour(is_terminal: bool) -> bool {
     let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     is_terminal && !unwanted && !is_dumb()

@@ -68,16 +68,16 @@ pub struct Enclosure {
     pub hi: Option<f64>,
 }
 
-/// What encoder, numbers and converter do to the torque at rest, in N m.
+/// Torque errors at rest by encoder, numbers and DAC, in N m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtRest {
-    /// The most that the encoder's step moves it; `None`: not stated.
+    /// Bound for the encoder's step; `None`: not stated.
     pub encoder: Option<f64>,
-    /// The most that the rounding of numbers moves it.
+    /// Bound for the rounding of numbers.
     pub numbers: f64,
-    /// The most that the converter's step moves it; `None`: not stated.
+    /// Bound for the DAC's step; `None`: not stated.
     pub converter: Option<f64>,
-    /// All of them: what it may hum by, and the friction that prevents that.
+    /// The sum: bound on the limit cycle, and the friction that prevents it.
     pub hum: f64,
     /// Declared friction of the device; `None`: not stated.
     pub friction: Option<f64>,

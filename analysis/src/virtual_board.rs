@@ -196,7 +196,7 @@ impl VirtualBoard {
     fn end(&mut self) -> io::Result<VirtualBoardReport> {
         self.input = None;
         while self.bytes::<1>()? != [END] {
-            // A sample that nobody has asked for: behind its mark, code and amplifier.
+            // Skips an unread sample: code and amplifier follow its mark.
             let [_, _, _, low, high] = self.bytes()?;
             let length = u16::from_le_bytes([low, high]).into();
             io::copy(&mut (&mut self.output).take(length), &mut io::sink())?;
@@ -226,7 +226,7 @@ impl VirtualBoard {
     fn stopped(&mut self, noticed: &io::Error) -> VirtualBoardError {
         self.input = None;
         let mut said = String::new();
-        // Whoever says nothing more has ended.
+        // The read ends with the process.
         if let Some(errors) = self.process.stderr.as_mut() {
             let _ = errors.read_to_string(&mut said);
         }

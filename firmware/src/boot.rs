@@ -1,6 +1,6 @@
 //! From reset to a servo that may run, in an order in which nothing can move by surprise:
-//! amplifier off, converter at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays off
-//! until the servo is armed, which is the host's to ask for: see [`Arming`].
+//! amplifier off, DAC at mid-scale, self-check, encoder zeroed, watchdog. The amplifier stays off until
+//! the servo is armed, by default by the host: see [`Arming`].
 
 use core::hint::black_box;
 
@@ -19,7 +19,7 @@ use crate::step::Step;
 use crate::transducers::Transducers;
 use crate::tuning::{self, Prepared, Tunable};
 
-/// What a board has besides, before its servo runs.
+/// The hardware before the servo runs.
 pub trait Startup: Hardware {
     /// Sets the encoder's counter to zero: where the device is now is its zero.
     fn zero_encoder(&mut self);
@@ -33,7 +33,7 @@ pub trait Startup: Hardware {
     fn period(&self) -> u32;
 }
 
-/// What a program brings.
+/// Data of a program.
 #[derive(Clone, Copy, Debug)]
 pub struct Program<E> {
     /// The scene that was certified when the program was compiled.
@@ -42,16 +42,16 @@ pub struct Program<E> {
     pub transducers: Transducers,
     /// How the scene is rendered.
     pub rendering: RenderingOptions,
-    /// What the cycle does beside it.
+    /// Options of the cycle.
     pub options: Options,
 }
 
 impl<E: Copy> Program<E> {
-    /// Whether a board could run with these numbers, as far as that is the same for every number
-    /// format. The scene's certificate is another matter.
+    /// Whether a board can run with these numbers in any number format. The scene's certificate is
+    /// not checked here.
     ///
     /// # Errors
-    /// What is wrong, with its value and its bound.
+    /// The invalid number and its bound.
     pub const fn check(&self) -> Result<(), BuildError> {
         let Scene { timing, torque_limit, .. } = self.scene;
         if let Err(error) = period::check(timing.period) {
@@ -66,7 +66,7 @@ impl<E: Copy> Program<E> {
         BuildError::unless_positive("link's timeout", self.options.link_timeout)
     }
 
-    /// For constants: the same program, or a compile error that says what no board could run with.
+    /// For constants: the same program, or a compile error that names the invalid number.
     ///
     /// # Panics
     /// Where [`Program::check`] fails; in a constant that is the compile error.
@@ -95,11 +95,11 @@ pub struct Booted<E: Discretize<N>, N: Number, M> {
 }
 
 /// Everything up to the first tick. The servo stays off until the host arms it, unless its program
-/// says that it is armed at power-on, and this is one.
+/// arms it at power-on, and this is one.
 ///
 /// # Errors
-/// Where the self-check fails: in which step, whose reason [`tuning::explain`] has. The amplifier is off and
-/// the converter at mid-scale then.
+/// Where the self-check fails: the step, whose reason [`tuning::explain`] has. The amplifier is then off
+/// and the DAC at mid-scale.
 pub fn boot<E, N, M>(
     program: &Program<E>,
     hardware: &mut impl Startup,
@@ -129,7 +129,7 @@ where
     Ok(Booted { servo_loop, margin, reset, previous_fault, arms_because })
 }
 
-/// Why a servo may arm itself: only where its program says so, and only where the supply was switched
+/// Why a servo may arm itself: only if its program permits it, and only where the supply was switched
 /// on. Any other reset may come while a hand is on the device.
 fn reason_to_arm(
     options: &Options,
@@ -147,7 +147,7 @@ fn reason_to_arm(
 /// Reads the fault from before the reset.
 fn read_previous_fault(hardware: &mut impl Startup, reset: ResetCause) -> Option<FaultRecord> {
     let by_watchdog = reset == ResetCause::IndependentWatchdog;
-    // A panic or a hard fault lets the watchdog reset the board: what it wrote says more.
+    // A panic or a hard fault ends in a watchdog reset: its record is more specific.
     FaultRecord::decode(&hardware.stored_fault()).or(by_watchdog.then_some(FaultRecord {
         fault: Fault::Watchdog,
         tick: 0,

@@ -10,21 +10,21 @@ use crate::text::Sentence;
 pub enum BuildError {
     /// A scale, a period or a limit is zero, negative or not finite.
     NotPositive {
-        /// What it is.
+        /// Its name.
         name: &'static str,
-        /// What was given.
+        /// Its value.
         value: f64,
     },
-    /// The scene's torque limit is above what the converter can give.
+    /// The scene's torque limit is above the DAC range.
     TorqueLimit {
         /// The scene's limit in N m.
         limit: f64,
-        /// The torque at the converter's largest code in N m.
+        /// The torque at the DAC's largest code in N m.
         full_scale: f64,
     },
     /// A constant of the scene does not fit the number format.
     Unrepresentable {
-        /// What it is.
+        /// Its name.
         name: &'static str,
         /// Value, bound and format.
         reason: OutOfRange,
@@ -44,7 +44,7 @@ pub enum BuildError {
     },
     /// The environment is delayed by more samples than are stored.
     Delay {
-        /// What was asked for.
+        /// The given delay.
         delay: usize,
         /// The most that there is.
         largest: usize,
@@ -64,7 +64,7 @@ pub enum BuildError {
     Injection {
         /// The damping in N m s/rad.
         damping: f64,
-        /// What it has to stay below in N m s/rad.
+        /// Its upper bound in N m s/rad.
         room: f64,
     },
     /// The encoder's counter would wrap unseen at the largest speed.
@@ -86,7 +86,7 @@ pub enum BuildError {
 }
 
 impl BuildError {
-    /// Refuses what is not positive and finite.
+    /// Rejects all but positive, finite values.
     pub(crate) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             Ok(())
@@ -95,7 +95,7 @@ impl BuildError {
         }
     }
 
-    /// Rounds a coefficient, or says which one does not fit.
+    /// Rounds a coefficient; the error names it.
     ///
     /// # Errors
     /// Where the number format does not hold it.
@@ -103,7 +103,7 @@ impl BuildError {
         N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }
 
-    /// Rounds an angle or a torque, or says which one does not fit.
+    /// Rounds an angle or a torque; the error names it.
     ///
     /// # Errors
     /// Where the number format does not hold it.

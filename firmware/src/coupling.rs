@@ -8,8 +8,8 @@
 //! F = v + f (x_E - x) = v - F f / K_vc,   so   F = v / (1 + f / K_vc),
 //! ```
 //!
-//! and that gain is known before the servo starts. The environment is always asked for the value
-//! at `x`, never for an intercept: near the state where it rests no large numbers cancel.
+//! and that gain is known before the servo starts. The environment always returns the value at
+//! `x`, never an intercept: near its state of rest no large numbers cancel.
 
 use crate::build_error::BuildError;
 use crate::number::{Number, Rounding};

@@ -57,8 +57,8 @@ impl DacCode {
     }
 }
 
-/// What a DAC's output is good for: near its rails the output buffer saturates, where a torque
-/// would be less than its code says.
+/// The usable range of a DAC's output: near its rails the output buffer saturates, and the torque
+/// is less than that of the code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputRange {
     /// The least that the DAC's supply and reference can be, in V.
@@ -83,7 +83,7 @@ impl OutputRange {
         if !(lost >= 0.0 && lost <= above as f64) {
             return 0;
         }
-        // The cast rounds down what is positive.
+        // The cast rounds down a positive number.
         (above as f64 - lost) as u16
     }
 }

@@ -29,7 +29,7 @@ pub enum CounterWidth {
 pub struct RawCount(u32);
 
 impl RawCount {
-    /// The content, with whatever is above the counter's width.
+    /// The content, with bits above the counter's width.
     #[inline(always)]
     pub const fn bits(self) -> u32 {
         self.0

@@ -20,10 +20,10 @@ pub mod torque;
 
 pub mod dac;
 
-// Sensor and motor, as a servo is told of them.
+// Numbers of sensor and motor, for a servo.
 pub mod transducers;
 
-// What a device is measured with, before anything is certified for it.
+// Measurement of a device, before certification.
 pub mod excitation;
 
 // What carries the servo on a board: one interrupt a period, from reset to fault.
@@ -38,7 +38,7 @@ pub mod passivity;
 pub mod scene;
 pub mod servo;
 
-// What the modules above share.
+// Shared by the modules above.
 pub mod build_error;
 pub mod number;
 pub mod output_timing;
@@ -47,7 +47,7 @@ pub mod period;
 pub mod step;
 pub mod text;
 
-// What a board says to its host, and what it hears.
+// The protocol between a board and its host.
 #[cfg(feature = "wire")]
 pub mod wire;
 

@@ -1,7 +1,7 @@
 //! When a count is read, and when the torque that it gives reaches the motor.
 //!
-//! A force takes time from count to motor. A scene says by how many whole samples its environment
-//! is late; a board says when its codes appear; both have to agree, which the compiler sees to by
+//! A force takes time from count to motor. A scene states the delay of its environment in whole
+//! samples, a board the instant at which its codes appear. The compiler checks that both agree, by
 //! [`SupportsTiming`](crate::environment::SupportsTiming).
 
 mod sealed {
@@ -32,7 +32,7 @@ pub enum OutputTiming {
 pub struct Latched;
 
 /// Count and torque belong to the same instant: a simulation, or an emulated board in lockstep
-/// with one. No converter can do this.
+/// with one. No DAC can do this.
 #[derive(Clone, Copy, Debug)]
 pub struct Simultaneous;
 
@@ -48,7 +48,7 @@ impl OutputMode for Simultaneous {
 }
 
 /// Time in s after the beginning of its period in which a tick reads its count, where torques are
-/// latched: the interrupt's own latency, and what other instructions add. The certificate of a board
-/// covers counts that are read as late as this, and later ones are told by
+/// latched: the interrupt's own latency, and that by other instructions. The certificate of a board
+/// covers counts that are read as late as this; later ones set
 /// [`BEGAN_LATE`](crate::servo_loop::BEGAN_LATE).
 pub const READ_WITHIN: f64 = 1e-6;

@@ -1,5 +1,5 @@
-//! The numbers of a scene by name: one table of their keys, names, units and ranges, and the traits by
-//! which a scene is asked for a number.
+//! The numbers of a scene by name: one table of their keys, names, units and ranges, and the traits
+//! that read and set a number.
 //!
 //! A parameter is added here, in the environment that has it ([`NamedParameters`]), and, if a scene
 //! file shall have it, as a row of the reference of scene files.
@@ -10,7 +10,7 @@ pub const MAX_DEGREE: usize = 8;
 /// Longest delay in samples.
 pub const MAX_DELAY: usize = 8;
 
-/// The values of a parameter that make sense at all, whatever the rest of the scene is.
+/// The values of a parameter that are valid in some scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Any finite number.
@@ -101,8 +101,8 @@ parameters! {
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
-/// The device is what it is and changes by no message; period and delay are those that the
-/// program was compiled and its board was set up for.
+/// No message can change the device; period and delay are fixed when the program is compiled and
+/// its board is set up.
 pub const TUNABLE: [(&str, Parameter); 7] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),

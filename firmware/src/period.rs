@@ -7,16 +7,16 @@ use crate::build_error::BuildError;
 pub const PATIENCE: f64 = 8.0;
 /// Counts of the watchdog's clock a second, behind the prescaler of 4 that it has out of reset.
 pub const WATCHDOG_CLOCK: f64 = 32_000.0 / 4.0;
-/// What the watchdog counts down from at most.
+/// Largest start of the watchdog's count.
 const WATCHDOG_LONGEST: f64 = 4095.0;
 
-/// The shortest period in s: 1700 cycles of a board's processor, of which a tick takes some hundreds
-/// and what is below it has to have the most.
+/// The shortest period in s: 1700 cycles of a board's processor. A tick takes some hundreds of them,
+/// and the tasks below need the most.
 pub const SHORTEST: f64 = 1e-5;
 /// The longest period in s that the watchdog has its patience with.
 pub const LONGEST: f64 = (WATCHDOG_LONGEST - 1.0) / WATCHDOG_CLOCK / PATIENCE;
 
-/// Refuses what is not between them.
+/// Rejects any other period.
 ///
 /// # Errors
 /// [`BuildError::Period`].

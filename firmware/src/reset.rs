@@ -16,7 +16,7 @@ pub enum ResetCause {
     BrownOut = 2,
     /// The reset pin: a button, or a debug probe.
     Pin = 3,
-    /// The program asked for it, or a debug probe by the core's register.
+    /// Requested by the program, or by a debug probe through a register.
     Software = 4,
     /// The independent watchdog: the servo's interrupt stopped coming.
     IndependentWatchdog = 5,

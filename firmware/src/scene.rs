@@ -1,4 +1,4 @@
-//! What a person asks for, in plain SI numbers: a device, a period, a coupling, an environment.
+//! A scene in SI units: a device, a period, a coupling, an environment.
 //!
 //! Nothing here is checked. [`crate::certificate`] turns a [`Scene`] into a `Certified<Scene>`,
 //! and only that can become a servo.
@@ -22,11 +22,11 @@ pub struct Scene<E = Environment> {
     pub timing: Timing,
     /// What connects the device to the environment.
     pub coupling: Coupling,
-    /// What the hand shall feel.
+    /// The environment.
     pub environment: E,
     /// Largest coupling torque in N m, applied between environment and coupling so that
     /// saturation stays inside the certificate (theory, end of section 5). `None`: the scene is
-    /// linear, and the certificate assumes that the converter never saturates.
+    /// linear, and the certificate assumes that the DAC never saturates.
     pub torque_limit: Option<f64>,
 }
 
@@ -54,7 +54,7 @@ pub struct Timing {
 }
 
 impl<E> Scene<E> {
-    /// What an environment is told of the rest of the scene.
+    /// The rest of the scene, for the environment.
     pub(crate) const fn context(&self) -> LawContext {
         LawContext {
             period: self.timing.period,
@@ -63,7 +63,7 @@ impl<E> Scene<E> {
         }
     }
 
-    /// What the environment's coefficients depend on.
+    /// Inputs of the coefficients.
     pub(crate) fn setting(&self) -> Result<LawContext, BuildError> {
         let (period, coupling) = (self.timing.period, self.coupling);
         BuildError::unless_positive("period", period)?;
@@ -75,7 +75,7 @@ impl<E> Scene<E> {
 }
 
 impl<E> Scene<E> {
-    /// What the coupling and the torque limit may be changed to while the servo runs.
+    /// Tunable values of the coupling and the torque limit.
     const fn tunable(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (parameter, &mut self.coupling) {
             (Parameter::CouplingStiffness, Coupling::Spring { stiffness }) => Some(stiffness),
@@ -85,7 +85,7 @@ impl<E> Scene<E> {
     }
 }
 
-/// What may be changed while the servo runs, and what the environment has besides.
+/// The tunable parameters, and the environment's own.
 impl<E: NamedParameters> NamedParameters for Scene<E> {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match parameter {

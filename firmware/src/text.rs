@@ -148,7 +148,7 @@ impl fmt::Display for ShortF64 {
     }
 }
 
-/// A figure for a person, to three digits and not below what it is, to a part in 10^12.
+/// A number for people, rounded up to three digits, to a part in 10^12.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundUp3(pub f64);
 
@@ -235,7 +235,7 @@ mod tests {
         ] {
             assert_eq!(RoundUp3(value).to_string(), wanted);
         }
-        // What has no digits to round to is an answer as well.
+        // A number without digits is an answer as well.
         for value in [f64::MAX, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 5e-324, -1.0] {
             assert!(!RoundUp3(value).to_string().is_empty());
         }

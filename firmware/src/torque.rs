@@ -6,7 +6,7 @@ use core::hint::cold_path;
 
 use crate::number::Number;
 
-/// Why a tick's output is less than the environment asked for. This is telemetry, not a fault.
+/// Why a tick's output is below the environment's torque. This is telemetry, not a fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -55,22 +55,22 @@ impl fmt::Display for LimitReason {
 /// The level is the scene's bound, except while the servo fades in or out: then it moves by a
 /// fixed step a tick. A scene is faded only if it passes with a torque limit at any level
 /// ([`TimingChecked`](crate::certificate::TimingChecked) asks for that, of linear scenes too): many that are certified
-/// without a limit oscillate with one. What is ramped is the clamp and never the stiffness, since a
+/// without a limit oscillate with one. The ramp moves the clamp and never the stiffness, since a
 /// changing stiffness is outside of the certificate.
 #[derive(Clone, Copy, Debug)]
 pub struct Limiter<N> {
     level: N,
     bound: N,
     step: N,
-    /// Why the bound is what it is.
+    /// The reason for the bound.
     reason: LimitReason,
-    /// Why the level is what it is: that, or the ramp.
+    /// The reason for the level: that, or the ramp.
     because: LimitReason,
 }
 
 impl<N: Number> Limiter<N> {
     /// An open limiter with its bound in N m, and the reason that it reports; with an infinite
-    /// bound only what is not a number is limited. It opens and closes in one step.
+    /// bound it limits NaN alone. It opens and closes in one step.
     pub const fn new(bound: N, reason: LimitReason) -> Self {
         Self { level: bound, bound, step: bound, reason, because: reason }
     }
@@ -80,7 +80,7 @@ impl<N: Number> Limiter<N> {
         Self { step, ..self }
     }
 
-    /// The torque within bounds, and why it is not the one asked for; `otherwise` where it is.
+    /// The torque within bounds, and the reason if it was limited; `otherwise` if not.
     #[inline(always)]
     pub fn limit(&self, wanted: N, otherwise: LimitReason) -> (N, LimitReason) {
         if wanted.within(self.level) {

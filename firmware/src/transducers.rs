@@ -17,8 +17,8 @@ pub struct Transducers {
     pub counts_per_turn: f64,
     /// Bits after which the counter wraps.
     pub counter: CounterWidth,
-    /// Torque of the motor on the device's axis in N m at the largest code that every board's
-    /// converter gives, [`DacCode::CODES_TO_FULL_SCALE`] from mid-scale.
+    /// Torque of the motor on the device's axis in N m at the largest code that every board's DAC
+    /// outputs, [`DacCode::CODES_TO_FULL_SCALE`] from mid-scale.
     pub full_scale_torque: f64,
     /// The fastest in rad/s that the device can turn in any hand: a count that needs more speed
     /// than this is a broken encoder, and a fault.
@@ -30,10 +30,10 @@ impl Transducers {
     /// [`Transducers::largest_speed`] where the device is not known better.
     pub const NO_HAND_IS_FASTER: f64 = 100.0;
 
-    /// Whether a servo can work between them with this timing and this torque limit.
+    /// Whether a servo can run with them, this timing and this torque limit.
     ///
     /// # Errors
-    /// What is wrong, with its value and its bound.
+    /// The invalid number and its bound.
     pub const fn check(&self, timing: Timing, limit: Option<f64>) -> Result<(), BuildError> {
         if let Err(error) = self.codes_per_torque() {
             return Err(error);

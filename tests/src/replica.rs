@@ -13,7 +13,7 @@ use firmware::tuning::{self, Tunable};
 
 /// Timer counts in a period.
 const PERIOD: u32 = 1000;
-/// Frames that the queue holds; nobody reads them here.
+/// Length of the frame queue, which is never read here.
 const FRAMES: usize = 2;
 
 /// The board's lines, as the test sets and reads them.

@@ -74,7 +74,7 @@ fn wait(mut build: Child) -> io::Result<ExitStatus> {
 
 fn show(seconds: u64, shows: bool) {
     const WHAT: &str = "building haptic, which takes minutes the first time";
-    // Nobody is left to be told if this fails.
+    // No output is left if this fails.
     let _ = match shows {
         true => write!(io::stderr(), "\r{WHAT} ({seconds} s)\x1b[K"),
         false => writeln!(io::stderr(), "{WHAT}"),

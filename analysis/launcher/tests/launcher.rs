@@ -1,4 +1,4 @@
-//! What somebody sees of a build who has asked for an answer; cargo and `haptic` are scripts.
+//! The launcher's output during a build and after it; cargo and `haptic` are scripts.
 
 use std::fs;
 use std::path::Path;

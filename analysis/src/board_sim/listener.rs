@@ -20,7 +20,7 @@ use crate::link::Address;
 /// Bytes that are read at a time: what a serial port would have collected in a few milliseconds.
 const BYTES: usize = 256;
 
-/// What is wrong with an address that is none of a socket.
+/// The error for an address that is not a socket's.
 const NO_SOCKET: &str = "a simulated board listens on a socket, tcp://HOST:PORT or unix:PATH, not \
                          on a serial port";
 
@@ -69,7 +69,7 @@ impl Listener {
         Ok((Self { socket, client: None, next: None }, address))
     }
 
-    /// Carries bytes between the session and whoever is connected; gives whether there were any.
+    /// Carries bytes between the session and the client; returns whether there were any.
     pub(super) fn exchange<E, N, M, const LENGTH: usize>(
         &mut self,
         session: &mut Session<'_, E, N, M, LENGTH>,
@@ -82,7 +82,7 @@ impl Listener {
         self.reject_other_clients();
         let Some(client) = &mut self.client else {
             session.poll();
-            // Nobody listens: as on a serial line, what is sent is gone.
+            // Without a client bytes are lost, as on a serial line.
             session.sent(session.outgoing().len());
             self.client = self.accept();
             return false;
@@ -96,11 +96,11 @@ impl Listener {
         }
     }
 
-    /// Sends what the stream takes of these bytes, and gives what has come in.
+    /// Sends as many bytes as the stream takes, and returns those received.
     pub(super) fn carry_bytes(&mut self, outgoing: &mut Vec<u8>) -> Vec<u8> {
         self.reject_other_clients();
         let Some(client) = &mut self.client else {
-            // Nobody listens: as on a serial line, what is sent is gone.
+            // Without a client bytes are lost, as on a serial line.
             outgoing.clear();
             self.client = self.accept();
             return Vec::new();
@@ -138,7 +138,7 @@ fn bind_unix(path: &Path) -> io::Result<UnixListener> {
 }
 
 impl Listener {
-    /// Whoever is next.
+    /// The next client.
     fn accept(&mut self) -> Option<Box<dyn Stream>> {
         self.next.take().map(|(_, next)| next).or_else(|| self.socket.accept())
     }
@@ -156,7 +156,7 @@ impl Listener {
     }
 }
 
-/// What has come in; [`ErrorKind::UnexpectedEof`] once the other end is closed.
+/// Received bytes; [`ErrorKind::UnexpectedEof`] once the other end is closed.
 fn received<'a>(client: &mut dyn Stream, bytes: &'a mut [u8]) -> io::Result<&'a [u8]> {
     match client.read(bytes) {
         Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
@@ -231,7 +231,7 @@ fn unix(stream: UnixStream) -> io::Result<Box<dyn Stream>> {
 impl Drop for Socket {
     fn drop(&mut self) {
         if let Self::Unix(_, path) = self {
-            // Somebody may have removed it already.
+            // The file may be gone already.
             let _ = std::fs::remove_file(path);
         }
     }

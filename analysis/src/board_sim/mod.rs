@@ -1,8 +1,8 @@
 //! A simulated board with a simulated device, behind a socket: a thread with the same
-//! cycle and the same wire as a real one, or a virtual board with what is flashed.
+//! cycle and wire as a real one, or a virtual board with the flashed program.
 //!
-//! Its time is that of its ticks, of which it does as many as a real board would, or all that it
-//! can. A tick is never late here; what may make a real one late is another matter.
+//! Its time is that of its ticks, at the rate of a real board or as fast as it can. No tick is late
+//! here, unlike on a real board.
 
 mod listener;
 mod plant_hardware;
@@ -124,7 +124,7 @@ impl SimulatedBoard {
         &self.address
     }
 
-    /// Whether it has ended by itself: [`Self::end`] says why.
+    /// Whether it has ended by itself, as [`Self::end`] explains.
     pub fn has_ended(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
@@ -146,7 +146,7 @@ impl Drop for SimulatedBoard {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // What went wrong in it, somebody who wanted to know has asked for.
+            // `end` reports errors of the thread; here they are dropped.
             let _ = thread.join();
         }
     }

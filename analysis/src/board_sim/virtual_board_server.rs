@@ -1,4 +1,4 @@
-//! A virtual board with what is flashed, around a simulated device and behind a socket.
+//! A virtual board with the flashed program and a simulated device, behind a socket.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,7 +9,7 @@ use super::listener::Listener;
 use crate::lockstep::PlantIo;
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
-/// Bytes to the board that are told of with one sample: more than its port takes in one.
+/// Bytes to the board with one sample: more than its port takes in a sample.
 const BYTES_PER_SAMPLE: usize = 1024;
 
 /// Runs a board's samples as a real one's would pass, or all that it can where `period` is none.

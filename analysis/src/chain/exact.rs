@@ -8,15 +8,15 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Pow, Zero};
 
-/// `digits * 10^power`: the shortest decimal that a finite double stands for, which is what
-/// somebody wrote.
+/// `digits * 10^power`: the shortest decimal of a finite double, which is the number as the
+/// user wrote it.
 pub struct Decimal {
     digits: BigInt,
     power: i32,
 }
 
 impl Decimal {
-    /// The decimal of a finite number; 0 for what is not finite.
+    /// The decimal of a number; 0 if it is not finite.
     pub fn of(value: f64) -> Self {
         let text = format!("{value:e}");
         let (mantissa, exponent) = text.split_once('e').unwrap_or(("0", "0"));

@@ -81,9 +81,9 @@ pub enum ChainError {
     OutOfBounds {
         /// Which number.
         what: String,
-        /// What it is.
+        /// Its value.
         value: f64,
-        /// What it must be.
+        /// Its range.
         bound: &'static str,
     },
     /// A link without spring and damper.

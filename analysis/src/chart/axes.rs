@@ -17,7 +17,7 @@ pub fn chart<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'static, SVGBackend
     chart
 }
 
-/// What is written along the axes.
+/// Labels of the axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Axes<'n> {
     /// Name of the horizontal axis, with its unit; none where it is that of the chart below.
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(written(Scale::logarithmic(&(1e-5..1.0)), &[1e-5, 0.1]), ["1e-5", "1e-1"]);
         let small = Scale::linear(&(0.0..2e-4));
         assert_eq!(written(small, &[0.0, 5e-5, 1.5e-4]), ["0", "5e-5", "1.5e-4"]);
-        // Beside one that needs exponents, another has them, too.
+        // If one axis needs exponents, both have them.
         let plain = Scale::logarithmic(&(3.0..3e6));
         assert!(plain.is_plain());
         assert_eq!(written(plain.with_exponents(), &decades[..2]), ["1e1", "1e6"]);

@@ -17,7 +17,7 @@ const ROW: i32 = 20;
 const PANELS: [i32; 2] = [290, 270];
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 40;
-/// Decades above and below a gain of 1 that are shown unless somebody asks for more.
+/// Decades that are shown above and below a gain of 1 by default.
 const DECADES: f64 = 3.0;
 /// A margin's line.
 const MARK: Dash = Dash::new(&[3, 3]);
@@ -186,7 +186,7 @@ impl<'a, 'b, F: Fn(f64) -> f64> Logarithmic<'a, 'b, F> {
     }
 }
 
-/// What is said about each loop, in a line each.
+/// The margins of each loop, in a line each.
 pub fn words(loops: &[(String, OpenLoop)]) -> Vec<String> {
     let of = |(name, found): &(String, OpenLoop)| {
         let at = |margin: Margin| format!("at {} Hz", significant(margin.hertz, 3));

@@ -1,4 +1,4 @@
-//! Broken lines that can be told apart without colour.
+//! Dash patterns that differ without colour.
 
 use plotters::prelude::*;
 

@@ -60,7 +60,7 @@ pub enum ChartError {
         /// Why.
         why: Unbuildable,
     },
-    /// An axis was asked for where nothing is.
+    /// The requested axis has no data.
     #[error(
         "there is nothing to draw from {} to {} on the {axis} axis: the data go from {} to {}",
         number(wanted.start), number(wanted.end), number(there.start), number(there.end)
@@ -68,7 +68,7 @@ pub enum ChartError {
     NothingThere {
         /// Horizontal or vertical.
         axis: &'static str,
-        /// What was asked for.
+        /// The request.
         wanted: Range<f64>,
         /// What there is.
         there: Range<f64>,

@@ -29,8 +29,8 @@ type LogPlane<'a, 'b> = ChartContext<
     >,
 >;
 
-/// Draws the devices beside each other: curves of what each method takes for the largest stable
-/// stiffness, grey where one calls stable what is not, hatched where one calls unstable what is.
+/// Draws the devices beside each other: curves of each method's largest stable stiffness, grey
+/// where a method calls an unstable loop stable, hatched where it calls a stable one unstable.
 ///
 /// # Errors
 /// Where it cannot be drawn.

@@ -1,4 +1,4 @@
-//! Fill patterns that can be told apart without colour, also where they are a pixel wide.
+//! Fill patterns that differ without colour, also at a width of one pixel.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a measurement says of a device: its responses in the disk of their passivity, and the
+//! Result of a measurement of a device: its responses in the disk of their passivity, and the
 //! damping and inertia that explain them (theory, section 3.3).
 
 use std::f64::consts::TAU;
@@ -140,7 +140,7 @@ fn name_curves(chart: &mut Plane<'_, '_>, found: &Identification, far: f64) -> D
     Ok(())
 }
 
-/// What was fitted.
+/// The fitted one.
 fn model(found: &Identification) -> String {
     match skew(found) {
         0.0 => "1/(b + j w m) fitted".to_owned(),

@@ -18,7 +18,7 @@ const SAME: f64 = units(3) as f64;
 const OWN: f64 = 1.5;
 /// A line to a name keeps so far from other points.
 const PAST: f64 = units(6) as f64;
-/// Places along a line to a name at which is looked for what it passes.
+/// Points along a leader line at which collisions are tested.
 const STEPS: i32 = 20;
 /// Directions in which a place is looked for, first to the right and above.
 const DIRECTIONS: usize = 32;
@@ -64,7 +64,7 @@ impl Block {
     }
 }
 
-/// What is taken of a panel.
+/// Used space of a panel.
 #[derive(Clone, Debug)]
 pub struct Labels {
     panel: Block,
@@ -77,7 +77,7 @@ pub struct Labels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Spot {
     block: Block,
-    /// Whether it takes a line to say what it is the name of.
+    /// Whether it needs a line to its point.
     is_led: bool,
 }
 
@@ -153,7 +153,7 @@ impl Labels {
         own.map(spot(false)).or_else(|| led().map(spot(true)))
     }
 
-    /// Whether nobody takes a name there for that of another point.
+    /// Whether a name there is closest to its own point.
     fn is_own(&self, point: (i32, i32), block: &Block) -> bool {
         let others = self.points.iter().filter(|other| distance(point, **other) > SAME);
         let own = block.distance(point);

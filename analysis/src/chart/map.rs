@@ -16,7 +16,7 @@ const ROW: i32 = 22;
 /// What a map is drawn with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
-    /// What it is called.
+    /// Its title.
     pub title: String,
     /// The border that a closed form gives, where there is one.
     pub border: Option<Border>,
@@ -54,7 +54,7 @@ fn name(region: Region) -> &'static str {
     }
 }
 
-/// The regions of the legend, the best first; what is rarely there only where it is.
+/// The regions of the legend, the best first; rare ones only if present.
 fn named(map: &Map) -> Vec<Region> {
     let is_named = |region: &Region| hatching(*region).is_none() || map.share(*region) > 0.0;
     Region::ALL.into_iter().rev().filter(is_named).collect()

@@ -1,5 +1,5 @@
-//! Pictures as SVG: black on white, told apart by line style and labelled where they are, so that
-//! they can be read in print.
+//! Charts as SVG: black on white, curves distinguished by line style and labelled in place, to
+//! be readable in print.
 
 pub mod axes;
 pub mod bode;
@@ -58,7 +58,7 @@ const MARGIN_RIGHT: i32 = units(24);
 const X_LABELS: i32 = units(48);
 /// The same for a vertical axis.
 const Y_LABELS: i32 = units(78);
-/// Grey of what is not allowed.
+/// Grey of forbidden regions.
 const FORBIDDEN: RGBColor = RGBColor(225, 225, 225);
 /// Grey of a curve that is shown beside what counts.
 const FAINT: RGBColor = RGBColor(150, 150, 150);
@@ -86,7 +86,7 @@ fn broken(
     DashedLineSeries::new(points, units(ink), units(gap), pen(width))
 }
 
-/// Ranges of the axes that somebody asks for in place of the usual ones.
+/// Ranges of the axes, in place of the default ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
     /// Along the horizontal axis.
@@ -95,7 +95,7 @@ pub struct Window {
     pub y: Option<Range<f64>>,
 }
 
-/// Refuses an axis, if one is asked for, on which nothing of this range would be seen.
+/// Rejects a requested axis that shows nothing of this range.
 fn meets(
     axis: &'static str,
     wanted: Option<&Range<f64>>,
@@ -158,7 +158,7 @@ fn padded(range: Range<f64>, part: f64) -> Range<f64> {
     middle - half..middle + half
 }
 
-/// Whether a value can be on an axis: so far from what is not finite that ranges do not overflow.
+/// Whether a value can be on an axis: small enough that ranges do not overflow.
 fn is_drawable(value: f64) -> bool {
     value.abs() <= 1e300
 }

@@ -1,6 +1,6 @@
 //! Smaller pictures: a broken line is drawn as hundreds of short ones, which are one path.
 
-/// What a stroke that hides what is below it begins with.
+/// Beginning of a stroke that hides others below it.
 const OPAQUE: &str = "<polyline fill=\"none\" opacity=\"1\" ";
 
 /// The same picture with opaque strokes of one style that follow each other as one path. Where strokes of

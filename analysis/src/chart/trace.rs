@@ -56,8 +56,8 @@ const PANELS: [i32; 3] = [226, 186, 264];
 const SIGNS: &str = "signs: angle, velocity and the hand's torque are positive in one direction; \
                      the motor applies minus the coupling torque";
 
-/// Draws position above velocity and torque, over one time axis. Where the torque was limited or a
-/// tick was missed, the fill says why. `wanted` are times and angles to be shown in place of all.
+/// Draws position above velocity and torque, over one time axis. The fill shows why the torque was
+/// limited or a tick was missed. `wanted` are times and angles to be shown in place of all.
 ///
 /// # Errors
 /// Where there are fewer than two samples.
@@ -98,7 +98,7 @@ pub fn trace(trace: &Trace, wanted: &Window) -> Result<Picture, ChartError> {
     })
 }
 
-/// The axis of the angle, unless another is asked for.
+/// The default axis of the angle.
 fn angle_axis(trace: &Trace, times: &Range<f64>) -> Range<f64> {
     let all = seen(&trace.position, trace, times).chain(seen(&trace.hand, trace, times));
     padded(span(all), 0.16)

@@ -1,5 +1,5 @@
-//! Speed against accuracy: for each case and each error a panel with all methods in it, families
-//! told apart by mark and colour, and the front of those that no other beats, with their names.
+//! Speed against accuracy: for each case and each error a panel with all methods, families
+//! distinguished by mark and colour, and the Pareto front with the names of its methods.
 
 use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
@@ -128,7 +128,7 @@ impl Panel<'_> {
         self.table.of(self.case).filter_map(place).collect()
     }
 
-    /// Where a method is drawn; one that fails is drawn at the edge that is the worst.
+    /// Position of a method; a failing method is at the worst edge.
     fn place(&self, method: &Method, top: f64) -> Option<(f64, f64)> {
         let (cost, error) = (method.cost()?, method.error(self.error)?);
         let cost = cost.max(self.table.comparison.cost.floor);

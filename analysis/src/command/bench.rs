@@ -55,12 +55,12 @@ const MAP_BUDGET: f64 = 1e5;
 const COMPILE_BUDGET: f64 = 50.0;
 /// Most instructions that a certificate may take on the target: 20 ms at 170 MHz.
 const CERTIFY_BUDGET: f64 = 3.4e6;
-/// Most instructions that the servo's whole interrupt may take, what the core reads and writes at
-/// encoder and converter included.
+/// Most instructions that the servo's whole interrupt may take, with the accesses to encoder and
+/// DAC.
 const INTERRUPT_BUDGET: f64 = 150.0;
 /// Most per cent of a core that the servo may take.
 const CORE_BUDGET: f64 = 15.0;
-/// Ticks a second of which a core's part is told.
+/// Ticks a second for the share of the CPU.
 const TICK_RATE: f64 = 20e3;
 /// Instructions of a tick of the damper wall in contact and free: plain C at -O3 on the same core,
 /// for the same job without a coupling.
@@ -266,7 +266,7 @@ fn interrupt(name: &str, board: &EmulatorReport, has_budget: bool, figures: &mut
     ));
 }
 
-/// What a set takes that the board certifies, and one that it refuses.
+/// Cost of a set that the board certifies, and of a refused one.
 fn live_sets(name: &str, elf: &Path, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
     for coupling in [LIVE_COUPLING, 2.0 * LIVE_COUPLING] {
         let set = live_set(elf, &[(Parameter::CouplingStiffness, coupling)])?;

@@ -92,13 +92,13 @@ struct Report {
     value: Option<f64>,
     limited: bool,
     possible: bool,
-    /// What was changed in the scenes besides.
+    /// Other changes in the scenes.
     notes: Vec<String>,
     /// The scenes that certify, as TOML.
     scenes: Vec<String>,
 }
 
-/// What is asked for: which end of it, its name, its unit.
+/// The sought number: which end of it, its name, its unit.
 struct SoughtQuantity {
     which: &'static str,
     name: &'static str,
@@ -160,7 +160,7 @@ impl Arguments {
         files.iter().map(|name| self.load(name)).collect()
     }
 
-    /// Reads a scene file. What is written into another folder finds its torque file where it is.
+    /// Reads a scene file. A copy in another folder still finds its torque file.
     fn load(&self, name: &str) -> Result<SceneFile, CommandError> {
         let mut file = file::load(name)?;
         if self.output.is_some()
@@ -224,7 +224,7 @@ fn last_that_certifies(value: f64, unit: &str) -> String {
     }
 }
 
-/// What a design has changed of a scene besides the number that was asked for, as sentences.
+/// A design's changes of a scene besides the sought number, as sentences.
 fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
     let stiffness = |file: &SceneFile| match file.scene.coupling {
         Coupling::Rigid => None,

@@ -21,7 +21,7 @@ pub struct Arguments {
     pub answer: JsonOption,
 }
 
-/// What is known of a device.
+/// The data of a device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// What the person calls it.
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     Ok(if report.delta.is_some() { CommandStatus::Success } else { CommandStatus::NegativeVerdict })
 }
 
-/// What is known of the device of a file.
+/// The data of the device of a file.
 pub fn report(file: &DeviceFile) -> Report {
     let chain = &file.chain;
     let found = chain.excess_passivity();

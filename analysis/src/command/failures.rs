@@ -42,7 +42,7 @@ fn names() -> PossibleValuesParser {
     ALL.iter().map(|case| case.name).chain([WALLS]).collect::<Vec<_>>().into()
 }
 
-/// Everything that was asked for.
+/// All requested results.
 #[derive(Debug, Serialize)]
 struct Found {
     cases: Vec<CaseReport>,

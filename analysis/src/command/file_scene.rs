@@ -1,4 +1,4 @@
-//! What a scene file is run with: its sensor, its motor and its hand, as it says them or as usual.
+//! Sensor, motor and hand of a scene file's run: those of the file or the defaults.
 
 use firmware::encoder::CounterWidth;
 use firmware::servo::Transducers;
@@ -25,7 +25,7 @@ pub fn scene_file(name: &str) -> Result<SceneFile, CommandError> {
     Ok(file::load(name)?)
 }
 
-/// The sensor and the motor of a scene file, as it says them or as they are given.
+/// The sensor and the motor of a scene file: those of the file or those given.
 pub fn transducers_of(
     file: &SceneFile,
     counts_per_turn: Option<f64>,

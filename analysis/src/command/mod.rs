@@ -64,8 +64,8 @@ impl Arguments {
     }
 }
 
-/// Ends the program with a help that was asked for, or with what is wrong with its arguments, which
-/// clap does not break into lines.
+/// Ends the program with the requested help, or with the error in its arguments, which clap does
+/// not wrap.
 fn refuse(error: &clap::Error) -> ! {
     let rendered = error.render();
     let text = |is_terminal| match terminal::has_colour(is_terminal) {
@@ -78,7 +78,7 @@ fn refuse(error: &clap::Error) -> ! {
         std::process::exit(status(said.map_err(CommandError::Output)).into());
     }
     let text = text(io::stderr().is_terminal());
-    // Nobody is left to be told if this fails.
+    // No output is left if this fails.
     let _ = write!(io::stderr(), "{}", terminal::wrapped(&text, terminal::error_width(), 2));
     std::process::exit(error.exit_code())
 }
@@ -192,7 +192,7 @@ fn status(answer: Result<CommandStatus, CommandError>) -> u8 {
     match answer.and_then(|answer| written().map(|()| answer)) {
         Ok(CommandStatus::Success) => 0,
         Ok(CommandStatus::NegativeVerdict) => 1,
-        // Whoever reads the answer has seen enough of it: `haptic ... | head` is no error.
+        // The reader closed the pipe, as in `haptic ... | head`: no error.
         Err(CommandError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => 0,
         Err(error) => {
             print_error(&error);
@@ -208,6 +208,6 @@ fn print_error(error: &CommandError) {
         CommandError::File(error) => error.report_within(colour, width),
         other => terminal::wrapped(&format!("error: {other}"), width, 7),
     };
-    // Nobody is left to be told if this fails.
+    // No output is left if this fails.
     let _ = writeln!(stderr.lock(), "{text}");
 }

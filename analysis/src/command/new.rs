@@ -18,7 +18,7 @@ pub struct Arguments {
     pub from: String,
 }
 
-/// Writes the scene's file, and says where it is and what to do with it.
+/// Writes the scene's file, and prints its path and the next steps.
 ///
 /// # Errors
 /// Where there can be no scene of that name, or there is one.

@@ -36,7 +36,7 @@ pub fn text(outcome: &RunOutcome) -> String {
     rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
 }
 
-/// What is shown of a scene that ran on a board: its verdict, and what it did.
+/// The output for a scene that ran on a board: its verdict and its motion.
 pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) -> String {
     let damping = |value: Option<f64>| {
         value.map_or("none".to_owned(), |value| format!("{} N m s/rad", significant(value, 6)))
@@ -61,8 +61,8 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
 /// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
 const AT_REST: f64 = 1e-3;
 
-/// What keeps a device turning that the hand has let go of: nothing in the linear theory, but the
-/// converter rounds, and the simulated device has no friction at all.
+/// Why a released device keeps turning: the DAC rounds, and the simulated device has no friction at
+/// all. In the linear theory it stops.
 fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let speed = outcome.final_speed.unwrap_or(0.0);
     let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;

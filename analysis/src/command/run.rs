@@ -262,7 +262,7 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
     notes
 }
 
-/// What was built for a run.
+/// Programs built for a run.
 enum Built {
     Nothing,
     Emulated(PathBuf),

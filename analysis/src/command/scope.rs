@@ -42,13 +42,13 @@ pub struct Arguments {
     pub window: Duration,
 }
 
-/// Ticks in a second that are sent where nothing else is asked for: what a serial line carries and
-/// what curves can show.
+/// Ticks a second that are sent by default: as many as a serial line carries and as curves can
+/// show.
 const RATE: f64 = 1000.0;
 /// Time between two pictures.
 const PICTURE: Duration = Duration::from_millis(33);
 
-/// Shows or records what a board says, until the time is up or somebody has seen enough.
+/// Shows or records a board's telemetry until the time is up or the user quits.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let to_output = match &arguments.csv {
         Some(path) => path == Path::new("-"),
@@ -91,7 +91,7 @@ fn create(path: &Path) -> Result<File, CommandError> {
 }
 
 fn every(period: f64) -> NonZeroU32 {
-    // A cast of what is out of range gives the nearest.
+    // The cast saturates.
     NonZeroU32::new((1.0 / (period * RATE)).round() as u32).unwrap_or(NonZeroU32::MIN)
 }
 
@@ -106,7 +106,7 @@ impl Session {
         self.end.is_some_and(|end| Instant::now() >= end)
     }
 
-    /// Takes what the board says until then.
+    /// Takes messages until then.
     fn listen(&mut self, until: Instant, mut recorder: Option<&mut Recorder>) -> io::Result<()> {
         loop {
             let timeout = until.saturating_duration_since(Instant::now());

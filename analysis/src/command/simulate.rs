@@ -42,7 +42,7 @@ struct Row {
     limit: TickStatus,
 }
 
-/// Angle in rad from zero beyond which no device goes: 160 000 turns. What is there has run away.
+/// Angle in rad from zero beyond which a motion counts as divergent: 160 000 turns.
 const FARTHEST: f64 = 1e6;
 
 /// Simulates the scene, certified or not. Of a motion that grows beyond the range of numbers, what

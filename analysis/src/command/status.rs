@@ -130,7 +130,7 @@ pub enum CommandError {
     /// The emulated board failed.
     #[error(transparent)]
     Emulator(#[from] EmulatorError),
-    /// A number format has no figures; what refuses a scene, or cannot simulate it, says so by itself.
+    /// A number format has no figures; errors of certificate or simulation have variants.
     #[error(transparent)]
     Arithmetic(FormatError),
     /// A set could not be measured on the emulated board.
@@ -240,7 +240,7 @@ pub enum CommandError {
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nobody can be listened to there.
+    /// The address cannot be bound.
     #[error("cannot listen on {address}: {source}")]
     Listen {
         /// The address.

@@ -64,7 +64,7 @@ struct Report<'a> {
     stack_left: Option<u32>,
 }
 
-/// Does what is asked for and prints what runs then. The answer is no where the board refuses.
+/// Sends the request and prints the active parameters. A refusal is a negative verdict.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let changes = collect(&arguments.changes)?;
     let mut link = Link::open(&arguments.port)?;

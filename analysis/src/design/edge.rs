@@ -2,7 +2,7 @@
 
 /// Where something ceases to pass.
 pub enum Edge {
-    /// Behind this value, the last one that passes.
+    /// After this value, the last one to pass.
     At(f64),
     /// Nowhere; the start passes like all others.
     Always,

@@ -55,8 +55,8 @@ const BOARD: [&str; 12] = [
     "enable=on,target=native",
 ];
 
-/// How long the board may take for one answer, unless it is told otherwise. Its start takes a second
-/// at most; the rest is for a host that is busy with other things.
+/// Default timeout of the board for one answer. Its start takes a second at most; the rest is for a
+/// busy host.
 pub const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Ticks within which a servo must have opened its clamp: more than any scene's fading takes.
@@ -121,7 +121,7 @@ pub enum EmulatorError {
     /// A board that is not QEMU's gave no answer.
     #[error("no reply from the board: {0}")]
     Transport(#[source] Box<dyn std::error::Error + Send + Sync>),
-    /// The board cannot compute what it was asked to.
+    /// The board cannot compute the request.
     #[error(
         "the emulated board has no benchmark program for this scene: it has programs for a spring \
          or a damper wall at zero, a one-sided damper wall anywhere, and free mode, each one \

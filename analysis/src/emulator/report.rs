@@ -24,8 +24,8 @@ pub struct EmulatorReport {
     pub free_instructions: Option<InstructionStats>,
     /// Instructions of the servo's whole interrupt, from its first to its last.
     pub interrupt_instructions: InstructionStats,
-    /// Instructions of what is done at a time below the interrupt; a set of parameters is judged
-    /// in one piece.
+    /// Instructions of a round of work below the interrupt; a set of parameters is certified in
+    /// one round.
     pub below_instructions: InstructionStats,
     /// Instructions of the energy monitor in it.
     pub energy_instructions: InstructionStats,

@@ -6,7 +6,7 @@ use super::kind::{self, Kind};
 /// The example of a device that is a chain of masses.
 pub const CHAIN: &str = "chain";
 
-/// Optional keys that an example sets all the same, so that it moves and somebody holds it.
+/// Optional keys that an example sets, so that the device moves and a hand holds it.
 const SET: &[&Key] =
     &[&key::TORQUE_PULSES, &key::HUMAN_INERTIA, &key::HUMAN_DAMPING, &key::HUMAN_STIFFNESS];
 

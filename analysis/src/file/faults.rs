@@ -8,10 +8,10 @@ use super::problem::Fault;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reported;
 
-/// What was read, unless it was reported.
+/// The value, or a reported error.
 pub type Read<T> = Result<T, Reported>;
 
-/// What is wrong with a file.
+/// Errors in a file.
 #[derive(Debug, Default)]
 pub struct Faults(RefCell<Vec<Fault>>);
 

@@ -48,7 +48,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// By the file's extension; where that says nothing, an object's brace means JSON.
+    /// By the file's extension; if it is unknown, an object's brace means JSON.
     pub fn of(file: &str, text: &str) -> Self {
         match Path::new(file).extension().and_then(|extension| extension.to_str()) {
             Some("toml") => Self::Toml,
@@ -79,7 +79,7 @@ pub fn parse_device(file: &str, format: Format, text: &str) -> Result<DeviceFile
     parse_with(file, 1, format, text, |root, source| device_file::read(source, root))
 }
 
-/// The text of a file, and what is wrong with it.
+/// The text of a file, and its errors.
 type Source<'s> = (&'s str, &'s Faults);
 
 fn load_with<T>(
@@ -136,7 +136,7 @@ fn parse_with<T>(
     match (found, FileError::of(file, text, first_line, faults.sorted())) {
         (Ok(found), None) => Ok(found),
         (_, Some(error)) => Err(error),
-        // What was not read has been reported; were it not, there would still be an answer.
+        // An unread value has been reported; otherwise this is the fallback.
         (Err(_), None) => Err(FileError::whole(file, first_line, 1, Problem::Empty)),
     }
 }

@@ -17,7 +17,7 @@ const EXCERPT: usize = 60;
 /// Longest line of a file that is shown under a message, in bytes.
 const SHOWN_LINE: usize = 160;
 
-/// What is wrong, without the place.
+/// An error, without the place.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
     /// No file was named.
@@ -62,7 +62,7 @@ pub enum Problem {
     Missing {
         /// Full name of the key.
         key: &'static str,
-        /// What it must be.
+        /// Its range.
         bound: String,
     },
     /// A key that means nothing here.
@@ -84,7 +84,7 @@ pub enum Problem {
         value: String,
         /// Kind of the value.
         found: &'static str,
-        /// What it must be.
+        /// Its range.
         bound: String,
     },
     /// A number that the key does not admit.
@@ -94,7 +94,7 @@ pub enum Problem {
         key: String,
         /// The value as written.
         value: String,
-        /// What it must be.
+        /// Its range.
         bound: String,
     },
     /// A device that no certificate can be taken of.
@@ -153,10 +153,10 @@ pub struct Fault {
     pub problem: Problem,
 }
 
-/// Most problems of a file that are told; a text of another kind has one in each line.
+/// Most problems shown for a file; a text of another kind has one in each line.
 const MOST: usize = 20;
 
-/// A bad file: which, where, and what is wrong with it.
+/// A bad file: its name, the place, and the error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileError {
     /// The file's name as the person gave it.
@@ -165,13 +165,13 @@ pub struct FileError {
     pub line: usize,
     /// Column in characters, counted from 1.
     pub column: usize,
-    /// What is wrong.
+    /// The error.
     pub problem: Box<Problem>,
     /// The line and the bytes in it that the problem is about, if it is short enough to show.
     shown: Option<Box<(String, Span)>>,
     /// The file's other problems, further down.
     pub rest: Vec<FileError>,
-    /// How many more there are, which are not told.
+    /// Number of further errors, not shown.
     pub untold: usize,
 }
 
@@ -226,7 +226,7 @@ impl FileError {
         parts.join("\n\n")
     }
 
-    /// How many problems are not told.
+    /// Number of problems not shown.
     fn and_more(&self) -> Option<String> {
         (self.untold > 0).then(|| format!("{}: and {} more problems", self.file, self.untold))
     }
@@ -285,7 +285,7 @@ fn is_unprintable(character: char) -> bool {
     character.is_control() && character != '\t'
 }
 
-/// A piece of somebody's text made safe to print: one line, no control characters, bounded.
+/// An excerpt of foreign text, safe to print: one line, no control characters, bounded.
 pub fn excerpt(text: &str) -> String {
     let mut short = String::new();
     for (count, character) in text.trim().chars().enumerate() {

@@ -1,4 +1,4 @@
-//! The reference of scene files, `SCENE.md`: what is read, as a text.
+//! The reference of scene files, `SCENE.md`, as a text.
 
 use super::example;
 use super::key::{self, Key, Presence};

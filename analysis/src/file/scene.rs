@@ -14,7 +14,7 @@ use super::tree::{Node, Value};
 use crate::chain::Chain;
 use crate::device::Hand;
 
-/// Everything that a scene file says.
+/// The contents of a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
     /// What the person calls the scene.
@@ -30,14 +30,14 @@ pub struct SceneFile {
     pub hand: Option<Hand>,
     /// Angle of one encoder count in rad.
     pub encoder_step: Option<f64>,
-    /// Torque of the motor in N m at the converter's largest code.
+    /// Torque of the motor in N m at the DAC's largest code.
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
 }
 
 impl SceneFile {
-    /// What the file says of the machine, for the certificate's assumptions.
+    /// The file's resolution, for the certificate's assumptions.
     pub fn steps(&self) -> Resolution {
         let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
         Resolution { encoder, full_scale, friction }

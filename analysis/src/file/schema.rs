@@ -1,5 +1,5 @@
-//! The JSON schema of a scene file, for editors: they complete keys, show what each means, and
-//! underline what is out of bounds. What depends on several keys is left to the reader of the file.
+//! The JSON schema of a scene file, for editors: they complete keys, show their meaning, and
+//! underline values out of bounds. Rules on several keys are left to the reader of the file.
 
 use firmware::parameter::Range;
 use serde_json::{Map, Value, json};

@@ -1,5 +1,5 @@
-//! Taking a table apart, key by key: whatever is not asked for is unknown. What is wrong is reported,
-//! and reading goes on, so that somebody who mends a file hears of everything at once.
+//! Reads a table key by key; a key that is never read is unknown. Reading continues after an error, so
+//! that a user who corrects a file sees all errors at once.
 
 use super::faults::{Faults, Read, Reported, all};
 use super::key::{Key, Presence};
@@ -54,7 +54,7 @@ impl<'t> Section<'t> {
         (self.title, self.needed) = (title, needed);
     }
 
-    /// Leaves out a key that cannot be read because of what was reported: it may be a good one.
+    /// Skips a key that cannot be read because of a reported error: it may be valid.
     pub fn skip(&mut self, key: &Key) {
         self.take(key);
     }
@@ -86,12 +86,12 @@ impl<'t> Section<'t> {
         Ok(Some(Found { value, span }))
     }
 
-    /// Whether a key of that name is there, asked for or not.
+    /// Whether a key of that name is there, read or not.
     pub fn has(&self, key: &Key) -> bool {
         self.entries.iter().any(|entry| entry.name == key.name())
     }
 
-    /// What is written there, fit to print.
+    /// The text there, safe to print.
     pub fn written(&self, span: &Span) -> String {
         excerpt(&self.text[span.clone()])
     }
@@ -212,8 +212,8 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// Ends the table, before anything that was read is looked at: every key that nobody asked for
-    /// is reported, whatever else is wrong.
+    /// Ends the table and reports every unknown key. Called before the values are used, so that
+    /// other errors do not hide unknown keys.
     pub fn finish(&mut self) {
         for entry in std::mem::take(&mut self.entries) {
             self.unknown(&entry);

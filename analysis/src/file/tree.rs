@@ -38,7 +38,7 @@ pub struct Entry {
     pub name: String,
     /// Bytes of the key in the text.
     pub span: Span,
-    /// What it is set to.
+    /// Its value.
     pub node: Node,
 }
 

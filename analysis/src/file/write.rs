@@ -13,7 +13,7 @@ use super::kind::Kind;
 use super::scene::SceneFile;
 use crate::chain::{Chain, EncoderPlace};
 
-/// The text of a scene file in TOML: everything that the file says, and nothing that it did not.
+/// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
     let SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction } =
         file;
@@ -51,7 +51,7 @@ fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
     lines.extend(value.map(|value| format!("{key} = {value:?}")));
 }
 
-/// A passivity is written where somebody declared it: not where it is what the chain has.
+/// Writes the passivity only if it was declared and differs from the chain's own.
 fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Option<f64>) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
     let declared = device.passivity.filter(|passivity| !passivity.is_nan());

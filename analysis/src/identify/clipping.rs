@@ -1,5 +1,5 @@
-//! Whether the motor gave the torques that were asked for: an amplifier that clips makes harmonics
-//! that the command does not have.
+//! Whether the motor gave the commanded torques: an amplifier that clips makes harmonics that the
+//! command does not have.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -87,7 +87,7 @@ const ORDERS: usize = 3;
 /// deviation of one of them.
 fn harmonics(samples: &[f64], angle: f64) -> Option<([Complex<f64>; ORDERS], f64)> {
     const DRIFT: usize = 3;
-    // One that is above half the sampling rate would be one of the others, or none.
+    // Harmonics above half the sampling rate would alias.
     let orders = (1..=ORDERS).filter(|order| *order as f64 * angle < std::f64::consts::PI).count();
     let (n, unknowns) = (samples.len(), DRIFT + 2 * orders);
     if n <= unknowns {

@@ -18,7 +18,7 @@ pub enum IdentifyError {
         LEAST_PERIODS, reasons(.0)
     )]
     NoSteps(Vec<LeftOut>),
-    /// The device felt another torque than the record says.
+    /// The torque on the device differs from the record.
     #[error(
         "the sine of {} N m at {} Hz moved the device by a torque with {:.1} % \
          of harmonics that were not commanded: the amplifier clips there, at its limit of current or \

@@ -57,7 +57,7 @@ pub struct Disk {
     pub omega: f64,
 }
 
-/// What a record says about a device.
+/// The device found in a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// Inertia in kg m^2.
@@ -86,8 +86,8 @@ impl Identification {
     }
 
     /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device. `None`
-    /// where that is not positive, and for a device that is not rigid: nobody held it, and what its
-    /// damping is in somebody's hand is not to be seen from the motor alone (theory, section 3.2).
+    /// where that is not positive, and for a device that is not rigid: no hand held it, and its
+    /// damping in a hand cannot be measured from the motor alone (theory, section 3.2).
     pub fn passivity(&self) -> Option<f64> {
         (self.is_rigid() && self.damping.lo > 0.0).then_some(self.damping.lo)
     }
@@ -241,7 +241,7 @@ impl System {
             system.add(response, unknowns, with_skew);
         }
         if !with_skew {
-            // An unknown that is held: its equation says that it does not change.
+            // A fixed unknown: its equation keeps it unchanged.
             system.matrix[(SKEW, SKEW)] = 1.0;
         }
         system

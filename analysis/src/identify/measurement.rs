@@ -24,7 +24,7 @@ pub struct Measurement {
 }
 
 /// Plays a sweep to a device at rest and records it. With a program `elf` it is the emulated
-/// board's codes that drive the device, and each is compared. `progress` is told of each tick.
+/// board's codes that drive the device, and each is compared. Calls `progress` on each tick.
 ///
 /// # Errors
 /// Where the emulated board cannot be started, fails, or does not end.

@@ -8,16 +8,16 @@ use thiserror::Error;
 
 use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
-/// How long a board has to say what it is, and how long no row may come.
+/// Timeout for a board's description, and between rows.
 const TIMEOUT: Duration = Duration::from_secs(2);
-/// Time between two bytes that say that somebody listens; the board waits five times as long.
+/// Time between two keep-alive bytes of the host; the board waits five times as long.
 const LISTENING: Duration = Duration::from_millis((SILENCE * 200.0) as u64);
 /// Time in which a board that was still at it falls silent.
 const SETTLE: Duration = Duration::from_millis(200);
 /// The record's first line.
 const HEADING: &str = "time,torque,counts";
 
-/// What a board says of its sweep.
+/// Description of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Sampling period in s.
@@ -35,7 +35,7 @@ pub struct Description {
 /// What a board has sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// What it said of the sweep.
+    /// Its sweep's description.
     pub description: Description,
     /// The record as CSV.
     pub text: String,
@@ -51,7 +51,7 @@ pub enum PortError {
     /// The port cannot be opened, or is gone.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nobody who plays a sweep is there.
+    /// No board with a sweep answers.
     #[error(
         "no board with the program `identify` answers on {address} within {} s: flash it (cargo \
          haptic flash --board BOARD identify), and check the port and its speed",
@@ -69,7 +69,7 @@ pub enum PortError {
     Protocol {
         /// The address.
         address: Address,
-        /// What it said.
+        /// Its line.
         line: String,
     },
     /// The record stopped coming.
@@ -166,13 +166,13 @@ pub struct SweepPort {
     transport: Box<dyn Transport>,
     /// Bytes that are no whole line yet.
     rest: Vec<u8>,
-    /// When the board was last told that somebody listens.
+    /// When the last keep-alive byte was sent.
     told: Instant,
     description: Description,
 }
 
 impl SweepPort {
-    /// Connects, ends what the board may still be playing, and asks what it would play.
+    /// Connects, ends a sweep that may still run, and requests the description.
     ///
     /// # Errors
     /// Where the port cannot be opened, or no board that plays a sweep is there.
@@ -214,7 +214,7 @@ impl SweepPort {
         Err(PortError::Silent { address: self.address.clone() })
     }
 
-    /// Begins the sweep and takes its record. `progress` is told of each row.
+    /// Begins the sweep and takes its record. Calls `progress` on each row.
     ///
     /// The board ends the sweep by itself once this process is gone.
     ///

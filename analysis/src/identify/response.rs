@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::record::Record;
 use super::step::Step;
 
-/// What is known of the measurement beside the record.
+/// Data of the measurement besides the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// Angle in rad of one count.

@@ -1,5 +1,5 @@
-//! A rig that measures a simulated device, with what spoils a measurement: an encoder of whole
-//! counts, torque noise that nobody records, records that are skewed in time.
+//! A rig that measures a simulated device, with the errors of a real measurement: an encoder of
+//! whole counts, unrecorded torque noise, records that are skewed in time.
 
 use firmware::scene::Device;
 use nalgebra::DVector;
@@ -89,7 +89,7 @@ impl MeasuredDevice {
 /// A rig with a rigid device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rig {
-    /// What is measured.
+    /// The device.
     pub device: Device,
     /// With what.
     pub sensing: Sensing,

@@ -85,7 +85,7 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
 
 #[test]
 fn without_noise_only_the_counts_are_left() {
-    // As fine an encoder as its counter holds: what is left is the method's own error.
+    // The finest encoder for its counter: only the method's own error is left.
     for device in [PADDLE, KNOB] {
         let rig = Rig { device, sensing: Sensing { counts_per_turn: 2f64.powi(30), ..SENSING } };
         let found = identified(&rig, LOW_TO_HIGH, 0.02);

@@ -23,7 +23,7 @@ pub enum Address {
     Unix(PathBuf),
 }
 
-/// What is no address.
+/// A bad address.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AddressError {
     /// No port.

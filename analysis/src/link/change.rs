@@ -45,8 +45,8 @@ pub fn collect(changes: &[(Parameter, f64)]) -> Result<Changes, DuplicateParamet
     Ok(changes.iter().copied().collect())
 }
 
-/// Changes as somebody types them into a line, with spaces or commas between them and with or
-/// without spaces at the equals sign: `stiffness = 20, damping = 0.01`.
+/// Parses changes from a typed line, with spaces or commas between them and with or without
+/// spaces at the equals sign: `stiffness = 20, damping = 0.01`.
 ///
 /// # Errors
 /// A sentence where there is none, or something else.

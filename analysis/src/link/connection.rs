@@ -20,9 +20,9 @@ pub type Message = ToHost<String>;
 /// What became of a request, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RequestResult {
-    /// It is done: what was asked for runs.
+    /// The request has taken effect.
     Done,
-    /// It is refused, and nothing has changed. The sentence says why.
+    /// It is refused, for this reason, and nothing has changed.
     Refused(String),
 }
 
@@ -49,7 +49,7 @@ pub struct Link {
     program: String,
     board: Board,
     previous_fault: Option<PreviousFault>,
-    /// Drawn at first, so that an answer to somebody before us is not taken for ours.
+    /// Starts at random, so that a reply to an earlier client is not taken for ours.
     last_id: Id,
 }
 
@@ -133,10 +133,10 @@ impl From<Outcome> for RequestResult {
 }
 
 impl Link {
-    /// Connects and asks who is there.
+    /// Connects and says hello.
     ///
     /// # Errors
-    /// Where the address cannot be opened, nobody answers, or with another version of the protocol.
+    /// The address cannot be opened, no board answers, or its protocol version differs.
     pub fn open(address: &Address) -> Result<Self, LinkError> {
         let transport = transport::open(address)
             .map_err(|source| LinkError::Open { address: address.clone(), source })?;
@@ -171,7 +171,7 @@ impl Link {
                 Err(LinkError::Protocol { address, program, theirs })
             }
             Ok(None) => Err(LinkError::Silent { address, after: QUERY_TIMING.end }),
-            // A socket says so; a serial line is only silent.
+            // A socket reports it; a serial line is silent.
             Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
                 Err(LinkError::InUse { address })
             }

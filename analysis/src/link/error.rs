@@ -13,7 +13,7 @@ use super::holder::holders;
 /// Why a board cannot be talked to.
 #[derive(Debug, Error)]
 pub enum LinkError {
-    /// No such port, or somebody else has it.
+    /// No such port, or it is in use.
     #[error("cannot open {address}: {source}{}", why_not(.address))]
     Open {
         /// The address.
@@ -21,7 +21,7 @@ pub enum LinkError {
         /// Why.
         source: io::Error,
     },
-    /// The port opened, and nobody answers.
+    /// The port opened; no board answers.
     #[error(
         "no board answers on {address} within {} s{}",
         .after.as_secs_f64(),
@@ -60,7 +60,7 @@ pub enum LinkError {
     Unanswered {
         /// The address.
         address: Address,
-        /// What was asked.
+        /// The request.
         what: &'static str,
         /// How long was waited.
         after: Duration,
@@ -75,7 +75,7 @@ pub enum LinkError {
     },
 }
 
-/// Who has a port that cannot be had; where nobody has it, the ports that there are.
+/// The process that uses the port; if there is none, the available ports.
 fn why_not(address: &Address) -> String {
     match address {
         Address::Serial { port, .. } => match holders(port) {
@@ -86,7 +86,7 @@ fn why_not(address: &Address) -> String {
     }
 }
 
-/// Why nobody may answer: somebody else takes the answers, or there is nobody.
+/// Why no reply came: another process reads the port, or no board is there.
 fn why_silent(address: &Address) -> String {
     let holders = match address {
         Address::Serial { port, .. } => holders(port),

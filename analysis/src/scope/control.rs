@@ -1,11 +1,11 @@
-//! What somebody who watches a board may ask of it, by keys.
+//! Commands to the board that the scope has keys for.
 
 use firmware::wire::message::{Changes, Id, ToBoard};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 use crate::link::{RequestResult, change};
 
-/// What is asked of a board.
+/// A request to a board.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Other parameters, all or none.
@@ -17,7 +17,7 @@ pub enum Request {
 }
 
 impl Request {
-    /// The message that asks for it.
+    /// Its message to the board.
     pub fn message(&self, id: Id) -> ToBoard {
         match self {
             Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
@@ -34,7 +34,7 @@ impl Request {
         }
     }
 
-    /// What is asked for, in words.
+    /// The request, in words.
     pub fn words(&self) -> String {
         match self {
             Self::Set(changes) => super::formatting::changes(changes),
@@ -47,20 +47,20 @@ impl Request {
 /// What became of a request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
-    /// It was asked for.
+    /// It was sent.
     Asked,
     /// The board has answered.
     Answered(RequestResult),
     /// There was no answer.
     Unanswered,
-    /// It was not asked for, since the board has yet to answer what was asked before.
+    /// It was not sent: the board has not answered the request before.
     Busy,
-    /// It was not asked for, since there was no link.
+    /// It was not sent: there was no link.
     NoLink,
 }
 
 impl Reply {
-    /// What is shown of it.
+    /// Its line in the view.
     pub fn line(&self, request: &Request) -> String {
         let what = request.words();
         match self {
@@ -79,14 +79,14 @@ impl Reply {
     }
 }
 
-/// What a key asks for.
+/// The action of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Nothing, or only another picture.
     None,
     /// Ask the board.
     Request(Request),
-    /// Somebody has seen enough.
+    /// The user quits.
     Quit,
 }
 
@@ -100,7 +100,7 @@ pub const PROMPT_KEYS: &str = "Enter sends   Esc cancels";
 pub struct Control {
     /// The line so far, where one is typed.
     pub prompt: Option<String>,
-    /// What came of the last request, or what is wrong with the line.
+    /// The reply to the last request, or the error in the line.
     pub message: Option<String>,
 }
 

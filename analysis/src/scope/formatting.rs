@@ -69,7 +69,7 @@ pub fn energy(status: &Status, board: &Board) -> String {
     format!("energy into the hand {net} J, at most {worst} J")
 }
 
-/// Why the torque was less than the scene asked for.
+/// The reasons for limited torques.
 pub fn limits(scope: &Scope) -> String {
     let limits = scope.history.limits();
     if limits.is_empty() {

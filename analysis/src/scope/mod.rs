@@ -1,4 +1,4 @@
-//! A live view of a board: what it says, what of it is kept, and how it is drawn.
+//! A live view of a board: its messages, their history, and the screen.
 
 pub mod control;
 pub mod formatting;
@@ -18,12 +18,12 @@ use self::history::History;
 use self::poller::Event;
 use self::sample::{Sample, Scale};
 
-/// What is known of a board.
+/// The state of a board.
 #[derive(Clone, Debug)]
 pub struct Scope {
     /// Where it is.
     pub address: String,
-    /// What it has said about itself.
+    /// Its own description.
     pub connected: Option<ConnectedBoard>,
     /// Why there is no link now.
     pub lost: Option<String>,
@@ -33,7 +33,7 @@ pub struct Scope {
     pub parameters: Option<ActiveParameters>,
     /// The last seconds.
     pub history: History,
-    /// What is asked of the board.
+    /// Requests to the board.
     pub control: Control,
 }
 
@@ -65,7 +65,7 @@ impl Scope {
         }
     }
 
-    /// Takes in what the board says, and gives its ticks to `each`.
+    /// Handles the board's messages, and passes ticks to `each`.
     pub fn take<E>(
         &mut self,
         event: Event,

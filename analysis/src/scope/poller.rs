@@ -1,5 +1,5 @@
-//! What a board says, as it comes in, from a thread that keeps asking and connects again when the
-//! link is lost.
+//! Messages of a board, as they arrive, from a thread that polls it and reconnects when the link
+//! is lost.
 
 use std::num::NonZeroU32;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const RETRY: Duration = Duration::from_millis(500);
 /// Silence after which a link that gives no error counts as lost all the same.
 const SILENCE: Duration = Duration::from_secs(3);
 
-/// What a board says.
+/// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// A board has said who it is.
@@ -113,11 +113,11 @@ struct PendingRequest {
 
 /// Why polling a board ended.
 enum PollEnd {
-    /// Nobody listens any more.
+    /// The receiver is gone.
     Over,
     /// The link.
     Lost(LinkError),
-    /// The board has forgotten what it was asked for.
+    /// The board has restarted without its settings.
     Restarted,
 }
 
@@ -161,7 +161,7 @@ impl PollerThread {
     }
 
     fn lost(&self, why: String) {
-        // Nobody may be listening any more, which the next look tells.
+        // The receiver may be gone; the next check of `ended` tells.
         let _ = self.events.send(Event::Lost(why));
     }
 
@@ -174,7 +174,7 @@ impl PollerThread {
         }
     }
 
-    /// Passes on what the board says, until the link is lost or nobody listens.
+    /// Forwards the board's messages until the link or the receiver is lost.
     fn poll_board(&self, link: &mut Link) -> Result<(), PollEnd> {
         let (program, board) = (link.program().to_owned(), *link.board());
         self.events.send(Event::Connected {
@@ -223,7 +223,7 @@ impl PollerThread {
                         if status.tick.wrapping_sub(last.tick) > u32::MAX / 2 {
                             return Err(PollEnd::Restarted);
                         }
-                        // Somebody else has changed the numbers.
+                        // Another client changed the parameters.
                         if status.sets != last.sets {
                             link.send(&ToBoard::Get)?;
                         }
@@ -239,7 +239,7 @@ impl PollerThread {
                     self.events.send(Event::Reply(request, Reply::Answered(answer)))?;
                     link.send(&ToBoard::Get)?;
                 }
-                // Of a greeting that was asked for twice, or of somebody else's question.
+                // Replies to a repeated hello or to another client's request.
                 ToHost::Welcome { .. }
                 | ToHost::PreviousFault(_)
                 | ToHost::Board(_)
@@ -281,11 +281,11 @@ impl PollerThread {
         Ok(())
     }
 
-    /// Drops what was asked for without a link: a motor is not switched on by a key that was pressed
-    /// some time ago.
+    /// Drops requests without a link: a key that was pressed some time ago must not switch a motor
+    /// on.
     fn reject_requests(&self) {
         for request in self.requests.try_iter() {
-            // Nobody may be listening any more, which the next look tells.
+            // The receiver may be gone; the next check of `ended` tells.
             let _ = self.events.send(Event::Reply(request, Reply::NoLink));
         }
     }

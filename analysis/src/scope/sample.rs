@@ -24,13 +24,13 @@ pub struct Sample {
     pub count: i64,
     /// Angle in rad.
     pub position: f64,
-    /// The converter's code.
+    /// The DAC's code.
     pub code: u16,
     /// Coupling torque `F` in N m, as in every other trace; the motor applies `-F`.
     pub torque: f64,
     /// What the servo was doing.
     pub state: State,
-    /// Why the torque is less than the scene asked for.
+    /// The reason if the torque is limited.
     pub limit: LimitReason,
     /// Time in s that was left of the period when the tick was done.
     pub slack: f64,

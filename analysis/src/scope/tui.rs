@@ -78,7 +78,7 @@ fn heading(scope: &Scope, width: usize) -> Vec<Line<'static>> {
             state.push(Span::from("   the board counts its host as lost").yellow());
         }
     }
-    // The state is what must be seen, and the port is known to whoever has named it.
+    // Shortens the address, not the state: the user knows the address.
     let taken: usize = state.iter().take(2).map(Span::width).sum();
     let name = shortened(&format!("{program} on {}", scope.address), width.saturating_sub(taken));
     let first = [Span::from(name).bold()].into_iter().chain(state).collect::<Vec<_>>();

@@ -1,5 +1,5 @@
-//! Plant and controller as one matrix: where neither limit nor face nor converter acts, the loop
-//! is linear, and everything about it is in there.
+//! Plant and controller as one matrix: the whole loop where it is linear, without limit, face,
+//! quantisation.
 
 use firmware::certificate::LoopTransfers;
 use firmware::passivity::transfer::Unbuildable;
@@ -41,7 +41,7 @@ pub struct ClosedLoop {
 }
 
 impl ClosedLoop {
-    /// Closes the loop of a scene; one-sidedness, face, torque limit and converters left out.
+    /// Closes the loop of a scene without one-sidedness, face, torque limit and quantisation.
     ///
     /// # Errors
     /// Where the environment is not causal, the loop of coupling and environment has no solution,

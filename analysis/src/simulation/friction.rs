@@ -1,8 +1,8 @@
 //! Coulomb friction on the motor's mass: it slides against a constant torque, or it sticks.
 //!
-//! In each of the two the plant is linear, so it goes by the method's matrices; what has to be
-//! found is when it changes. A step at whose end the mode no longer holds is halved until the
-//! change lies in a piece of it that is too short to matter.
+//! In each of the two the plant is linear and steps by the method's matrices; the time of the
+//! change has to be found. A step at whose end the mode no longer holds is halved until the change
+//! lies in a piece of it that is too short to matter.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -45,7 +45,7 @@ struct Part {
     steps: u32,
     /// A step and its halves, for a motor's mass that slides.
     slides: Vec<DMatrix<f64>>,
-    /// The same for one that is stuck.
+    /// The same for the stuck mass.
     stuck: Vec<DMatrix<f64>>,
     /// Whether it comes before the torque of this tick's sample.
     early: bool,

@@ -11,8 +11,8 @@ use super::trajectory::Columns;
 /// Samples between two looks at whether the motion has died away.
 pub(super) const LOOK: usize = 256;
 
-/// What is smaller in every state has died away. It would decay on into numbers below the smallest
-/// normal ones, which cost processors a hundred times the time of others.
+/// A motion below this in every state counts as zero. It would decay into subnormal numbers, which
+/// cost processors a hundred times the time of others.
 pub(super) const DEAD: f64 = 1e-200;
 
 /// A linear loop in motion.

@@ -71,7 +71,7 @@ impl Simulator {
     /// Where the scene has no law that could run.
     pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
         let hand_torque = experiment.hand_torque.clone();
-        // Refuses what has no law or no motion, whichever way it would be run.
+        // Rejects scenes without law or motion, for every way to run them.
         let nonlinear = NonlinearLoop::new(experiment, integration)?;
         let tick = experiment.tick(integration)?;
         if experiment.is_linear()

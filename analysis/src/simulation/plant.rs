@@ -16,11 +16,11 @@ use nalgebra::{DMatrix, DVector};
 use crate::chain::{Chain, EncoderPlace, Link, Mass};
 use crate::device::Hand;
 
-/// What is done to the plant from outside; these are the columns of [`Plant::inputs`].
+/// Inputs of the plant: the columns of [`Plant::inputs`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum Input {
-    /// Torque that the amplifier is told to give, on the motor's mass.
+    /// Torque commanded to the amplifier, on the motor's mass.
     Motor = 0,
     /// Torque of the hand, on the mass that it holds; the speed of its grip where that [moves].
     ///

@@ -117,7 +117,7 @@ fn missed_ticks_need_the_longest_time_between_updates() {
         let scene = scene(device, None, Environment::DelayedSpring(wall(stiffness, 0.0, 0)));
         moving(&scene, 4000, 1e-3)
     };
-    // What is left of the damping, b - K T / 2, takes seconds.
+    // The remaining damping, b - K T / 2, takes seconds.
     assert!(decay(&spring(950.0)) < 0.5);
     let missed = Missed::Random { fraction: 0.1, seed: 1 };
     assert!(decay(&Experiment { missed, ..spring(950.0) }) > 2.0);
@@ -138,8 +138,8 @@ fn latency_moves_the_limit() {
     }
 }
 
-/// Theory, section 8: an encoder step of D under a spring hums without friction and rests with
-/// friction of K D / 2.
+/// Theory, section 8: an encoder step of D under a spring limit-cycles without friction and rests
+/// with K D / 2.
 #[test]
 fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
@@ -155,9 +155,9 @@ fn dry_friction_lets_a_spring_behind_an_encoder_rest() {
     assert_eq!(end(0.5 * 500.0 * step), 0.0);
 }
 
-/// Theory, sections 6 and 8, behind a coupling: what the certificate says of an encoder's step
-/// bounds what the step does to the torque, and as much friction lets the device rest where half of
-/// the smallest torque that moves does not.
+/// Theory, sections 6 and 8, behind a coupling: the certificate's number for an encoder's step
+/// bounds the torque error of that step; as much friction lets the device rest, and half of the
+/// smallest torque that moves does not.
 #[test]
 fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
     let scene = paper(Environment::DamperWall(wall(22.0, 0.01, 1)));

@@ -1,5 +1,5 @@
-//! Status of the servo at a sample: why its torque is less than the scene asks for, or that the tick
-//! was missed.
+//! Status of the servo at a sample: the reason for a limited torque, or that the tick was
+//! missed.
 
 use firmware::torque::LimitReason;
 use serde::{Serialize, Serializer};
@@ -36,7 +36,7 @@ impl TickStatus {
         LimitReason::ALL.into_iter().map(Self::Ran).chain([Self::Missed])
     }
 
-    /// What a word of [`TickStatus::as_str`] says; `None` for any other.
+    /// Parses a word of [`TickStatus::as_str`]; `None` for any other.
     pub fn parse(word: &str) -> Option<Self> {
         Self::all().find(|status| status.as_str() == word)
     }

@@ -14,7 +14,7 @@ pub struct Trajectory {
     pub velocity: Vec<f64>,
     /// Coupling torque `F` in N m; the motor applies `-F`.
     pub torque: Vec<f64>,
-    /// Why that torque is not what the scene asked for, where it is not.
+    /// The reason if that torque was limited.
     pub limit: Vec<TickStatus>,
 }
 
@@ -35,7 +35,7 @@ impl Trajectory {
         [&self.position, &self.velocity, &self.torque].iter().all(|of| of[sample].is_finite())
     }
 
-    /// Leaves out what is beyond the range of numbers. The last sample tells whether anything is: a
+    /// Drops samples beyond the range of numbers. The last sample shows whether there are any, as a
     /// position that has left the range does not come back.
     pub(super) fn end_in_range(&mut self) {
         let samples = self.samples();

@@ -30,14 +30,14 @@ impl UnquantizedServo {
         };
         let law = scene.environment.law(&setting)?;
         let solver = Solver::new(scene.coupling, law.slopes())?;
-        // No converter ends the range here.
+        // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
         Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })
     }
 
     /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
-    /// coupling is solved, and why it is not the one asked for; `otherwise` where it is. The motor
-    /// applies `-F`.
+    /// coupling is solved, and the reason if it was limited; `otherwise` if not. The motor applies
+    /// `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
         let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);

@@ -1,9 +1,9 @@
 //! Whether the sampled loop of a scene, one device and one hand dies away: its eigenvalues, and
 //! the stiffness at which they leave the unit circle.
 //!
-//! This is a question about one device in one hand; what no hand can upset is for the certificate
-//! to say. One-sidedness, torque limit and converters are left out: the loop is that of the scene
-//! deep inside its wall.
+//! The result is for one device in one hand; the certificate covers every passive hand.
+//! One-sidedness, torque limit and quantisation are left out: the loop is that of the scene deep
+//! inside its wall.
 
 mod borders;
 mod eigenvalues;

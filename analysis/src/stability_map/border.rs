@@ -1,4 +1,4 @@
-//! Where the formulas of theory, section 5, put the border of what is certified.
+//! The certified border by the formulas of theory, section 5.
 
 use firmware::certificate::PassivityProblem;
 use firmware::environment::{Environment, Wall};
@@ -17,7 +17,7 @@ const HALVINGS: usize = 40;
 /// A border that a formula gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Border {
-    /// What it is the border of.
+    /// Name of its region.
     pub name: &'static str,
     /// Stiffness (N m/rad) and damping (N m s/rad) along it.
     pub points: Vec<(f64, f64)>,

@@ -19,7 +19,7 @@ use crate::simulation::plant::Plant;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use plant::SampledPlant;
 
-/// What is known of a scene, from the worst to the best.
+/// Verdicts on a scene, from the worst to the best.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Region {
     /// Certified, and yet without a hand it does not come to rest: its torque is later than the
@@ -141,10 +141,10 @@ impl Family {
         Scene { environment, ..self.scene }
     }
 
-    /// What is known of one of the walls. Stability comes first, being by far the cheapest: no hand
-    /// at all is a passive hand too, so what does not come to rest without one is not certified,
-    /// as long as the machine is what the certificate takes it to be. Where it is not, the verdict is
-    /// asked for all the same, and may be wrong.
+    /// The verdict on a wall. Stability comes first, as it is by far the cheapest: no hand at all is
+    /// a passive hand too, so a loop that is unstable without one is not certified, as long as the
+    /// device meets the certificate's assumptions. If it does not, the verdict is computed all the
+    /// same, and may be wrong.
     pub fn region(&self, stiffness: f64, damping: f64) -> Region {
         let scene = self.member(stiffness, damping);
         let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);
@@ -175,7 +175,7 @@ fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
     range.start + (range.end - range.start) * (index as f64 + 0.5) / parts as f64
 }
 
-/// What the certificate says of a scene.
+/// The certificate's verdict on a scene.
 fn verdict(scene: &Scene) -> Region {
     let posed = match PassivityProblem::of(scene) {
         Ok(posed) => posed,
@@ -208,7 +208,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Judges the middle of each of `side` times `side` cells, on all cores. `progress` is told of
+    /// Computes the middle of each of `side` times `side` cells, on all cores. Calls `progress` on
     /// each row.
     pub fn new(
         family: &Family,
@@ -228,13 +228,13 @@ impl Map {
         Self { stiffness, damping, columns: side, rows: side, regions }
     }
 
-    /// What is known of a cell.
+    /// The verdict on a cell.
     pub fn at(&self, column: usize, row: usize) -> Region {
         self.regions[row * self.columns + column]
     }
 
     /// Each cell, by rising damping and then stiffness: stiffness (N m/rad) and damping
-    /// (N m s/rad) of its middle, and what is known of it.
+    /// (N m s/rad) of its middle, and the verdict on it.
     pub fn cells(self) -> impl Iterator<Item = (f64, f64, Region)> {
         let Self { stiffness, damping, columns, rows, regions } = self;
         regions.into_iter().enumerate().map(move |(index, region)| {

@@ -8,7 +8,7 @@ pub fn all_inside(coefficients: &mut [f64]) -> bool {
     let mut rest = coefficients;
     while let [leading, .., constant] = *rest {
         let reflection = constant / leading;
-        // Neither is what is not a number.
+        // NaN does not pass either.
         let goes_on = reflection.abs() < 1.0;
         if !goes_on {
             return false;

@@ -143,7 +143,7 @@ fn a_wrong_verdict_and_none_at_all_are_told_from_no() {
         let certified = assess(&family.member(k, b)).outcome.is_ok();
         assert_eq!(region == Region::Wrong || region >= Region::Exact, certified, "{k} {b}");
     }
-    // What is rejected is not taken for undecided.
+    // A rejected wall is not taken for undecided.
     let rigid = Family::of(&wall(1, "")).unwrap();
     let (stiffness, damping) = rigid.usual_ranges();
     let map = Map::new(&rigid, stiffness, damping, 12, || {});

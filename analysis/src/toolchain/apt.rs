@@ -1,5 +1,5 @@
-//! Installing Debian's packages: never without having said what that does to the machine, and never
-//! with the removal of another package that nobody has agreed to.
+//! Installs Debian packages: prints the changes to the machine first, and never removes another
+//! package without the user's consent.
 
 use std::fmt;
 use std::io::{self, BufRead, IsTerminal, Write};
@@ -28,14 +28,14 @@ pub enum AptError {
     /// It failed.
     #[error("`{command}` ended with {status}:\n{output}")]
     Failed {
-        /// What was run.
+        /// The command.
         command: String,
         /// Its exit status.
         status: ExitStatus,
-        /// The end of what it said.
+        /// The end of its output.
         output: String,
     },
-    /// Packages would be removed, and nobody has said yes.
+    /// Packages would be removed, without consent.
     #[error(
         "installing {wanted} would remove packages of this machine, so nothing was done: it \
          {changes}\ncheck these changes; if they are right, run this yourself:\n  {command}"
@@ -76,11 +76,11 @@ impl Apt {
         self.run(&["update"], &[]).map(drop)
     }
 
-    /// Says what installing packages changes, and installs them. Where others would be removed,
-    /// `agrees` is asked before.
+    /// Prints the changes, and installs the packages. If others would be removed, calls `agrees`
+    /// first.
     ///
     /// # Errors
-    /// Where it fails, or nobody agrees: then nothing has changed.
+    /// It fails, or consent is refused: then nothing has changed.
     pub fn install(
         &self,
         packages: &[&str],
@@ -109,7 +109,7 @@ impl Apt {
             .args(["-o", "DPkg::Lock::Timeout=600"])
             .args(arguments)
             .args(packages)
-            // What is read of it is not to depend on the person's language.
+            // The parsed output must not depend on the user's language.
             .env("LC_ALL", "C")
             .env("DEBIAN_FRONTEND", "noninteractive")
             .stdin(Stdio::null());
@@ -166,7 +166,7 @@ impl fmt::Display for Changes {
     }
 }
 
-/// Asks the person at the terminal; where there is none, nobody agrees.
+/// Asks the user at the terminal; without a terminal the answer is no.
 pub fn person_agrees(changes: &Changes) -> bool {
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return false;

@@ -17,7 +17,7 @@ pub enum Board {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
 pub struct UnknownBoard {
-    /// What was asked for.
+    /// The given name.
     pub name: String,
 }
 
@@ -34,7 +34,7 @@ impl Board {
         }
     }
 
-    /// Bytes of its chip's flash, as the chip's data sheet says.
+    /// Bytes of its chip's flash, by the chip's data sheet.
     pub const fn flash(self) -> u64 {
         let kibibytes = match self {
             Self::NucleoG474re => 512,

@@ -44,7 +44,7 @@ impl fmt::Display for NumberFormat {
 /// Why a program could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum BuildError {
-    /// The source is not what it should be.
+    /// The sources are invalid.
     #[error(transparent)]
     Sources(#[from] SourcesError),
     /// A file could not be read or written.
@@ -192,8 +192,8 @@ impl Toolchain {
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 
-    /// Builds a program for a board as somebody does who types `cargo build --release`, and keeps
-    /// nothing of it: whether it does and fits.
+    /// Builds a program for a board with a plain `cargo build --release`, to check that it
+    /// compiles and fits; keeps no output.
     ///
     /// # Errors
     /// Where it does not.
@@ -203,8 +203,8 @@ impl Toolchain {
         self.compile(name, &build)
     }
 
-    /// Builds the tests that run on a board as somebody does who runs them, and keeps nothing of them:
-    /// whether they build and fit.
+    /// Builds the tests that run on a board as a user does, to check that they compile and fit; keeps
+    /// no output.
     ///
     /// # Errors
     /// Where they do not.
@@ -215,8 +215,8 @@ impl Toolchain {
         self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
     }
 
-    /// Builds a package of somebody else's, in a folder outside of the workspace, for the boards, as
-    /// programs are that are flashed, and gives the program of that name.
+    /// Builds a foreign package, in a folder outside of the workspace, for the boards, like programs
+    /// to be flashed, and returns the program of that name.
     ///
     /// # Errors
     /// Where it does not compile.

@@ -239,8 +239,8 @@ impl Sources {
     }
 }
 
-/// The text of a scene that came with the project, with the device of whoever goes on with it: that is
-/// what the new scene is to be certified against.
+/// The text of a scene of the project, with the user's device in place of the paddle: the new scene is
+/// certified against that device.
 fn on_own_device(text: &str) -> String {
     text.replace("mod paddle;", "mod device;").replace("paddle::", "device::")
 }

@@ -61,9 +61,9 @@ pub struct SearchResult {
 
 /// Looks for the passive hand in which the loop of a scene on a device grows the most.
 ///
-/// One-sidedness, torque limit and converters are left out: the scene is what it is deep inside
-/// its wall. For a scene that is certified with the passivity that its device has, no hand in
-/// which it grows exists, so none is found.
+/// One-sidedness, torque limit and quantisation are left out: the loop is that deep inside the
+/// wall. For a scene that is certified with the passivity of its device no hand exists in which
+/// it grows, so none is found.
 ///
 /// # Errors
 /// Where the scene has no closed loop.

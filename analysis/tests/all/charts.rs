@@ -1,4 +1,4 @@
-//! `haptic chart` as somebody runs it.
+//! `haptic chart` as a process.
 
 use std::path::Path;
 use std::process::Output;

@@ -1,4 +1,4 @@
-//! The program as somebody runs it: exit status, standard output, standard error.
+//! The program as a process: exit status, standard output, standard error.
 
 use std::io::{Read, Write};
 use std::process::{Output, Stdio};
@@ -258,7 +258,7 @@ fn a_batch_answers_before_its_input_ends() {
             stdout.read_exact(&mut byte).unwrap();
         }
     }
-    // Whoever read the answers goes away: no complaint.
+    // The reader closes the pipe: no error.
     drop(stdout);
     drop(stdin.write_all(format!("{WALL}\n").repeat(10).as_bytes()));
     drop(stdin);
@@ -396,7 +396,7 @@ fn advice_names_the_cheapest_format_and_why_not_the_others() {
     assert!(answer["message"].as_str().unwrap().contains("counts per turn instead of 1000"));
 }
 
-/// The converter's largest code is the torque that a file says, whatever the scene is limited to.
+/// The DAC's largest code is the file's full-scale torque, with any torque limit of the scene.
 #[test]
 fn a_file_says_what_the_converter_gives() {
     let limits = r#""limits": {"torque": 0.5, "full_scale": 2}, "environment""#;
@@ -467,7 +467,7 @@ fn advice_has_an_answer_to_every_type_of_scene() {
 }
 
 /// Theory, sections 6 and 8: the paper's wall, whose peak torque a position is 924 N m/rad, needs
-/// half a count times that of friction, and what converter and numbers ask for.
+/// half a count times that of friction, and the shares of DAC and numbers.
 #[test]
 fn friction_of_the_device_ends_a_hum() {
     let advise = |friction: f64| {
@@ -497,7 +497,7 @@ fn friction_of_the_device_ends_a_hum() {
         let converter = rest["converter"].as_f64().unwrap();
         assert!((converter / (1.0 / 1791.0) - 1.0).abs() < 1e-3, "{format}");
     }
-    // What a coarse format rounds takes more friction than there is: it hums as if there were none.
+    // A coarse format's rounding needs more friction than there is: the limit cycle stays.
     let coarse = formats.iter().find(|format| format["format"] == "i16f16").unwrap();
     assert_eq!(coarse["rest"]["comes_to_rest"], false, "{coarse}");
     let reasons = coarse["rejected"].to_string();

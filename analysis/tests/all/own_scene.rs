@@ -1,4 +1,4 @@
-//! A scene of somebody's own: one new file is all that the commands need.
+//! A user's own scene: the commands need one new file and nothing else.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -7,7 +7,7 @@ use std::process::Stdio;
 
 use crate::common::{answer, complaint, haptic, program, read, root};
 
-/// Its name, which nobody takes.
+/// Its name, used by no scene.
 const NAME: &str = "scene_of_a_test";
 
 /// Its file, which goes with the test.
@@ -107,8 +107,8 @@ fn a_name_that_cannot_be_one_is_refused() {
     }
 }
 
-/// So that whoever measures a device changes one file, and that no scene which comes with the project
-/// stops compiling for it.
+/// After a measurement the user changes one file, and the scenes of the project still compile: they use
+/// another device.
 #[test]
 fn a_device_is_written_once() {
     let folder = root().join("firmware/src/bin");

@@ -81,7 +81,7 @@ fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// Whoever is not root is told the command, on any machine.
+/// Without root the command is printed, on any machine.
 fn is_root() -> bool {
     nix::unistd::geteuid().is_root()
 }

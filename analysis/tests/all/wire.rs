@@ -29,7 +29,7 @@ use tempfile::TempDir;
 /// Counts inside the wall at which the device is held.
 const DEPTH: i32 = 300;
 
-/// A device that somebody holds still, and the codes that its motor was given.
+/// A device held still, and the codes that its motor received.
 #[derive(Clone, Default)]
 struct Held(Arc<Mutex<Codes>>);
 
@@ -158,7 +158,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     assert!((said["longest_gap"].as_f64().unwrap() - 0.036).abs() < 1e-9, "{said}");
 }
 
-/// Somebody may lean on the wall that is changed.
+/// A hand may press on the changed wall.
 #[test]
 fn tune_says_for_how_long_an_armed_board_lets_go() {
     let rig = Rig::new(Pacing::Unthrottled);
@@ -511,7 +511,7 @@ fn a_twin_is_a_board_to_try_things_on() {
     let running = answer(&haptic(&["tune", "--port", &port, "--json", "residual=0.004"]));
     assert_eq!((&running["refused"], &running["program"]), (&Value::Null, &"free_mode".into()));
     assert_eq!(running["parameters"]["residual"], 0.004);
-    // Somebody else is there already.
+    // The port is in use.
     let second = haptic(&["twin", "free_mode", "--port", &port]);
     assert_eq!(second.status.code(), Some(2), "{second:?}");
     let said = text(&second.stderr);
@@ -548,7 +548,7 @@ fn a_twin_that_is_told_to_end_or_killed_is_in_nobodys_way() {
     assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
     assert_eq!(told.wait().unwrap().code(), Some(0));
     assert!(!path.exists());
-    // A file that somebody keeps there is not removed.
+    // A foreign file is not removed.
     std::fs::write(&path, "a scene").unwrap();
     for (arguments, words) in [
         (["free_mode", "--port", &port], "a file with this name exists, and is not a socket"),

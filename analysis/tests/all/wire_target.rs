@@ -28,7 +28,7 @@ const DEPTH: u32 = 300;
 /// Counts that it moves in a tick until it is there.
 const STEP: usize = 10;
 
-/// What the board has shown since somebody last looked.
+/// The board's output since it was last read.
 #[derive(Default)]
 struct Seen {
     ticks: u64,

@@ -26,7 +26,7 @@ const TESTS: [(&str, fn()); 3] = [
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    // Whoever asks for a list, or for other tests, gets no browser for it.
+    // A list of the tests, or other tests, need no browser.
     let wanted = |name: &str| arguments.filter.as_ref().is_none_or(|part| name.contains(part));
     let looks = !arguments.list && TESTS.iter().any(|(name, _)| wanted(name));
     let missing = looks.then(chromium::set_up).and_then(Result::err);

@@ -19,7 +19,7 @@ impl Device for FixedDevice {
     }
 }
 
-/// A device that somebody else looks at, too.
+/// A device that is shared.
 impl<D: Device> Device for Arc<Mutex<D>> {
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
         self.lock().unwrap_or_else(PoisonError::into_inner).sample(code, amplifier)

@@ -1,5 +1,5 @@
-//! A virtual board for another program: `virtual-board BOARD PROGRAM.elf`, in lockstep with whoever
-//! is at its standard input and output.
+//! A virtual board for another program: `virtual-board BOARD PROGRAM.elf`, in lockstep with the
+//! process at standard input and output.
 //!
 //! All numbers have their lowest byte first. At the end of each sample the board writes what the
 //! sample was, and waits for what comes of it:

@@ -1,5 +1,5 @@
-//! Names of registers, as the reference manuals (RM0440, RM0090) have them: for whoever reads that one
-//! is not modelled.
+//! Names of registers in the reference manuals (RM0440, RM0090), for messages about registers that are
+//! not modelled.
 
 use crate::unit::Unit;
 

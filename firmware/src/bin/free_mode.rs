@@ -19,17 +19,17 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: FreeMode { residual: 0.001 },
-    // None but the converter's, which the certificate covers: whatever part of the canceller's torque
-    // is given, it takes no more than 0.021 N m s/rad.
+    // The DAC range is the only limit. The certificate covers it: any part of the canceller's
+    // torque takes no more than 0.021 N m s/rad.
     torque_limit: None,
 };
 
 /// Its certificate: a scene that could oscillate in a hand stops the compiler here.
 pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
 
-/// The device's, but for the amplifier's gain. Full scale is what a speed of 12 rad/s needs: half a
-/// step of the converter keeps a device without friction turning at that torque over the residual,
-/// and the finer the step, the slower.
+/// The device's, with another amplifier gain. Full scale is the torque at 12 rad/s: half a DAC step
+/// keeps a device without friction turning, at the speed of that torque over the residual. A finer
+/// step makes it slower.
 pub const TRANSDUCERS: Transducers = Transducers { full_scale_torque: 0.25, ..paddle::TRANSDUCERS };
 
 /// Angles to 2048 rad, since what moves freely may turn on and on; in steps of 1e-6.

@@ -1,7 +1,7 @@
 //! Drives a device with sines of torque, open loop, so that the host can measure its inertia, its
 //! damping and its passivity (theory, section 3.3).
 //!
-//! Nobody holds the device meanwhile, and it turns back and forth by up to a fifth of a radian, or
+//! Do not hold the device meanwhile: it turns back and forth by up to a fifth of a radian, or
 //! twice that to one side.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -29,8 +29,8 @@ const fn part(part: f64) -> f64 {
 /// heavier device needs more torque or lower frequencies; the host says so where the motion is lost
 /// in counts.
 ///
-/// A torque that the converter cannot give, or a part of a tone that is no whole number of samples,
-/// stops the compiler here.
+/// A torque outside the DAC range, or a part of a tone that is not a whole number of samples, is a
+/// compile error here.
 pub static SWEEP: Sweep<10> = Sweep::planned(
     PERIOD,
     &TRANSDUCERS,

@@ -14,7 +14,7 @@ use critical_section::{Impl, RawRestoreState};
 /// Holds off priorities 1 to 15; the chips have four bits of priority, at the top of the byte.
 pub const BELOW_SERVO: u8 = 1 << 4;
 
-/// Holds off what is below the servo.
+/// Masks interrupts below the servo.
 struct AllButServo;
 
 critical_section::set_impl!(AllButServo);
@@ -40,8 +40,8 @@ unsafe impl Impl for AllButServo {
     }
 }
 
-/// Puts all interrupts below the servo's. To be called after whatever sets priorities of its own
-/// and before the first interrupt is enabled.
+/// Lowers all interrupts below the servo's. Call it after all code that sets priorities and before
+/// the first interrupt is enabled.
 pub fn lower_all(nvic: &mut cortex_m::peripheral::NVIC) {
     for priority in &nvic.ipr {
         // SAFETY: no interrupt is enabled yet whose order this could change.

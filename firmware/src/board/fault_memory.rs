@@ -1,5 +1,5 @@
-//! Memory that keeps its contents through a reset: where a fault's record waits for the next boot, and
-//! where a mark says that the supply has not been off.
+//! Memory that keeps its contents through a reset: the fault record for the next boot, and a mark that
+//! the supply has not been off.
 
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;

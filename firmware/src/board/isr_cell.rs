@@ -8,8 +8,8 @@ use core::mem::MaybeUninit;
 /// no test whether it is there.
 pub struct IsrCell<T>(UnsafeCell<MaybeUninit<T>>);
 
-// SAFETY: both functions pass on to their callers that one owner at a time uses the cell; what is in
-// it goes from the main program to the interrupt, which `Send` permits.
+// SAFETY: both functions require of their callers that one owner at a time uses the cell; the value
+// moves from the main program to the interrupt, which `Send` permits.
 unsafe impl<T: Send> Sync for IsrCell<T> {}
 
 impl<T> IsrCell<T> {
@@ -21,10 +21,10 @@ impl<T> IsrCell<T> {
     /// Puts a value into the cell.
     ///
     /// # Safety
-    /// The interrupt that uses the cell must not be enabled yet, and nobody may hold what
-    /// [`borrow_mut`](Self::borrow_mut) has given.
+    /// The interrupt that uses the cell must not be enabled yet, and no reference from
+    /// [`borrow_mut`](Self::borrow_mut) may be alive.
     pub unsafe fn init(&'static self, value: T) {
-        // SAFETY: nobody else uses the cell, as the caller promises.
+        // SAFETY: the caller guarantees exclusive access.
         unsafe { (*self.0.get()).write(value) };
     }
 
@@ -43,10 +43,10 @@ impl<T> IsrCell<T> {
     /// The value, for shared use.
     ///
     /// # Safety
-    /// The cell must have been filled, and nobody may use [`borrow_mut`](Self::borrow_mut) with it.
+    /// The cell must be filled, and [`borrow_mut`](Self::borrow_mut) must never be used with it.
     #[inline(always)]
     pub unsafe fn borrow(&'static self) -> &'static T {
-        // SAFETY: filled and never borrowed for more than looking, as the caller promises.
+        // SAFETY: the caller guarantees a filled cell and only shared borrows.
         unsafe { (*self.0.get()).assume_init_ref() }
     }
 }

@@ -9,7 +9,7 @@ use crate::wire::Session;
 
 /// A serial port that never waits.
 pub trait Port {
-    /// Takes what has arrived, as far as there is room; gives the number of bytes.
+    /// Reads received bytes, as far as there is room; returns their number.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
     /// Sends as many of the bytes as there is room for; gives their number.
     fn write(&mut self, bytes: &[u8]) -> usize;
@@ -19,7 +19,7 @@ pub trait Port {
 pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The port.
     pub port: P,
-    /// What is said there.
+    /// Its session.
     pub session: Session<'static, E, N, M, FRAMES>,
 }
 

@@ -83,7 +83,7 @@ macro_rules! scene_program {
         $(, options: $options:expr)?
         $(,)?
     ) => {
-        /// What is flashed: the scene, sensor and motor, and the options.
+        /// The flashed program: scene, transducers and options.
         pub const PROGRAM: $crate::boot::Program<$environment> = $crate::boot::Program {
             scene: *$certified.scene(),
             transducers: $transducers,
@@ -91,10 +91,10 @@ macro_rules! scene_program {
             options: $crate::or_default!($crate::servo_loop::Options $(, $options)?),
         };
 
-        // Apart from the constant itself, which others use: then the compiler says it once.
+        // Not in `PROGRAM` itself, which is used elsewhere: the error then appears once.
         const _: $crate::boot::Program<$environment> = PROGRAM.checked();
 
-        // Where a board refuses the scene itself, it says so at more length.
+        // A board that refuses the scene itself reports more.
         const _: () = match CERTIFIED_AS_IT_RUNS.time::<$crate::servo::Simultaneous>() {
             Ok(timed) => PROGRAM.rendering.checked_beside(timed.injectable_damping()),
             Err(_) => (),

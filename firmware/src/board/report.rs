@@ -1,4 +1,4 @@
-//! What a scene's program says about itself on the host: its certificate.
+//! The output of a scene's program on the host: its certificate.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! The state of the servo's interrupt, and the ends of what it shares with the task below it.
+//! The state of the servo's interrupt, and the endpoints that it shares with the task below.
 
 use static_cell::StaticCell;
 
@@ -14,7 +14,7 @@ pub const FRAMES: usize = 32;
 
 /// State of the servo's interrupt.
 pub struct ServoIsr<H, E: Discretize<N> + 'static, N: Number, M: 'static> {
-    /// The servo, and what it is doing.
+    /// The servo and its state.
     pub servo_loop: ServoLoop<E, N, M>,
     /// The board's registers.
     pub hardware: H,
@@ -36,7 +36,7 @@ impl<H: Hardware, E: Discretize<N>, N: Number, M: OutputMode> ServoIsr<H, E, N, 
 /// its own, since the types are its scene's.
 pub type MailboxCell<E, N, M> = StaticCell<Mailbox<PreparedServo<E, N, M>>>;
 
-/// The ends of what the interrupt and the task share.
+/// Endpoints of interrupt and task.
 pub struct Endpoints<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// The task's end of the mailbox.
     pub requests: Requests<'static, PreparedServo<E, N, M>>,

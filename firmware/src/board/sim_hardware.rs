@@ -1,4 +1,4 @@
-//! Boards that are simulated: whatever their program does, it is in time.
+//! Simulated boards: their program is always in time.
 
 use crate::boot::Startup;
 use crate::dac::DacCode;
@@ -7,7 +7,7 @@ use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 
-/// What a simulated board's program sees of its device.
+/// Inputs of a simulated board's program.
 pub trait SimIo {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;

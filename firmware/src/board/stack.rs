@@ -1,6 +1,6 @@
 //! How much of the stack was ever used.
 
-/// What the start-up code paints the stack with.
+/// Pattern that fills unused stack.
 const PAINT: u32 = 0xCCCC_CCCC;
 
 unsafe extern "C" {

@@ -65,7 +65,7 @@ pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
 pub(super) enum Extent {
     /// The answers of both rules.
     BothRules,
-    /// Of a scene that is refused, only what its own rule says.
+    /// Of a rejected scene, only the result of its own rule.
     OwnRule,
 }
 

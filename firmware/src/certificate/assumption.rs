@@ -1,4 +1,4 @@
-//! What a verdict rests on: only what the scene uses, each with its condition (theory, section 8)
+//! Assumptions of a verdict: only those of the scene, each with its condition (theory, section 8)
 //! and with whether that holds.
 
 use core::f64::consts::PI;
@@ -34,17 +34,17 @@ pub enum Assumption {
     WorstPeriod {
         /// Longest time in s between two updates.
         longest: f64,
-        /// What is left of the device's passivity, in N m s/rad.
+        /// The remaining passivity of the device, in N m s/rad.
         delta: f64,
         /// Whether the scene passes with that.
         passes: bool,
     },
-    /// The delay is what the scene says.
+    /// The delay is the scene's.
     Delay {
         /// Whole samples.
         samples: usize,
     },
-    /// The environment is of another crate, and what is judged is what it states.
+    /// The environment is of another crate, and its statement is certified.
     StatedModel {
         /// The stated bound on its index in N m s/rad, if there is one.
         index: Option<f64>,
@@ -58,10 +58,10 @@ pub enum Assumption {
     Limited {
         /// Largest torque in N m.
         torque: f64,
-        /// Torque in N m at the converter's largest code, where it was stated.
+        /// Torque in N m at the DAC's largest code, if stated.
         full_scale: Option<f64>,
     },
-    /// The scene has no torque limit, and the converter has one.
+    /// The scene has no torque limit, and the DAC has one.
     Saturates {
         /// The bound in N m s/rad by which it would pass with a limit; `None` where it would not.
         bound: Option<f64>,
@@ -73,9 +73,9 @@ pub enum Assumption {
         /// Declared device damping in N m s/rad.
         damping: f64,
     },
-    /// Steps of encoder, numbers and converter are outside the linear verdict.
+    /// Quantisation by encoder, numbers and DAC is outside the linear verdict.
     Quantisation(QuantizationBound),
-    /// The same where nothing is known of encoder and converter.
+    /// The same with unknown encoder and DAC.
     StepsNotStated,
     /// The same where the controller's response does not end.
     StepsUnbounded,
@@ -238,7 +238,7 @@ fn write_limit(f: &mut fmt::Formatter<'_>, torque: f64, full_scale: Option<f64>)
     }
 }
 
-/// What moves the torque at rest, what is not stated of it, and whether friction is enough.
+/// Torque errors at rest, resolutions not stated, and whether friction is enough.
 fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Result {
     f.write_str("at rest the error of the torque is at most")?;
     let parts = rest.parts();
@@ -264,7 +264,7 @@ pub struct Assumptions {
 }
 
 impl Assumptions {
-    /// Lists what a verdict on `scene` rests on, given what is known of the machine.
+    /// Lists the assumptions of a verdict on `scene`, given the stated resolution.
     pub fn of(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Self {
         let mut list = Self { all: [None; MOST] };
         let delta = scene.device.passivity.unwrap_or(scene.device.damping);
@@ -302,8 +302,8 @@ impl Assumptions {
         self.all.iter().flatten()
     }
 
-    /// What the steps of encoder, numbers and converter do at rest, where the scene is certified
-    /// and they were stated.
+    /// The bound on quantisation at rest, where the scene is certified and the resolution was
+    /// stated.
     pub fn rest(&self) -> Option<&QuantizationBound> {
         self.iter().find_map(|assumption| match assumption {
             Assumption::Quantisation(rest) => Some(rest),
@@ -330,8 +330,8 @@ fn delay(environment: &Environment) -> Option<Assumption> {
     (samples > 0).then_some(Assumption::Delay { samples })
 }
 
-/// A limit that the scene has, or the converter's: the servo limits there in the same place, so
-/// that a linear scene goes on to be passive if the nonlinear bound passes too.
+/// The scene's torque limit, or the DAC's: the servo limits in the same place, so that a linear
+/// scene stays passive if the nonlinear bound passes too.
 fn saturation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     if let Some(torque) = scene.torque_limit {
         return Some(Assumption::Limited { torque, full_scale: steps.full_scale });

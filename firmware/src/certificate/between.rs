@@ -1,7 +1,7 @@
-//! Where all that lies between two certified values of a number passes as well.
+//! Where every value between two certified values of a number passes as well.
 //!
-//! A remedy that names a range is proved at its ends, and in between because what passes is convex
-//! there. Anywhere else a remedy names one value.
+//! A remedy with a range is proved at its ends, and in between because the passing set is convex.
+//! Anywhere else a remedy names one value.
 //!
 //! **Exact rule** (theory, section 4.1). It asks that `p = delta + T C / (z - 1)` be positive real,
 //! with the whole controller `C = E / (1 + V E)`. Sums of positive real functions are, so what
@@ -38,7 +38,7 @@ use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
 
-/// What is known of the values between two that pass.
+/// Verdict on the values between two that pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Between {
     /// Nothing.
@@ -51,7 +51,7 @@ pub(super) enum Between {
     PassesDownToZeroWithoutStiffness,
 }
 
-/// What is known of a number that the search looks for, stiffness to period, next to `value`.
+/// Verdict on a number of the search, from stiffness to period, next to `value`.
 pub(super) const fn between(
     scene: &Scene,
     format: Format,
@@ -74,7 +74,7 @@ const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {
     (is_late || matches!(n.format, Format::F64)) && (is_nonlinear(scene) || !is_soft)
 }
 
-/// An undelayed free mode alone has `T C = -be (z - 1) / z` whatever its coupling.
+/// Only an undelayed free mode has `T C = -be (z - 1) / z` with any coupling.
 const fn is_affine_in_residual(scene: &Scene, n: &LoopIntervals) -> bool {
     let is_undelayed_alone = matches!(scene.environment, Environment::FreeMode { delay: 0, .. });
     let is_affine = n.missed.is_none() && (n.coupling.is_none() || is_undelayed_alone);

@@ -1,4 +1,4 @@
-//! Numbers of few significant digits: what a remedy says.
+//! Numbers of few significant digits, for remedies.
 
 /// How far off a digit a number may be, as a part of it, to count as having no more: what scaling it
 /// by tens rounds.
@@ -24,7 +24,7 @@ impl Side {
     }
 }
 
-/// A positive number of a few digits: three, unless it was asked for more.
+/// A positive number of a few digits, three by default.
 #[derive(Clone, Copy)]
 pub(super) struct Digits {
     whole: u64,
@@ -36,8 +36,8 @@ impl Digits {
     /// The most that [`Text`](crate::text::Text) writes so that they read back as the same number.
     pub const MOST: u32 = 9;
 
-    /// Three of a value, rounded to the side that passes; of what is not positive or not finite,
-    /// those of the nearest number that is.
+    /// Three digits of a value, rounded to the side that passes; instead of a value that is not
+    /// positive and finite the nearest one.
     pub const fn of(value: f64, side: Side) -> Self {
         Self::so_many(3, value, side)
     }

@@ -1,8 +1,7 @@
-//! How much of its damping the device may lose while everything else goes on as it runs.
+//! How much of its damping the device may lose while everything else stays unchanged.
 //!
-//! The coupling that runs was made for the passivity that was declared; a device with less of it is
-//! not the one for which an index was compared with `delta`. So the margin is not `delta` less the
-//! index.
+//! The coupling was designed for the declared passivity. For a device with less, the comparison of
+//! index and `delta` does not apply. So the margin is not `delta` less the index.
 
 use super::assessment::Assessment;
 use super::model::{LoopIntervals, Missed, largest_gain, largest_solved};
@@ -94,7 +93,7 @@ const fn searched(scene: &Scene, assessment: &Assessment) -> Option<f64> {
 pub(super) struct Limited {
     /// Bound on the index.
     pub bound: Interval,
-    /// What it has to stay below: [`paper_limit`].
+    /// Its upper bound: [`paper_limit`].
     limit: Interval,
     /// [`largest_gain`].
     gain: Interval,
@@ -133,7 +132,7 @@ impl Limited {
         Some(Self { bound, limit, gain, coupling, delta: n.delta, missed: n.missed })
     }
 
-    /// What the limit leaves over the bound, in N m s/rad.
+    /// Limit less bound, in N m s/rad.
     pub const fn injectable_damping(&self) -> f64 {
         self.limit.sub(self.bound).lo()
     }

@@ -1,4 +1,4 @@
-//! From a [`Scene`] to a [`Certified`] scene, or to a [`Rejection`] that says why not.
+//! From a [`Scene`] to a [`Certified`] scene, or to a [`Rejection`] with the reason.
 //!
 //! At compile time and on the host all of it is known: the index, what stands against it, and what would
 //! pass. A board limits every torque, and asks when it starts, and for every change that arrives over the
@@ -74,7 +74,7 @@ use assessment::{Extent, assessed};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certified<S> {
     scene: S,
-    /// What was judged.
+    /// The scene as data.
     data: Scene,
     assessment: Assessment,
 }
@@ -85,7 +85,7 @@ impl<S> Certified<S> {
         &self.scene
     }
 
-    /// The same as data, which is what was judged.
+    /// The same as data, as it was certified.
     pub const fn as_data(&self) -> &Scene {
         &self.data
     }
@@ -161,16 +161,16 @@ impl<E: StatedEnvironment> Scene<E> {
     }
 }
 
-/// The scene with its environment as data, whatever its type.
+/// The scene with its environment, of any type, as data.
 pub fn scene_data<E: EnvironmentModel>(scene: &Scene<E>) -> Scene {
     scene.described_as(scene.environment.as_data(&scene.context()))
 }
 
-/// Judges the coefficients that a servo in a number format multiplies by, whatever the type of the
+/// Certifies the coefficients by which a servo in a number format multiplies, for any type of the
 /// environment.
 ///
 /// # Errors
-/// Why the scene is not certified, and what would be.
+/// The reason for the rejection, and remedies.
 pub fn certify_scene<E: EnvironmentModel>(
     scene: Scene<E>,
     format: Format,
@@ -178,9 +178,9 @@ pub fn certify_scene<E: EnvironmentModel>(
     scene.judged(scene_data(&scene), format)
 }
 
-/// The scene timed, if a board may render it: what [`certify_scene`] and then [`Certified::time`]
-/// allow, at a fraction of the cost, without numbers and remedies. What a board asks for, whose host
-/// has the words.
+/// The scene with its timing checked, if a board may render it: the verdict of [`certify_scene`] and
+/// then [`Certified::time`] at a fraction of the cost, without numbers and remedies, which a
+/// board's host computes.
 ///
 /// # Errors
 /// [`Step::Certificate`] where it may not.
@@ -257,7 +257,7 @@ macro_rules! certify_for {
                 self.described_as(self.environment.as_data())
             }
 
-            /// Judges the scene as it was written; only one that is proved passive becomes
+            /// Certifies the scene as it was written; only a scene proved passive becomes
             /// [`Certified`].
             pub const fn certify(self) -> Result<Certified<Self>, Rejection> {
                 self.certify_in(Format::F64)

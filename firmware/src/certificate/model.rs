@@ -1,9 +1,9 @@
 //! The environments as transfer functions with interval coefficients (theory, section 5), and the
 //! bound on their index when they are one-sided or limited.
 //!
-//! What is judged is what a servo multiplies by: each coefficient is taken as its number format
-//! rounds it, and the transfer function put together from these. For [`Format::F64`] a coefficient
-//! is what was written, to the digits of a double.
+//! The certificate is about the numbers by which a servo multiplies: each coefficient is rounded as
+//! in the number format, and the transfer function is built from these. For [`Format::F64`] the
+//! coefficients are the scene's, as doubles.
 
 use super::validity::first_invalid;
 use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, Wall};
@@ -21,7 +21,7 @@ pub(super) struct LoopIntervals {
     /// Device passivity, scaled to the worst period: all indices are per tick, so a longest
     /// period of `k T` leaves `delta / k` (theory, section 8).
     pub delta: Interval,
-    /// What is missed where a torque may be latched a period after its count; see [`Missed`].
+    /// Missed updates, where a torque may be latched a period after its count.
     pub missed: Option<Missed>,
     /// Damping that a canceller takes away, `be = b - epsilon`; zero without a canceller.
     pub cancelled: Interval,
@@ -345,9 +345,9 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
-/// `solved` is what the servo's gains make of the torque: [`largest_solved`]. For a rational
-/// environment none is known, and none is given for one that cancels damping where the type `E` does
-/// not ([`EnvironmentModel::CANCELS_DAMPING`]): its program has nothing of what that takes.
+/// `solved` bounds the gain from solving a tick: [`largest_solved`]. There is no bound for a rational
+/// environment, nor for one that cancels damping where the type `E` does not
+/// ([`EnvironmentModel::CANCELS_DAMPING`]): its program has no code for that bound.
 pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
     environment: &Environment,
     solved: Interval,
@@ -508,8 +508,8 @@ const fn valid_environment(
     }
 }
 
-/// A scene's linear transfer functions from position (rad) to torque (N m), as the certificate
-/// sees them: for pictures, and for simulating what was not certified.
+/// A scene's linear transfer functions from position (rad) to torque (N m), as in the
+/// certificate: for charts, and for simulating uncertified scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopTransfers {
     /// The environment `E` alone.

@@ -125,11 +125,11 @@ impl PassivityProblem {
         }
     }
 
-    /// The answer of the rule that the verdict follows, as [`super::assess`] comes to it: what is
-    /// not certified is told apart into what is rejected and what is left undecided.
+    /// The answer of the rule that the verdict follows, as in [`super::assess`]: a scene that is
+    /// not certified is either rejected or undecided.
     pub const fn answer(&self) -> Answer {
         match self.rule {
-            // What is clear enough for "not certified" may not be for "rejected".
+            // "Rejected" may need more precision than "not certified".
             Rule::Exact => {
                 match self.exact(&self.coupled(None, &near(exact_limit(&self.numbers)))) {
                     Answer::Undecided => self.exact(&self.coupled(None, &Precision::TIGHT)),
@@ -147,13 +147,13 @@ impl PassivityProblem {
         }
     }
 
-    /// What the bound on the index of a one-sided or limited scene is, in N m s/rad; `None` where
+    /// Bound on the index of a one-sided or limited scene, in N m s/rad; `None` where
     /// none is known, and for linear scenes.
     pub const fn bound(&self) -> Option<Interval> {
         self.bound
     }
 
-    /// What the deciding index has to stay below, in N m s/rad; `None` where the rule passes none.
+    /// Upper bound on the deciding index, in N m s/rad; `None` where the rule passes none.
     pub const fn limit(&self) -> Option<Interval> {
         match self.rule {
             Rule::Exact => Some(exact_limit(&self.numbers)),
@@ -161,7 +161,7 @@ impl PassivityProblem {
         }
     }
 
-    /// What the index of the environment alone has to stay below for equations 17 to 19, in
+    /// Upper bound on the index of the environment alone for equations 17 to 19, in
     /// N m s/rad; `None` where they pass none: without compliance, and above the standard coupling.
     pub const fn paper_limit(&self) -> Option<Interval> {
         paper_limit(&self.numbers)
@@ -359,7 +359,7 @@ impl PassivityProblem {
     }
 }
 
-/// What it takes to tell on which side of `limit` an index is.
+/// Enough to decide on which side of `limit` an index is.
 const fn near(limit: Interval) -> Precision {
     Precision::around(limit.neg())
 }

@@ -1,16 +1,16 @@
 //! Whether a device comes to rest: the torque of everything that is not linear, held against the
 //! friction that the device has (theory, sections 6, 8 and 9).
 //!
-//! The certificate is about a controller without steps. Encoder, converter and the rounding of
-//! numbers make its torque another, by no more than some `e`. A dry friction of `e` or more takes
-//! from a motion what that error puts in, `f_c abs(v) >= e v`, so that the device is as passive as it
-//! was certified to be. With less it may hum at rest.
+//! The certificate is about a controller without quantisation. Encoder, DAC and the rounding of
+//! numbers change its torque by at most some `e`. Coulomb friction of `e` or more dissipates the
+//! energy of that error, `f_c abs(v) >= e v`, so that the device is as passive as certified. With
+//! less friction a limit cycle at rest is possible.
 //!
-//! For a linear scene, and for a spring that is one-sided or limited, `e` holds whatever the motion.
-//! A damper behind a face does not have such an `e`: a count more or less moves the tick in which it
-//! is switched on or off, by which the torque then differs by damping times speed. Its `e` is that of
-//! motions on one side of the face, as at rest. The same goes for a limited scene whose response may
-//! grow with each change between limited and not.
+//! For a linear scene, and for a spring that is one-sided or limited, `e` holds for any motion. A
+//! damper behind a face does not have such an `e`: a count more or less moves the tick in which it
+//! switches on or off, and the torque then differs by damping times speed. Its `e` is that of motions
+//! on one side of the face, as at rest. So is that of a limited scene whose response may grow with
+//! each change between limited and not.
 
 use core::f64::consts::TAU;
 use core::fmt;
@@ -26,12 +26,12 @@ use crate::scene::Scene;
 use crate::text::{RoundUp3, ShortF64};
 use crate::transducers::Transducers;
 
-/// What a device is besides the numbers of a scene, as far as it was stated.
+/// Data of the device that no scene has, as far as stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resolution {
     /// Angle of one encoder count in rad.
     pub encoder: Option<f64>,
-    /// Torque of the motor in N m at the converter's largest code.
+    /// Torque of the motor in N m at the DAC's largest code.
     pub full_scale: Option<f64>,
     /// Coulomb friction of the device in N m, at the motor.
     pub friction: Option<f64>,
@@ -47,7 +47,7 @@ impl Resolution {
         }
     }
 
-    /// Torque of one code of the converter in N m.
+    /// Torque of one DAC code in N m.
     fn converter(&self) -> Option<f64> {
         self.full_scale.map(|torque| torque / f64::from(DacCode::CODES_TO_FULL_SCALE))
     }
@@ -61,12 +61,12 @@ pub struct QuantizationBound {
     pub encoder: Option<f64>,
     /// Of the servo's numbers, within a turn of its zero.
     pub numbers: f64,
-    /// Of the converter: half a code.
+    /// Of the DAC: half a code.
     pub converter: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
-    /// Whether this is all that the steps do, whatever the motion. Otherwise it is what they do at
-    /// rest, and on one side of a face.
+    /// Whether the bound holds for any motion. Otherwise it holds at rest, and on one side of a
+    /// face.
     pub in_any_motion: bool,
 }
 
@@ -84,8 +84,8 @@ impl QuantizationBound {
         })
     }
 
-    /// The most that the steps that were stated move the torque together, in N m: the friction
-    /// with which the device comes to rest, and what it may hum by without.
+    /// Bound on the torque error of all stated steps together, in N m: the friction with which the
+    /// device comes to rest, else the bound on the limit cycle.
     pub fn hum(&self) -> f64 {
         self.parts().iter().filter_map(|(_, part)| *part).sum()
     }
@@ -143,7 +143,7 @@ impl fmt::Display for QuantizationBound {
 struct Peak {
     /// Largest torque in N m for positions that are off by up to 1 rad each.
     norm: f64,
-    /// Whether it is that whatever the motion.
+    /// Whether it holds for any motion.
     in_any_motion: bool,
 }
 
@@ -204,8 +204,8 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
 }
 
-/// Torque in N m by which the states of filter and canceller are off: each moves by a share of what
-/// is left of its way, and stops where that share is rounded away.
+/// Torque error in N m of the states of filter and canceller: each moves by a share of its
+/// remaining way, and stops where that share is rounded away.
 fn states(scene: &Scene, format: Format, angle: f64) -> f64 {
     let n = LoopIntervals::of(scene, format);
     let stops = |state: Washout| {

@@ -12,7 +12,7 @@ use crate::text::Sentence;
 /// Why a scene was not certified. Indices in N m s/rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rejection {
-    /// A number that makes no sense whatever the rest of the scene is.
+    /// A number that is invalid in any scene.
     Invalid(InvalidParameter),
     /// The environment has more zeros than poles: it would need future positions.
     Improper,
@@ -63,7 +63,7 @@ pub enum Rejection {
     Shortage {
         /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
         alpha: Interval,
-        /// What it has to stay below.
+        /// Its upper bound.
         delta: Interval,
         /// Where on the unit circle the linear index is reached.
         cos_theta: Interval,
@@ -74,7 +74,7 @@ pub enum Rejection {
     Missed {
         /// The index that was compared: of `E'` for linear scenes, the bound otherwise.
         alpha: Interval,
-        /// What it has to stay below with this coupling.
+        /// Its upper bound with this coupling.
         limit: Interval,
         /// Changes of one number that would pass.
         remedies: Remedies,
@@ -101,7 +101,7 @@ pub enum Rejection {
         doubt: UndecidedReason,
         /// The index, where it was enclosed.
         index: Option<Interval>,
-        /// What it had to stay below.
+        /// Its upper bound.
         limit: Option<Interval>,
         /// Changes of one number that would pass.
         remedies: Remedies,

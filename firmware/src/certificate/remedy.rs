@@ -7,8 +7,8 @@ use crate::text::Text;
 
 /// One number that, changed to any value from `lowest` to `highest`, makes the scene pass.
 ///
-/// The ends are certified as they are written, and what is between them is proved to pass with
-/// them. Where it is not, both are the same.
+/// The ends are certified as they are written, and all values between them are proved to pass.
+/// Without a proof both ends are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedy {
     /// Which number.
@@ -16,9 +16,9 @@ pub struct Remedy {
     /// The least value. `None`: the scene passes down to 0, for a period with all that are longer
     /// than 0.
     pub lowest: Option<f64>,
-    /// The greatest value. `None`: the scene passes with whatever is more, up to the device's
-    /// damping where that bounds it: no device has more passivity, and a residual above it is
-    /// damping added.
+    /// The greatest value. `None`: the scene passes with any larger value, up to the device's
+    /// damping where that bounds it: no device has more passivity, and a residual above it adds
+    /// damping.
     pub highest: Option<f64>,
 }
 

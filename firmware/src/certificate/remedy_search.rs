@@ -73,7 +73,7 @@ const fn softer_behind_standard(scene: &Scene, format: Format) -> Option<(f64, R
     }
 }
 
-/// What the scene lacks as it is.
+/// The scene's own shortage.
 #[inline(never)]
 const fn shortage(scene: &Scene, format: Format) -> Option<f64> {
     match PassivityProblem::in_format(scene, format) {

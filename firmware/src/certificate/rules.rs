@@ -11,7 +11,7 @@ use crate::scene::Scene;
 pub enum Answer {
     /// Proved.
     Pass,
-    /// Disproved, or outside what the rule covers.
+    /// Disproved, or not covered by the rule.
     Fail,
     /// Neither; never means yes.
     Undecided,
@@ -45,7 +45,7 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
         || !scene.environment.has_transfer()
 }
 
-/// What the index has to stay below for the paper's rule: `K_vc T / 2`, for the coupling spring to
+/// Upper bound on the index by the paper's rule: `K_vc T / 2`, for the coupling spring to
 /// be output strictly passive enough (condition 18), and `delta`. At the standard coupling both are
 /// `delta`; a stiffness that equals it to the digits that were written, which may be a few units of
 /// the last place above it, counts as standard. `None` where the rule does not hold: above the

@@ -1,4 +1,4 @@
-//! The search for the zero of what a scene lacks, between a value that fails and one that passes.
+//! Root search for a scene's shortage, between a failing and a passing value.
 
 use super::digits::{Digits, Side};
 
@@ -9,7 +9,7 @@ const MAX_LOOKS: u32 = 14;
 /// the next digit fails.
 const NEAR: f64 = 0.03;
 
-/// A value of the number that is searched for, and what the scene lacks with it.
+/// A value of the number in question, and the shortage with it.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub value: f64,
@@ -31,7 +31,7 @@ impl Look {
     }
 }
 
-/// A value that fails and one that passes.
+/// A failing and a passing value.
 #[derive(Clone, Copy)]
 pub(super) struct Bracket {
     pub fails: Look,
@@ -148,7 +148,7 @@ impl Search {
         (self.last.value - self.previous.value).abs() <= NEAR * self.last.value
     }
 
-    /// Takes in what was seen at the value that [`Search::next`] asked for.
+    /// Takes the shortage at the value of [`Search::next`].
     pub const fn learn(&mut self, value: Digits, shortage: Option<f64>) {
         self.previous = self.last;
         self.last = Look { value: value.value(), shortage };

@@ -4,14 +4,14 @@ use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
 use crate::text::Text;
 
-/// A number that makes no sense whatever the rest of the scene is.
+/// A number that is invalid in any scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InvalidParameter {
     /// Which number.
     pub parameter: Parameter,
     /// Its value.
     pub value: f64,
-    /// What it has to be.
+    /// Its valid range.
     pub bound: &'static str,
     /// The number of the scene that `bound` ends in, in the same unit; `None` where it says all.
     pub limit: Option<f64>,
@@ -68,7 +68,7 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     }
 }
 
-/// The same without polynomials, which no bound that a board asks for depends on.
+/// The same without polynomials, on which no bound for a board depends.
 pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParameter> {
     let (mut copy, mut i) = (*scene, 0);
     while i < Parameter::ALL.len() {
@@ -87,7 +87,7 @@ pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParamet
     None
 }
 
-/// What is in its range, and does not fit another number of the scene.
+/// A number in its range that conflicts with another one of the scene.
 const fn unrelated(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
@@ -150,7 +150,7 @@ mod tests {
             "rejected: the device passivity is 0.22 N m s/rad, and must be finite and at most the \
              device damping, which no device's passivity exceeds: 0.022 N m s/rad"
         );
-        // What is no passivity at all keeps the reason that it had.
+        // An invalid passivity keeps its own reason.
         for passivity in [0.0, -1.0] {
             let refused = with_passivity(passivity).unwrap_err();
             assert!(matches!(refused, Rejection::NoPassivity { .. }), "{refused:?}");

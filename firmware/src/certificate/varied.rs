@@ -16,8 +16,8 @@ pub(super) const FARTHEST: f64 = 64.0;
 const FIRST_STEP: f64 = 1.25;
 /// The factor of a step where next to nothing is lacking.
 const LEAST_STEP: f64 = 1.01;
-/// Values that are certified in the end: past the one that was found, one more of its last digit
-/// each, for what is so near its limit that only the certificate tells.
+/// Values that are certified in the end: the one found, then one more of its last digit each, as
+/// next to a limit only the certificate decides.
 const CANDIDATES: u32 = 3;
 
 /// A scene with one of its numbers open.
@@ -31,7 +31,7 @@ impl Varied<'_> {
     /// The values that pass, from the nearest on: to three digits on the side that passes, and
     /// certified.
     ///
-    /// `own` is what the scene lacks as it is.
+    /// `own` is the scene's shortage.
     pub const fn remedy(&self, own: Option<f64>) -> Option<Remedy> {
         let parameter = self.parameter;
         let side = match parameter {
@@ -47,8 +47,8 @@ impl Varied<'_> {
         })
     }
 
-    /// The other end of what is proved to pass with the nearest value; `None` where that goes as
-    /// far as it makes sense, and the same value where nothing else is proved.
+    /// The other end of the range proved to pass with the nearest value; `None` if the range has
+    /// no other end, and the same value if nothing else is proved.
     const fn other_end(&self, nearest: f64) -> Option<f64> {
         let last = match (between(self.scene, self.format, self.parameter, nearest), self.parameter)
         {

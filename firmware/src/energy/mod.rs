@@ -1,10 +1,9 @@
 //! The energy that goes into the hand, observed from counts and codes, and a damper against it.
 //!
-//! Over a period the converter holds a code and the device moves by some counts: their product is
-//! the work that the motor did, in the unit of [`Transducers::energy_unit`], exactly and without
-//! drift. A passive environment gives back what was put in and no more; what it has given beyond
-//! that is a *deficit*. On a Cortex-M4 that is 11 instructions a tick, and 3 to see that there is no
-//! damper.
+//! Over a period the DAC holds a code and the device moves by some counts: their product is the work
+//! of the motor, in the unit of [`Transducers::energy_unit`], exactly and without drift. A passive
+//! environment returns at most the energy that was put in; the excess is a *deficit*. On a Cortex-M4
+//! that costs 11 instructions a tick, and the test for a damper 3.
 //!
 //! [`Transducers::energy_unit`]: crate::servo::Transducers::energy_unit
 
@@ -19,7 +18,7 @@ use crate::output_timing::{OutputMode, OutputTiming};
 /// Observes passivity, one tick at a time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyMonitor {
-    /// Codes above mid-scale that the converter holds until the next count is read.
+    /// Codes above mid-scale that the DAC holds until the next count is read.
     held: i32,
     /// Those that it holds after that, where it is latched.
     next: i32,
@@ -56,7 +55,7 @@ impl EnergyMonitor {
         }
     }
 
-    /// Starts from nothing, with the converter at mid-scale.
+    /// Starts at zero energy, with the DAC at mid-scale.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
@@ -101,7 +100,7 @@ impl<N: Number> Action<N> for NoAction {
 }
 
 /// A damper on the environment's velocity of the previous two samples, switched on and off at
-/// will: whatever the switching, it adds at most its damping to the index (theory, section 5).
+/// will: any switching adds at most its damping to the index (theory, section 5).
 #[derive(Clone, Debug)]
 pub(crate) struct Injector<N: Number> {
     /// Damping over the period, in N m/rad.

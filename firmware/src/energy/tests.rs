@@ -87,8 +87,8 @@ proptest! {
         prop_assert!(monitor.net() >= exact.net());
     }
 
-    /// Theory, section 5: whatever the input and the switching, the environment with the damper
-    /// beside it gives back at most index and damping together.
+    /// Theory, section 5: with any input and any switching, the index of the environment with the
+    /// damper is at most index plus damping.
     #[test]
     fn a_switched_damper_adds_its_damping_to_the_index(
         stiffness in 0.0..40.0_f64,
@@ -208,7 +208,7 @@ fn let_go(injection: Option<f64>) -> (f64, EnergyMonitor) {
         let code = rendering.tick(RawCount::from(count), &energy).code;
         energy.observe::<Latched>(count - last, code);
         last = count;
-        // An exact hold: the speed decays to the one that the torque keeps up.
+        // An exact hold: the speed decays to its steady state.
         let decay = (-damping / inertia * PERIOD).exp();
         let kept: f64 = latched / damping;
         angle += kept * PERIOD + (speed - kept) * (1.0 - decay) * inertia / damping;

@@ -56,13 +56,13 @@ pub enum Environment {
     /// One of another crate.
     Stated(StatedModel),
     /// [`Rational`].
-    // No board renders one, and none says so on its wire.
+    // No board renders one, so it is not on the wire.
     #[cfg_attr(feature = "wire", serde(skip))]
     Rational(Rational),
 }
 
 impl Environment {
-    /// The wall, if it has one. A spring has no damper, whatever its wall says.
+    /// The wall, if it has one. A spring ignores its wall's damping.
     pub const fn wall(&self) -> Option<Wall> {
         match self {
             Self::DelayedSpring(wall) => Some(Wall { damping: 0.0, filter: None, ..*wall }),
@@ -237,7 +237,7 @@ impl<N: Number> Discretize<N> for Environment {
 
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         Ok(match self {
-            // A spring has no damper, whatever the field says.
+            // A spring ignores its wall's damping.
             Self::DelayedSpring(wall) => {
                 EnvironmentLaw::Wall(Wall { damping: 0.0, filter: None, ..*wall }.law(setting)?)
             }

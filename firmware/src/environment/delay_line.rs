@@ -8,7 +8,7 @@ use crate::number::Number;
 pub trait DelayLine<N>: Clone + core::fmt::Debug {
     /// The torque that is due in this tick; `None` where there is no delay.
     fn due(&self) -> Option<N>;
-    /// Takes this tick's torque and drops the one that was due.
+    /// Stores this tick's torque and drops the oldest one.
     fn push(&mut self, torque: N);
     /// Fills it with one torque.
     fn fill(&mut self, torque: N);

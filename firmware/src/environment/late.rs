@@ -28,8 +28,8 @@ macro_rules! delayed {
 delayed!(1 2 3 4 5 6 7 8);
 delayed!(@ Environment, Rational,);
 
-/// An environment that can be rendered in the mode `M`: any of them where count and torque are
-/// simultaneous, one that is [`Delayed`] where a torque takes time.
+/// An environment that can be rendered in the mode `M`: any environment where count and torque
+/// are simultaneous, a [`Delayed`] one where a torque takes time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
     label = "this environment needs a delay of 1 to 8 samples",

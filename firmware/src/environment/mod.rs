@@ -36,7 +36,7 @@ macro_rules! for_every_environment {
 }
 pub(crate) use for_every_environment;
 
-/// What only this crate says of a type.
+/// Traits for this crate's types alone.
 mod sealed {
     pub trait Sealed {}
 }

@@ -1,10 +1,10 @@
-//! What the certificate knows an environment by: those of this crate as data, those of other crates by
-//! what they state of themselves, so that they are judged and rendered like the ones that are here.
+//! Models of environments for the certificate: those of this crate as data, those of other crates by a
+//! statement of their properties, so that they are certified and rendered like this crate's.
 //!
-//! A type of another crate has a difference equation ([`Discretize`](super::Discretize)), numbers that
-//! have names ([`NamedParameters`]), and a statement of what it is to the certificate
-//! ([`StatedEnvironment`]). The certificate rests on that statement as it rests on the declared
-//! passivity of the device: it lists it among its assumptions.
+//! A type of another crate has a difference equation ([`Discretize`](super::Discretize)), named
+//! numbers ([`NamedParameters`]), and a statement for the certificate ([`StatedEnvironment`]). The
+//! certificate relies on that statement as it relies on the declared passivity of the device: it
+//! lists it among its assumptions.
 //!
 //! A constant is certified with the statement as a value, since a trait's methods are not called at
 //! compile time ([`Scene::certified_as`](crate::scene::Scene::certified_as)); a board asks the trait
@@ -24,11 +24,11 @@ pub trait StatedEnvironment: NamedParameters + Copy + 'static {
 
 /// An environment that the certificate knows: one of this crate's, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
-    /// Whether it may cancel the device's damping. The program of an environment whose type says that
-    /// it does not has nothing of what it takes to judge that.
+    /// Whether it may cancel the device's damping. If not, the program of the environment omits the
+    /// code that certifies cancelled damping.
     const CANCELS_DAMPING: bool;
 
-    /// As data, which is what is judged.
+    /// As data, for the certificate.
     fn as_data(&self, context: &LawContext) -> Environment;
 }
 

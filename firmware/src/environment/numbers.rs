@@ -48,10 +48,10 @@ impl Environment {
         Some(changed)
     }
 
-    /// The number of this name, if it has one that is no whole number.
+    /// The number of this name, unless it is a whole number.
     const fn number(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match (parameter, self) {
-            // A spring has no damper, whatever its wall says.
+            // A spring ignores its wall's damping.
             (Parameter::Damping | Parameter::Filter, Self::DelayedSpring(_)) => None,
             (
                 Parameter::Residual,

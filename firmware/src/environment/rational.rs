@@ -96,7 +96,7 @@ impl Coefficients {
         (self.len - i).saturating_sub(1)
     }
 
-    /// The coefficients from the leading one that is not zero on.
+    /// The coefficients without leading zeros.
     fn without_leading_zeros(&self) -> &[f64] {
         let leading = self.as_slice().iter().position(|c| *c != 0.0).unwrap_or(self.len);
         self.as_slice().get(leading..).unwrap_or(&[])
@@ -221,11 +221,11 @@ impl<N: Number> Discretize<N> for Rational {
 }
 
 impl Rational {
-    /// The same transfer function without the factors `z - 1` and `z + 1` that numerator and
-    /// denominator have in common, and with its delay apart: this is what is judged and what runs.
+    /// The same transfer function without common factors `z - 1` and `z + 1` of numerator and
+    /// denominator, and with its delay apart: this form is certified and runs.
     ///
-    /// A common factor does not show in the transfer function, but in a difference equation it is a
-    /// mode that does not decay, and that each rounding drives further.
+    /// A common factor does not show in the transfer function, but in a difference equation it is
+    /// an undamped mode that each rounding drives further.
     pub(crate) const fn cancelled(&self) -> Self {
         let mut out = *self;
         out.cancel(1.0);
@@ -235,7 +235,7 @@ impl Rational {
     }
 
     /// Its delay in whole samples, in the denominator or beside it: that of [`Rational::cancelled`],
-    /// since what is cancelled has no part in it.
+    /// since cancelled factors add no delay.
     pub(crate) const fn whole_delay(&self) -> usize {
         self.delay + self.poles_at_zero()
     }

@@ -30,8 +30,8 @@ pub struct StatedBound {
     /// `F_k` of every motion, `sum F_k (x_k - x_(k-1)) + alpha / T sum (x_k - x_(k-1))^2` is bounded
     /// from below, with the torque limited to any level.
     ///
-    /// A servo moves that level while it fades: a level that falls may only take energy away, and one
-    /// that rises may put in what the environment stores where it is, once. So it is for a spring.
+    /// A servo moves that level while it fades: a falling level may only remove energy, and a rising
+    /// level may add, once, the energy that the environment stores there, as for a spring.
     pub index: f64,
     /// Upper bound in N m s/rad on the change of the torque over that of the position, in the l2 norm
     /// and times the period (equation 37).

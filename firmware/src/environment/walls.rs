@@ -1,4 +1,4 @@
-//! Springs and damper walls: what a person asks for, and the law that it becomes.
+//! Springs and damper walls: their numbers in a scene, and the law from these.
 
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Discretize, LawContext};

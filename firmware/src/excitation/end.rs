@@ -1,21 +1,21 @@
 //! How a sweep ended: the last word of the record on the wire.
 
-/// Version of what a board that plays a sweep says and hears.
+/// Version of the protocol of a board that plays a sweep.
 pub const SWEEP_PROTOCOL: u32 = 1;
 
 /// Bytes that the host sends.
 pub mod byte {
-    /// Asks for the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`.
+    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`.
     pub const DESCRIBE: u8 = b'?';
     /// Begins the sweep. The record follows, and behind it `end,WORD,count`.
     pub const BEGIN: u8 = b'g';
-    /// Says that the host still listens; any other byte but these three ends the sweep.
+    /// Keep-alive of the host; any byte but these three ends the sweep.
     pub const LISTENING: u8 = b'k';
     /// A byte that ends it.
     pub const STOP: u8 = b'x';
 }
 
-/// Time in s without a byte from the host after which a sweep ends: nobody would see it go wrong.
+/// Time in s without a byte from the host after which a sweep ends, as it is not supervised.
 pub const SILENCE: f64 = 0.5;
 
 /// How a sweep ended.

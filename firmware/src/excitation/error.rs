@@ -5,14 +5,14 @@ use core::fmt;
 use super::LEAST_PERIODS;
 use crate::text::Text;
 
-/// What is wrong with a sweep. Tones are counted from 0.
+/// Errors in a sweep. Tones are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SweepError {
     /// The period or the motor's torque is zero, negative or not finite.
     NotPositive {
-        /// What it is.
+        /// Its name.
         name: &'static str,
-        /// What was given.
+        /// Its value.
         value: f64,
     },
     /// A frequency that is no sine when it is sampled.

@@ -4,10 +4,10 @@ use super::sine::{QUINTIC, sine};
 use super::{Step, Sweep};
 use crate::dac::DacCode;
 
-/// What a sweep gives for one sample.
+/// The output of a sweep in a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Excitation {
-    /// What the DAC shall hold.
+    /// Code for the DAC.
     pub code: DacCode,
     /// The tone that this sample belongs to the measured part of; `None` while the device settles
     /// and after the sweep.

@@ -97,8 +97,8 @@ impl<const N: usize> Sweep<N> {
     /// Checks tones for a period in s and a motor.
     ///
     /// # Errors
-    /// For the first tone that is out of the range of converter or sampling, or whose parts are no
-    /// whole number of samples.
+    /// For the first tone that is out of the range of DAC or sampling, or whose parts are no whole
+    /// number of samples.
     pub const fn new(
         period: f64,
         transducers: &Transducers,

@@ -1,7 +1,7 @@
-//! What stops a servo: torque to zero, amplifier off, and a record of why.
+//! Faults. They stop a servo: torque to zero, amplifier off, and a record.
 //!
-//! A fault is not a [limit reason](crate::torque::LimitReason), which only says why an output is
-//! less than was asked for. After a fault the motor stays off until it is armed again.
+//! A fault is not a [limit reason](crate::torque::LimitReason), which is only the reason for a
+//! reduced torque. After a fault the motor stays off until it is armed again.
 
 mod record;
 
@@ -12,8 +12,8 @@ use core::fmt;
 /// What stopped the servo, with the numbers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Updates were missed beyond what the certificate tolerates: a tick came late, or ended after
-    /// the update that it was for.
+    /// More updates were missed than the certificate tolerates: a tick came late, or ended after
+    /// its update.
     MissedTick {
         /// Updates that were missed in a row.
         missed: u32,
@@ -43,14 +43,14 @@ pub enum Fault {
         /// Column of the source.
         column: u32,
     },
-    /// The processor met what it cannot execute.
+    /// The processor raised a hard fault.
     HardFault {
         /// Program counter.
         address: u32,
         /// The processor's configurable fault status.
         status: u32,
     },
-    /// A tick began so late in its period that its count is not the one that the certificate has.
+    /// A tick began later in its period than the certificate allows for its count.
     LateTick {
         /// Timer counts after the beginning of its period.
         late: u32,

@@ -4,7 +4,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 use super::Fault;
 
-/// Says that the words are such a record, and of this layout.
+/// Marks the words as a record of this layout.
 const MAGIC: u32 = 0x4841_5031;
 
 /// Without a table: a record is written once, and a table would take a kilobyte.

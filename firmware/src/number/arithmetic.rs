@@ -19,7 +19,7 @@ pub enum Arithmetic {
     I8F24,
     /// The same, cut off.
     I8F24Truncated,
-    /// To 1 of whatever units the scene is scaled to, in steps of 5e-10.
+    /// To 1, in the units to which the scene is scaled, by 5e-10.
     I1F31,
     /// The same, cut off.
     I1F31Truncated,
@@ -27,7 +27,7 @@ pub enum Arithmetic {
 
 /// Something to be done in a number format that is known at run time.
 pub trait InEach {
-    /// What it gives.
+    /// The result.
     type Output;
     /// Does it in the format `N`.
     fn with<N: Number>(self) -> Self::Output;
@@ -60,7 +60,7 @@ impl Arithmetic {
         }
     }
 
-    /// What the certificate knows it by.
+    /// Its number format.
     pub fn format(self) -> Format {
         self.choose(OfNumber)
     }

@@ -74,7 +74,7 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
     /// the format's range.
     fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
-    /// The factor for [`Number::codes_below`] from the converter's codes per N m, rounded
+    /// The factor for [`Number::codes_below`] from the DAC's codes per N m, rounded
     /// [`Rounding::Inward`].
     fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;
     /// `centre - torque * scale` rounded to the nearest whole code, for results in `0..=4095`.
@@ -160,7 +160,7 @@ impl fmt::Display for OutOfRange {
 
 impl core::error::Error for OutOfRange {}
 
-/// The value if its magnitude is at most `bound` (a NaN is not), else the error that says so.
+/// The value if its magnitude is at most `bound` (never for NaN), else the error.
 fn bounded(value: f64, bound: f64, format: Format) -> Result<f64, OutOfRange> {
     if value.abs() <= bound { Ok(value) } else { Err(OutOfRange { value, bound, format }) }
 }

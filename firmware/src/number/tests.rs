@@ -1,4 +1,4 @@
-//! What the formats promise, for all of them alike where they promise the same.
+//! Properties of the formats, shared where they are the same.
 
 use fixed::FixedI32;
 use fixed::types::extra::{U16, U24, U28, U31};
@@ -127,7 +127,7 @@ proptest! {
         prop_assert!((coefficient::<Q16>(value) - value).abs() <= bound);
     }
 
-    /// What the certificate takes the coefficients for is what they are.
+    /// The certificate's coefficients equal the servo's.
     #[test]
     fn a_coefficient_is_known_without_its_type(value in -2e9..2e9_f64, power in 0..25) {
         fn same<N: Number>(value: f64) -> Result<(), TestCaseError> {
@@ -136,7 +136,7 @@ proptest! {
             prop_assert_eq!(nearest, coefficient::<N>(value));
             prop_assert!(inward.abs() <= value.abs() && value.abs() <= outward.abs());
             prop_assert!(nearest == inward || nearest == outward);
-            // Nothing lies between the two: what is there is one of them.
+            // No number lies between the two.
             let between = 0.5 * (inward + outward);
             prop_assert!([inward, outward].contains(&coefficient::<N>(between)));
             Ok(())

@@ -7,8 +7,8 @@ use fixed::types::extra::LeEqU32;
 use super::{Format, Number, OutOfRange, Scaled};
 
 /// A [`fixed::FixedI32`] whose angles and products are the largest numbers of the format that do
-/// not lie above the exact ones. Its coefficients are those of the rounded format, and the
-/// converter's codes are the nearest ones in both.
+/// not lie above the exact ones. Its coefficients are those of the rounded format, and DAC codes
+/// are the nearest ones in both.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Truncated<F>(F);
 

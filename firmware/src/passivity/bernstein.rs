@@ -20,10 +20,10 @@ const POOL: usize = 2 * SIZE * 5;
 const MAX_WAITING: usize = 16;
 const MAX_BOXES: u32 = 600;
 const MAX_LEVEL: u32 = 30;
-/// Smallest width of an enclosure, relative to its magnitude, that is asked for anywhere.
+/// Smallest requested width of an enclosure, relative to its magnitude.
 const TOLERANCE: f64 = 1e-13;
-/// How far from a border a bound has to be to settle on which side the minimum is, relative to the
-/// border: far beyond rounding, so that closer looks would not have told anything else.
+/// Distance of a bound from a border, relative to the border, that decides on which side the
+/// minimum is: far beyond rounding, so that a finer search would not change the decision.
 const CLEARANCE: f64 = 1e-9;
 
 /// How closely a minimum is looked at.
@@ -41,7 +41,7 @@ impl Precision {
     /// As tight as it gets.
     pub const TIGHT: Self = Self { border: Interval::ENTIRE, tolerance: TOLERANCE };
 
-    /// What it takes to tell on which side of a border the minimum is.
+    /// Enough to decide on which side of a border the minimum is.
     pub const fn around(border: Interval) -> Self {
         Self { border, ..Self::TIGHT }
     }
@@ -92,9 +92,9 @@ impl Waiting {
 /// Encloses the minimum of `p / r` over `c` in `[-1, 1]`; `r` must be positive there, which is
 /// proved on the way.
 ///
-/// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits where a root
-/// comes near, being squares of what is small there; who has the square's root knows better, and
-/// what is known at the ends is known of every box beside them.
+/// `ends` encloses `r` at -1 and at 1. As sums of the series the two lose all digits near a root,
+/// as squares of small numbers; a caller that has the roots of these squares encloses them better,
+/// and every box next to an end profits.
 #[inline(never)]
 pub const fn minimum(
     p: &Series,
@@ -225,8 +225,8 @@ impl Search {
         bound.lower > self.clearly_above || bound.lower >= self.upper - slack
     }
 
-    /// Halves the box. Goes on with the half that has the smaller lower bound and puts the other
-    /// aside; a half that cannot hold a smaller value is settled at once.
+    /// Halves the box. Returns the half with the smaller lower bound and queues the other one; a
+    /// half that cannot hold a smaller value is settled at once.
     #[inline(never)]
     const fn split(&mut self, pieces: &mut Pieces, parent: Waiting) -> Waiting {
         let n = self.degree;

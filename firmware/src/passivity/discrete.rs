@@ -62,8 +62,8 @@ pub const fn index_near(
     index_looked_at(&environment, period, widen, &Precision::around(limit.neg()))
 }
 
-/// [`index`], its enclosure no tighter than `tolerance` times its magnitude: sound as that, and
-/// what it costs to be so tight can be seen.
+/// [`index`], its enclosure no tighter than `tolerance` times its magnitude: as sound, and
+/// shows the cost of the tighter one.
 pub const fn index_within(
     environment: Transfer,
     period: Interval,

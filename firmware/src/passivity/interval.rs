@@ -225,7 +225,7 @@ impl Interval {
 }
 
 /// Newton's iteration, then the quotient on the other side of the root: `r` and `x / r` enclose
-/// it whatever `r` is.
+/// it for any `r`.
 const fn sqrt_enclosure(x: f64) -> Interval {
     if x == 0.0 {
         return Interval::ZERO;

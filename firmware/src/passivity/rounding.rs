@@ -7,7 +7,7 @@
 /// All bits of a double but its sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;
 const SIGN: u64 = !MAGNITUDE;
-/// The bits of the exponent, which are those of infinity; above are what is no number.
+/// The bits of the exponent, which are those of infinity; NaNs are above.
 const EXPONENT: u64 = f64::INFINITY.to_bits();
 /// The first bit of a normal number's mantissa, which is not written.
 const IMPLICIT: u64 = 1 << 52;
@@ -98,7 +98,7 @@ const fn is_normal(bits: u64) -> bool {
 /// bits of the factors fit a mantissa together.
 const fn fits_a_mantissa(a: f64, b: f64) -> bool {
     let (a, b) = (a.to_bits(), b.to_bits());
-    // Of the 53 bits of a mantissa, those behind the last one that is set.
+    // Of the 53 bits of a mantissa, those after the last set bit.
     let behind = (a | IMPLICIT).trailing_zeros() + (b | IMPLICIT).trailing_zeros();
     behind >= 53 && is_normal(a) && is_normal(b)
 }
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// Overflow and what is below the normal numbers: no bound inside of the exact result.
+    /// Overflow and subnormal numbers: no bound inside of the exact result.
     #[test]
     fn bounds_at_the_ends_of_the_range_are_outward() {
         assert_eq!(add_down(f64::MAX, f64::MAX), f64::MAX);

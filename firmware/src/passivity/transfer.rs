@@ -130,8 +130,8 @@ impl Transfer {
         Some(Self { ones, ..Self::new(left.plus(&right), denominator) })
     }
 
-    /// What it is of the numerator of a sum over the common denominator, without the zeros at 1
-    /// that both summands have.
+    /// Its share of the numerator of a sum over the common denominator, without the common zeros
+    /// at 1.
     #[inline(never)]
     const fn summand(&self, other: &Self, ones: i32) -> Option<Polynomial> {
         let own = self.numerator_with_roots(self.shift, self.ones - ones, self.minus_ones);

@@ -42,7 +42,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         self.limiter.clamp_to_held_torque(self.torque);
     }
 
-    /// Puts a torque in the place of the one that is held: no input makes one that is no number.
+    /// Replaces the held torque, for tests with NaN, which no input causes.
     #[cfg(test)]
     pub(crate) fn poison(&mut self, torque: N) {
         self.torque = torque;
@@ -62,7 +62,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         x
     }
 
-    /// Goes on from another servo's position.
+    /// Copies another servo's position.
     pub(crate) fn take_position_from(&mut self, other: &Self) {
         self.position = other.position;
     }

@@ -21,12 +21,12 @@ use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
 
-/// What a tick gives.
+/// Result of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// What the DAC shall hold.
+    /// Code for the DAC.
     pub code: DacCode,
-    /// Why this is less than the scene asked for.
+    /// The reason if this torque is limited.
     pub limit: LimitReason,
 }
 
@@ -86,7 +86,7 @@ impl<E: EnvironmentModel + Discretize<N>, N: Number> Servo<E, N> {
 }
 
 impl<E: Discretize<N>, N: Number> Servo<E, N> {
-    /// The servo of a scene that somebody else has judged.
+    /// The servo of a scene that the caller has certified.
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;

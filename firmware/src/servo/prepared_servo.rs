@@ -14,7 +14,7 @@ use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
 use crate::scene::{Scene, Timing};
 use crate::transducers::Transducers;
 
-/// What is not of the scene, but of how it is rendered.
+/// Options of the rendering, apart from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 pub struct RenderingOptions {
@@ -27,7 +27,7 @@ pub struct RenderingOptions {
 }
 
 impl RenderingOptions {
-    /// Fades within a tenth of a second: slow for a step to be felt, quick for whoever waits.
+    /// Fades within a tenth of a second: too slow to feel as a step, and a short wait.
     /// Injects nothing.
     pub const DEFAULT: Self = Self { fade: 0.1, injection: None };
 }
@@ -66,7 +66,7 @@ pub struct PreparedServo<E: Discretize<N>, N: Number, M> {
     mode: PhantomData<M>,
 }
 
-/// What the time between two updates may be.
+/// Limits on the time between updates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingLimits {
     /// The period in s.
@@ -105,7 +105,7 @@ where
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
     /// From a certificate in this number format.
-    // In a frame of its own: what it takes is not on the stack while a scene is judged.
+    // Not inlined: its frame is off the stack while a scene is certified.
     #[inline(never)]
     pub(crate) fn build(
         timed: &TimingChecked<Scene<E>, M>,
@@ -139,8 +139,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         Ok(Self { servo, injector, pace, mode: PhantomData })
     }
 
-    /// One tick: the code to be written now. Where there is a deficit of energy, damping is
-    /// injected, if that is asked for.
+    /// One tick: the code to be written now. A deficit of energy injects damping, if the
+    /// options have it.
     #[inline(always)]
     pub fn tick(&mut self, raw: RawCount, energy: &EnergyMonitor) -> Output {
         let Some(injector) = &mut self.injector else {
@@ -170,7 +170,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
         }
     }
 
-    /// What the time between two updates may be.
+    /// Limits on the time between updates.
     pub const fn timing_limits(&self) -> TimingLimits {
         self.pace
     }
@@ -180,8 +180,7 @@ impl TimingLimits {
     /// Ticks up to which a wrapping counter of them tells the future from the past.
     pub(crate) const LONGEST: u32 = i32::MAX.cast_unsigned();
 
-    /// Whole periods in `time` s, at least one and at most as many as can be told from a past that
-    /// long ago.
+    /// Whole periods in `time` s, at least one and at most [`LONGEST`](Self::LONGEST).
     pub(crate) fn ticks(&self, time: f64) -> u32 {
         // The cast gives the nearest of what does not fit.
         ((time / self.period) as u32).clamp(1, Self::LONGEST)

@@ -11,8 +11,8 @@ use crate::output_timing::OutputTiming;
 const FAULT_FREE_TICKS: u32 = MAX_DELAY as u32 + 2;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// The code of a servo that is not simply running. Whatever the rest of the program thinks:
-    /// without being armed there is no torque.
+    /// The code of a servo that is not simply running: without being armed there is no torque, in
+    /// any state of the program.
     #[cold]
     #[inline(never)]
     pub(super) fn unless_disarmed(&self, code: DacCode) -> DacCode {
@@ -121,12 +121,12 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.link_deadline = self.tick.wrapping_add(self.link_timeout);
     }
 
-    /// Detects a host that is silent for too long, and fades the torque out if the policy says so.
+    /// Detects a host that is silent for too long, and fades the torque out if the policy is that.
     pub(super) fn check_link(&mut self) {
         if self.tick.wrapping_sub(self.link_deadline).cast_signed() < 0 {
             return;
         }
-        // From here on every tick would come here; the next one that does is far away.
+        // Without a new deadline every later tick would come here, too.
         self.link_deadline = self.tick.wrapping_add(TimingLimits::LONGEST);
         if self.link == LinkPolicy::Ignore {
             return;

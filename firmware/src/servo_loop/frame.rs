@@ -1,4 +1,4 @@
-//! One tick as it is told to the host.
+//! One tick as sent to the host.
 
 use super::State;
 use crate::dac::DacCode;
@@ -13,9 +13,9 @@ pub struct Frame {
     pub count: i32,
     /// The code that was written.
     pub code: DacCode,
-    /// Why it is less than the scene asked for.
+    /// The reason if it is limited.
     pub limit: LimitReason,
-    /// What the servo was doing.
+    /// The servo's state.
     pub state: State,
     /// Timer counts that were left of the period; 0 where the tick was late.
     pub slack: u32,

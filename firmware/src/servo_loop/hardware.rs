@@ -1,4 +1,4 @@
-//! What a board gives the servo's interrupt.
+//! Hardware of the servo's interrupt.
 
 use crate::dac::DacCode;
 use crate::encoder::RawCount;

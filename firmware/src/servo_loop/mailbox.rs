@@ -19,12 +19,12 @@ const SETS: usize = 2;
 /// Notices that wait, and that place.
 const NOTICES: usize = 6;
 
-/// The place where both meet; `R` is what is swapped in, a [`PreparedServo`](crate::servo::PreparedServo).
+/// Shared by both ends; `R` is the swapped servo, a [`PreparedServo`](crate::servo::PreparedServo).
 #[derive(Debug)]
 pub struct Mailbox<R> {
     sets: Queue<R, SETS>,
     notices: Queue<Notice, NOTICES>,
-    /// What is asked for; the interrupt looks at nothing else in an ordinary tick.
+    /// Pending requests; the interrupt reads nothing else in an ordinary tick.
     pending: AtomicU32,
 }
 
@@ -57,18 +57,18 @@ pub struct Requests<'a, R> {
 }
 
 impl<R> Requests<'_, R> {
-    /// Asks for the servo to be armed; [`Notice::Armed`] or [`Notice::NotArmed`] answers.
+    /// Requests arming; [`Notice::Armed`] or [`Notice::NotArmed`] answers.
     pub fn arm(&self) {
         self.post(ARM);
     }
 
-    /// Asks for the clamp to be closed and the amplifier switched off; [`Notice::Disarmed`]
-    /// answers. Asked for together with arming, disarming wins.
+    /// Requests to close the clamp and to switch the amplifier off; [`Notice::Disarmed`] answers.
+    /// If arming is requested as well, disarming wins.
     pub fn disarm(&self) {
         self.post(DISARM);
     }
 
-    /// Asks for a [`Notice::Status`].
+    /// Requests a [`Notice::Status`].
     pub fn request_status(&self) {
         self.post(STATUS);
     }
@@ -116,13 +116,13 @@ pub(super) struct PendingRequests {
 }
 
 impl<R> Inbox<'_, R> {
-    /// What is asked for, as a word; zero where it is nothing.
+    /// Pending requests as a word; zero if none.
     #[inline(always)]
     pub(super) fn pending(&self) -> u32 {
         self.pending.load(Ordering::Relaxed)
     }
 
-    /// What is asked for, once.
+    /// Pending requests, once.
     pub(super) fn take(&self) -> PendingRequests {
         let pending = self.pending.swap(0, Ordering::Acquire);
         PendingRequests {

@@ -1,13 +1,13 @@
-//! What one interrupt of the servo's timer does, on every board.
+//! The servo's interrupt, on every board.
 //!
 //! ```text
-//! count -> servo -> code -> DAC           in every tick, whatever else is the matter
+//! count -> servo -> code -> DAC           in every tick, in every state
 //! disarmed -> fading in -> running -> fading out -> disarmed, or settling -> fading in
 //!     any of them -> faulted -> (armed again) -> fading in
 //! ```
 //!
-//! The usual tick, running and with nothing asked for, goes straight through [`ServoLoop::run`];
-//! everything that is rare is kept out of its way.
+//! The usual tick, running and without requests, goes straight through [`ServoLoop::run`]; rare
+//! work is kept out of line.
 
 mod fault_detection;
 mod frame;
@@ -56,7 +56,7 @@ struct MissedUpdates {
     part: f32,
 }
 
-/// The servo on a board: its rendering, what it is doing, and what it watches.
+/// The servo on a board: its rendering, its state, and its fault detection.
 #[derive(Clone, Debug)]
 pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     rendering: PreparedServo<E, N, M>,
@@ -78,7 +78,7 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     ramp: u32,
     /// Ticks until the samples of a new set have filled its memory.
     settling: u32,
-    /// What was last found that stops a servo, and the ticks since then without amplifier.
+    /// The last fault that was detected, and the ticks since then without amplifier.
     detected_fault: Option<Fault>,
     fault_free_ticks: u32,
     link: LinkPolicy,
@@ -186,7 +186,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         &self.rendering
     }
 
-    /// What the servo is doing.
+    /// The servo's state.
     pub const fn state(&self) -> State {
         self.state
     }

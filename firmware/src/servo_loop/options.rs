@@ -1,4 +1,4 @@
-//! What a cycle does beside its scene.
+//! Options of a cycle.
 
 /// What the servo does when the host falls silent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -6,23 +6,23 @@ pub enum LinkPolicy {
     /// Nothing: the host is not needed.
     #[default]
     Ignore,
-    /// Goes on with the running set, and says in its status that the host was lost.
+    /// Continues with the running set, and reports the lost host in its status.
     Hold,
     /// Fades out and switches the amplifier off: a fault.
     Release,
 }
 
-/// When the amplifier goes on.
+/// When to arm the servo.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Arming {
-    /// Only when the host asks for it.
+    /// Only on the host's request.
     #[default]
     WhenAsked,
     /// Also without a host, when the supply is switched on; after no other reset.
     AtPowerOn(Reason),
 }
 
-/// Why a device may start by itself: whoever reads the program, or the board's log, is told.
+/// Why a device may arm itself at power-on, stated in the program and in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reason(&'static str);
 
@@ -47,14 +47,14 @@ impl Reason {
     }
 }
 
-/// What a cycle does beside its scene.
+/// Options of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What to do when the host falls silent.
     pub link: LinkPolicy,
     /// Time in s without a message after which the host counts as lost.
     pub link_timeout: f64,
-    /// When the amplifier goes on.
+    /// When to arm the servo.
     pub arming: Arming,
 }
 

@@ -1,10 +1,10 @@
-//! What the servo is doing, and what it tells those who ask.
+//! The state of the servo, its status and its notices.
 
 use core::fmt;
 
 use crate::fault::Fault;
 
-/// What the servo is doing.
+/// The servo's state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -59,10 +59,10 @@ impl fmt::Display for State {
     }
 }
 
-/// What the servo says of itself when it is asked.
+/// The servo's reply to a request for its status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// What it is doing.
+    /// Its state.
     pub state: State,
     /// The fault that stopped it, or that was left from before the last reset; until it is armed.
     pub fault: Option<Fault>,
@@ -86,7 +86,7 @@ pub struct Status {
     pub link_lost: bool,
 }
 
-/// What the interrupt tells the low-priority side.
+/// A notice to the low-priority task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Notice {
     /// The answer to a question for the status.
@@ -97,7 +97,7 @@ pub enum Notice {
     NotArmed(Fault),
     /// The amplifier is off.
     Disarmed,
-    /// The submitted set is now the one that runs.
+    /// The submitted set is running now.
     Applied,
     /// The servo has stopped.
     Stopped(Fault),

@@ -6,7 +6,7 @@ use super::*;
 use crate::fault::FaultRecord;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
-    /// Whatever is not a tick of a running servo that nobody asks anything.
+    /// Every tick but that of a running servo without requests.
     #[cold]
     #[inline(never)]
     pub(super) fn run_state_machine(
@@ -46,7 +46,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.fault = None;
             hardware.store_fault(&FaultRecord::NOTHING);
             self.energy.reset();
-            // Whatever the environment remembers from before a fault, the motor did not do.
+            // The motor's torque since a fault was not that of the environment's state.
             self.rendering.rest_here();
             hardware.amplifier(true);
             self.ramp = ARMING;

@@ -19,17 +19,16 @@
 //! The hand feels the torque fall away and come back, each along a ramp of at most a tenth of
 //! [`RenderingOptions::fade`]; [`longest_gap`] is the sum.
 //!
-//! No part of this is safe because of the time that it takes. A limit that moves, however
-//! fast, is in the certificate of either set ([`certificate::timed`](crate::certificate::TimingChecked)): one
-//! that falls takes energy away, and one that rises puts in, once, what the environment stores at its
-//! depth. In between there is no torque, and the new set remembers nothing but a device that stood where
-//! it is, which is a motion that it could have seen.
+//! Safety depends on no duration here. A limit that moves, however fast, is in the certificate of either
+//! set ([`certificate::timed`](crate::certificate::TimingChecked)): a falling limit removes energy, and a
+//! rising one adds, once, the energy that the environment stores at its depth. In between there is no
+//! torque, and the new set starts in the state of a device at rest at this position, which is a possible
+//! motion.
 //!
-//! So the gap is as short as its edges may be felt. Without a wall a hand that leans on it falls on, and
-//! the deeper it is when the clamp opens, the more that puts in: long ramps are the worse ones. But a
-//! torque that comes within a tick is a blow. Hence a tenth of the time in which an armed clamp opens,
-//! which has no wall to keep up and may take its time: a swap while it opens, or that ends in being
-//! disarmed, goes at that speed.
+//! A long gap is worse: a hand that pressed on the wall falls further, and the deeper it is when the clamp
+//! opens, the more energy that adds. But a torque that rises within a tick is a blow. Hence the ramp takes
+//! a tenth of the time in which the clamp opens after arming, where no hand presses on a wall. A swap while
+//! that clamp opens, or that ends in being disarmed, goes at the slower speed.
 
 use super::*;
 use crate::environment::MAX_DELAY;
@@ -40,13 +39,12 @@ pub(super) const ARMING: u32 = 1;
 /// Steps of the clamp a tick for a swap.
 const SWAPPING: u32 = 10;
 
-/// Ticks that a new set runs without torque before its clamp opens. It starts at rest where the device
-/// is, whatever it remembers for however long; after these ticks its delay, and the velocity that is
-/// delayed with it, are of how the device moves now.
+/// Ticks that a new set runs without torque before its clamp opens. It starts at rest at the device's
+/// position; after these ticks its delay line, and the velocity that is delayed with it, hold the present
+/// motion of the device.
 const SETTLING: u32 = MAX_DELAY as u32 + 2;
 
-/// The longest time in s for which a swap keeps a running servo, whose `period` is in s, from giving the
-/// torque that its scene asks for.
+/// The longest time in s for which a swap reduces the torque of a running servo. `period` in s.
 pub fn longest_gap(options: &RenderingOptions, period: f64) -> f64 {
     let ramp = options.fade / period / f64::from(SWAPPING);
     // A ramp ends with a part of a step, the number format's rounding adds one, and the tick in which

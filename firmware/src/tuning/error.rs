@@ -5,10 +5,10 @@ use core::fmt;
 use super::{Parameters, TUNABLE, name};
 use crate::certificate::Parameter;
 
-/// Why a change cannot be made, whatever its value.
+/// Why a change is impossible with any value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TuningError {
-    /// The parameter is not one that a running program can change.
+    /// A running program cannot change the parameter.
     Fixed {
         /// Which.
         parameter: Parameter,

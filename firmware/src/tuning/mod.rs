@@ -1,7 +1,7 @@
 //! From a change of parameters to a set that is ready to run, or to the reason why not.
 //!
-//! The way is the same as for a scene that is compiled in: certificate, timing, servo. A set is
-//! built as a whole and away from the servo's interrupt; what is refused changes nothing.
+//! The steps are the same as for a scene that is compiled in: certificate, timing, servo. A set is
+//! built as a whole outside of the servo's interrupt; a refused set changes nothing.
 
 mod error;
 mod render_error;
@@ -45,7 +45,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Those of the [`TUNABLE`] ones that are given.
+    /// The given ones of [`TUNABLE`].
     pub fn of(given: impl Iterator<Item = Parameter>) -> Self {
         let place = |parameter| TUNABLE.iter().position(|(_, known)| *known == parameter);
         Self { bits: given.filter_map(place).fold(0, |bits, i| bits | 1 << i) }
@@ -168,11 +168,11 @@ where
     })
 }
 
-/// Why [`prepare`] refuses a changed scene, with the remedies that there are: what takes too much of a
-/// small board, and its host has from the same numbers by the same code.
+/// Why [`prepare`] refuses a changed scene, with remedies. This needs too much of a small board; its
+/// host computes it from the same numbers by the same code.
 ///
 /// # Errors
-/// Whatever is wrong with the set, as a sentence that says what would not be.
+/// The error in the set, as a sentence with the remedies.
 pub fn explain<E, N, M>(
     scene: &Scene<E>,
     changes: &[(Parameter, f64)],

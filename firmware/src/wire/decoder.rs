@@ -1,12 +1,12 @@
-//! From bytes back to messages, one byte after the other, whatever the bytes are.
+//! From bytes back to messages, one byte after the other, safe for any bytes.
 
 use cobs::{DecodeResult, DecoderState};
 use serde::Deserialize;
 
 use super::frame::{CHECKSUM, CRC};
 
-/// Finds frames in a stream of bytes. Whatever is no frame is dropped and counted; the next zero
-/// starts anew.
+/// Finds frames in a stream of bytes. Other bytes are dropped and counted; the next zero starts
+/// anew.
 ///
 /// `SIZE` is the longest message with its checksum, in bytes. A longer one is dropped as it comes
 /// in and takes no space.
@@ -102,7 +102,7 @@ impl<const SIZE: usize> Decoder<SIZE> {
         }
     }
 
-    /// What was dropped so far.
+    /// Frames dropped so far.
     pub const fn discarded(&self) -> Discarded {
         self.discarded
     }

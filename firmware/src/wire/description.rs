@@ -1,4 +1,4 @@
-//! What exactly runs on a board: enough for its host to judge what the board judges.
+//! Description of a board's program, from which its host can certify as well.
 
 use fixed::types::{I1F31, I4F28, I8F24, I12F20, I16F16};
 use serde::{Deserialize, Serialize};

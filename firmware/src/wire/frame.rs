@@ -1,10 +1,10 @@
 //! A message as bytes on the wire: postcard, a CRC-32 behind it, COBS around both, a zero on either
 //! side.
 //!
-//! COBS leaves no zero inside a frame, so a zero always ends one: whoever has lost the thread finds
-//! it again at the next zero. The zero in front keeps noise on an idle wire from spoiling the frame
-//! that follows it. CRC-32 and not CRC-16: a parameter set that went wrong on the wire must not be
-//! taken for another one, and of garbage one frame in 65,536 passes 16 bits.
+//! COBS leaves no zero inside a frame, so a zero always ends one: a decoder resynchronises at the
+//! next zero. The zero in front separates the frame from noise on an idle wire. CRC-32 and not
+//! CRC-16: a corrupted parameter set must not be taken for another one, and one random frame in
+//! 65,536 passes 16 bits.
 
 use core::fmt;
 

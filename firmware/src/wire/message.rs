@@ -33,7 +33,7 @@ pub type Changes = Vec<(Parameter, f64), MAX_CHANGES>;
 /// The host's number for a request, which comes back with the answer.
 pub type Id = u16;
 
-/// What a host asks for.
+/// Requests of a host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToBoard {
     /// Who is there? Answered by [`ToHost::Welcome`], [`ToHost::PreviousFault`] where a fault
@@ -66,7 +66,7 @@ pub enum ToBoard {
     Describe,
 }
 
-/// What a board says. `S` is the text.
+/// Replies and telemetry. `S` is text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToHost<S> {
     /// Who answers. The same in every version of the protocol, so that a host of another version
@@ -77,13 +77,13 @@ pub enum ToHost<S> {
         /// Name of the program.
         program: S,
     },
-    /// What the numbers of the other messages mean on this board.
+    /// Units of the other messages on this board.
     Board(Board),
     /// The active parameters.
     ActiveParameters(ActiveParameters),
     /// How it is going.
     Status(Status),
-    /// What became of a request.
+    /// Result of a request.
     Answer {
         /// The request's.
         id: Id,
@@ -92,13 +92,13 @@ pub enum ToHost<S> {
     },
     /// What stopped this board before it was last started.
     PreviousFault(PreviousFault),
-    /// Ticks that were asked for with [`ToBoard::Stream`].
+    /// Ticks, requested with [`ToBoard::Stream`].
     Telemetry(Batch),
     /// The scene that runs, and how.
     Described(Description),
 }
 
-/// What the numbers of the other messages mean on this board.
+/// Units of the other messages on this board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Board {
     /// Period of the servo in s.
@@ -126,10 +126,10 @@ pub struct ActiveParameters {
     pub values: Changes,
 }
 
-/// What became of a request.
+/// Result of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// It is done: what was asked for runs.
+    /// The request has taken effect.
     Done,
     /// It is refused, and nothing has changed.
     Refused(Refusal),
@@ -142,9 +142,9 @@ pub enum Refusal {
     Busy,
     /// It is to be disarmed, which goes first.
     Disarming,
-    /// What stopped the servo is still there.
+    /// The fault is still there.
     Fault(FaultCode),
-    /// The set cannot run, by this step; [`Description::explain`] says why.
+    /// This step failed; [`Description::explain`] has the reason.
     Set(Step),
 }
 
@@ -172,7 +172,7 @@ impl fmt::Display for Refusal {
 /// How it is going.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// What the servo is doing.
+    /// The servo's state.
     pub state: State,
     /// What stopped it, until it is armed again.
     pub fault: Option<FaultCode>,

@@ -1,4 +1,4 @@
-//! What a board and its host say to each other, as bytes on a serial line or a socket.
+//! Protocol of a board and its host, as bytes on a serial line or a socket.
 //!
 //! [`message`] lists what can be said, [`mod@frame`] and [`decoder`] carry it, [`telemetry`] packs
 //! ticks, [`session`] answers on the board, and

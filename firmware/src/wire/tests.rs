@@ -13,7 +13,7 @@ type Message = Vec<u8, LONGEST>;
 /// Two bytes say how long it is, four are its checksum.
 type FrameDecoder = Decoder<{ LONGEST + 6 }>;
 
-/// What a decoder hears in noise.
+/// Decoding of noise.
 const NOTHING: [Message; 0] = [];
 
 fn framed(message: &Message) -> std::vec::Vec<u8> {
@@ -70,7 +70,7 @@ fn each_way_to_be_spoilt_has_its_count() {
     let long = encode(&[[7_u8; 31]; 12], &mut buffer).unwrap();
     assert_eq!(decode(&mut decoder, long), NOTHING);
     assert_eq!(decoder.discarded().too_long, 1);
-    // A list that says it is longer than its message, and one that is shorter.
+    // A list with a length beyond its message, and a shorter one.
     for foreign in [(5_u8, 1_u8, 2_u8), (1, 1, 2)] {
         let mut buffer = [0; 16];
         assert_eq!(decode(&mut decoder, encode(&foreign, &mut buffer).unwrap()), NOTHING);

@@ -110,7 +110,7 @@ pub fn measure() -> Result<(), Failure> {
     /// Ticks of a minute. Their sum fits 32 bits up to 70 000 cycles a tick.
     const MINUTE: u32 = 60_000;
     let _ = init_chip(FILTER);
-    // SAFETY: `connect` is through with the core's peripherals, and nobody else uses them.
+    // SAFETY: `connect` no longer uses the core's peripherals, and no other code does.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();

@@ -1,4 +1,4 @@
-//! A board that is simulated: encoder, converter, amplifier and timer of the servo's interrupt.
+//! A simulated board: encoder, DAC, amplifier and timer of the servo's interrupt.
 
 use firmware::boot::Startup;
 use firmware::dac::DacCode;

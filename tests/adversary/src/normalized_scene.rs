@@ -28,7 +28,7 @@ pub struct NormalizedScene {
     /// Part of a period by which a late tick outlasts its own, so that the next one reads its count
     /// so much later.
     pub overrun: f64,
-    /// Torque of one code of the converter.
+    /// Torque of one DAC code.
     pub torque_per_code: f64,
     /// The largest torque of any of its sets.
     pub bound: f64,
@@ -36,9 +36,9 @@ pub struct NormalizedScene {
     pub compliance: f64,
     /// The farthest face of any of its walls, in rad.
     pub face: f64,
-    /// The most that encoder and converter move the torque.
+    /// Bound on the torque error of encoder and DAC.
     pub error: f64,
-    /// The most that the numbers move the torque, within a turn of zero.
+    /// The same of the numbers, within a turn of zero.
     pub numbers: f64,
     /// Encoder counts in a radian.
     pub counts_per_radian: f64,
@@ -77,8 +77,8 @@ pub fn declared(scene: &Scene) -> f64 {
 const SLOWEST: f64 = 0.1;
 
 impl NormalizedScene {
-    /// Of a drawn scene and its other one, which were both accepted. `None` where no bound is
-    /// known on what encoder, numbers and converter do to the torque.
+    /// Of a drawn scene and its other one, which were both accepted. `None` without a bound on
+    /// the torque error of encoder, numbers and DAC.
     pub fn of(drawn: &RandomScene, assessments: &[Assessment], format: Format) -> Option<Self> {
         let RandomScene { scene, transducers, .. } = drawn;
         let declared = declared(scene);

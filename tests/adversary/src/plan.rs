@@ -150,7 +150,7 @@ impl Plan {
     /// A plan for a subject.
     pub fn draw(rng: &mut impl Rng, normalized: &NormalizedScene, periods: u32) -> Self {
         let mut hand = bounded(Self::hand(rng, normalized));
-        // A limit cycle must feed somebody: with a damper in the hand it does so for ever.
+        // A limit cycle must deliver power: a damper in the hand absorbs it for ever.
         if hand.damping == 0.0 && rng.random_bool(0.7) {
             hand.damping = log_uniform(rng, 1e-5, 1e-2);
         }

@@ -60,9 +60,9 @@ pub struct Outcome {
     pub allowed: f64,
     /// Energy at the start.
     pub start: f64,
-    /// What was gained over what device and allowance took, in the third or the last quarter of the
-    /// run, whichever is less: above zero the loop feeds somebody, and goes on doing so after what
-    /// the clamp's opening put in.
+    /// Energy gained less that of device and allowance, in the third or the last quarter of the
+    /// run, whichever is less: above zero the loop is active, also after the energy that the
+    /// clamp's opening put in.
     pub rate: f64,
     /// Periods that were run.
     pub periods: u32,

@@ -94,7 +94,7 @@ pub struct Choice {
     pub limited: Option<bool>,
     /// The same of being latched.
     pub latched: Option<bool>,
-    /// Whether the converter may reach its full scale where a scene has no torque limit.
+    /// Whether the DAC may reach its full scale where a scene has no torque limit.
     pub saturates: bool,
     /// The same of injected damping.
     pub injected: Option<bool>,

@@ -125,7 +125,7 @@ pub trait Task {
 pub enum Unjudged {
     /// A board refuses the scene.
     Refused,
-    /// What encoder, numbers and converter do to the torque has no bound that is known.
+    /// No bound is known on the torque error of encoder, numbers and DAC.
     Unbounded,
 }
 

@@ -1,4 +1,4 @@
-//! A device that would start by itself, and nobody says why it may.
+//! A device that would arm itself at power-on, without a reason.
 use firmware::servo_loop::Options;
 use firmware::environment::DelayedSpring;
 use refusals::*;

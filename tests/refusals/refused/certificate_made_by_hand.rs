@@ -1,4 +1,4 @@
-//! A certificate that nobody earned: its fields are private.
+//! A certificate built by hand: its fields are private.
 use firmware::certificate::{Certified, assess};
 use firmware::environment::DelayedSpring;
 use firmware::scene::Scene;

@@ -1,4 +1,4 @@
-//! A servo from a scene that nobody certified: there is no such constructor.
+//! A servo from an uncertified scene: there is no such constructor.
 use firmware::environment::DelayedSpring;
 use firmware::servo::Servo;
 use refusals::{SCENE, TRANSDUCERS};

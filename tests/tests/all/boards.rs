@@ -118,7 +118,7 @@ fn every_program_builds_for_every_board_and_fits() {
         let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
         for (name, program) in programs.iter().zip(&built) {
             check(&toolchain, board, name, program);
-            // What a scene of somebody's own is of, only its file knows.
+            // A user's own scene may have other parts.
             if ours.contains(name) {
                 check_parts(board, name, program);
             }

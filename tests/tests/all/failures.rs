@@ -231,7 +231,7 @@ fn walls_rest_below_the_limit_and_not_above_it() {
             let radius = controller.spectral_radius(&plant).unwrap();
             assert_eq!(radius > 1.0, grows, "{} samples late: {radius}", report.delay);
         }
-        // What is to rest has the friction of section 8, and a converter's half step.
+        // For rest: the friction of section 8, and half a DAC step.
         let friction = 0.5 * 0.99 * report.limit * TAU / PADDLES.counts_per_turn
             + 0.5 * PADDLES.full_scale_torque / 1791.0;
         for below in &wall.below {

@@ -1,5 +1,5 @@
-//! Somebody else's crate uses the library for its certificate alone: no embassy comes with it, a
-//! safe constant builds, an unsafe one does not. And one that links only if no tick can panic.
+//! A foreign crate uses the library for its certificate alone: embassy is no dependency, a safe
+//! constant builds, an unsafe one does not. Another one links only if no tick can panic.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -97,7 +97,7 @@ fn a_scene_of_another_crate_runs_on_a_board() {
     assert_eq!(probe::chip(&elf).unwrap(), "STM32G474RETx");
 }
 
-/// Whoever has the package has no file above it: what it takes in at compile time is its own.
+/// The published package has no file above it, so it may include only its own files.
 #[test]
 fn the_firmware_takes_in_no_file_of_the_workspace() {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware").canonicalize().unwrap();

@@ -1,5 +1,4 @@
-//! The emulated board while somebody talks to it, moves its encoder as no hand could, or stops its
-//! processor.
+//! The emulated board under host messages, impossible encoder motion, or a stopped processor.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -169,8 +168,8 @@ fn every_code_is_that_of_the_sets_that_were_taken() {
     assert!(taken.is_empty(), "{} sets never ran", taken.len());
 }
 
-/// Whatever moves, there is no torque before somebody arms the board; from then on the clamp opens step
-/// by step, whatever the wall asks for.
+/// However the device moves, there is no torque before arming; then the clamp opens step by step,
+/// however large the wall's torque.
 #[test]
 fn the_board_boots_in_an_order_in_which_nothing_can_move() {
     let hand = Hand { count: Arc::new(Mutex::new(5000)), ..Hand::default() };

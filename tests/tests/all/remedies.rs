@@ -142,8 +142,8 @@ fn passes(scene: &Scene, format: Format, printed: &Printed, value: f64) -> bool 
     PassivityProblem::in_format(&changed, format).is_ok_and(|posed| posed.is_certified())
 }
 
-/// Whether a stiffness is next to none and the coefficients of the wall, two that are equally near,
-/// hide that it pulls back. It passes, and no certificate says so: whoever asks is refused.
+/// Whether a stiffness is so small that the two coefficients of the wall, which are nearly equal,
+/// hide the sign of the residue. The scene passes, but its assessment is undecided.
 fn is_hidden(scene: &Scene, format: Format, printed: &Printed, value: f64) -> bool {
     let is_small = printed.highest.is_some_and(|highest| value < 1e-4 * highest);
     if printed.parameter != Parameter::Stiffness || !is_small || format == Format::F64 {

@@ -1,4 +1,4 @@
-//! What is written below a Nyquist picture.
+//! The legend below a Nyquist plot.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ const ROW: i32 = 19;
 /// Longest name in the legend, in letters.
 const LONGEST_NAME: usize = 48;
 
-/// What is written below the picture: lines with the patterns that they are about.
+/// An entry below the plot: lines of text with the patterns that they explain.
 struct Entry {
     /// Pattern and ink of the line that this is about.
     sample: Option<(Dash, RGBColor, u32)>,
@@ -54,7 +54,7 @@ fn legend(scenes: &[NyquistScene]) -> Vec<Entry> {
     entries
 }
 
-/// What is said about a curve.
+/// The text about a curve.
 fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Vec<String> {
     let what = match curve.role {
         Role::Judged => "",

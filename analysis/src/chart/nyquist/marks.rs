@@ -20,7 +20,7 @@ const STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 /// Room on both sides of a curve.
 const CLEAR: i32 = units(5);
 
-/// What has a name besides frequencies.
+/// Names besides frequencies.
 pub(super) struct Names<'n> {
     /// The critical lines, with what they are called.
     pub(super) criticals: &'n [(f64, &'static str)],

@@ -204,8 +204,8 @@ fn window(scenes: &[NyquistScene], wanted: &Window) -> (Range<f64>, Range<f64>) 
     let endless = curves().any(is_endless);
     let lines = critical_lines(scenes).into_iter().map(|line| line.0);
     let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
-    // Near a pole that is not at rest the curve may go to infinity in any direction; what is far
-    // beyond the critical line is cut off. So is what is only shown beside what is judged.
+    // Near a pole away from z = 1 the curve may go to infinity in any direction; it is cut off far
+    // beyond the critical line. So are the curves that the verdict does not use.
     let limits = scenes.iter().filter_map(|scene| scene.limit.or(scene.bound));
     let far = 8.0 * limits.fold(f64::MIN_POSITIVE, f64::max);
     let askew = curves().flat_map(|curve| &curve.poles).any(|pole| pole.residue().is_none());
@@ -278,8 +278,8 @@ fn draw_curve(
     if curve.role == Role::Alone { Ok(Vec::new()) } else { infinity::draw(plot, curve, frames) }
 }
 
-/// Marks the minima, and gives them with what is said about them: about several at one place in a
-/// row, and about a scene alone nothing, for that stands in the legend.
+/// Marks the minima, and returns them with their labels: in a row for several at one place, and
+/// without a label for a single scene, which has it in the legend.
 fn draw_minima(
     chart: &mut Plane<'_, '_>,
     scenes: &[NyquistScene],

@@ -64,7 +64,7 @@ impl Role {
 /// A curve for velocity, `(T z / (z - 1)) G`.
 #[derive(Debug)]
 pub struct Curve {
-    /// What it is to the verdict.
+    /// Its role in the verdict.
     pub role: Role,
     /// For angles from nearly 0 to pi, cut where there are poles.
     pub branches: Vec<Branch>,
@@ -192,7 +192,7 @@ impl NyquistScene {
                 vec![curve(Role::Judged, transfers.environment, alone)]
             }
             (Rule::Exact, latched) => {
-                // Of two the certificate says which is the larger, not which is which.
+                // Of two the certificate has the larger one, without its name.
                 let alpha = assessment.alpha_coupled.filter(|_| latched.is_none());
                 let judged =
                     curve(Role::Judged, transfers.equivalent, alpha.map(Interval::midpoint));

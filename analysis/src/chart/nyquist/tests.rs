@@ -97,7 +97,7 @@ fn the_drawn_side_of_the_line_is_the_verdict() {
                 assert!(clearance > 0.0, "{clearance} {scene:?}");
                 passed += 1;
             }
-            // No bound, or poles that cannot be told from the circle.
+            // No bound, or poles too close to the circle.
             Err(rejection) if rejection.is_undecided() => {
                 assert!(clearance.is_nan() || clearance <= 0.0, "{clearance} {scene:?}");
             }

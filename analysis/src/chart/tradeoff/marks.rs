@@ -1,4 +1,4 @@
-//! Marks of families: told apart by their form, and by a colour that the colour-blind see too.
+//! Marks of families: they differ in form, and in colours that the colour-blind can see.
 
 use plotters::prelude::*;
 

@@ -25,7 +25,7 @@ pub struct FormatReport {
     pub format: Option<&'static str>,
     /// The cheapest method of simulation.
     pub simulation: Option<SimulationMethod>,
-    /// Torque in N m by which the encoder alone hums.
+    /// Limit cycle in N m by the encoder alone.
     pub encoder_hum: Option<f64>,
     /// All formats, the cheapest first.
     pub formats: Vec<Candidate>,
@@ -89,7 +89,7 @@ fn coarse(
     )
 }
 
-/// What the certificate says of rest.
+/// The certificate's bound at rest.
 fn as_certified(rest: Option<&QuantizationBound>) -> String {
     rest.map_or_else(String::new, |rest| format!("; as certified {rest}"))
 }

@@ -45,7 +45,7 @@ pub struct Files {
 }
 
 impl OutputArguments {
-    /// Looks at the names of the files, so that nobody waits for a picture that cannot be kept.
+    /// Checks the file names before the work: the picture could not be saved otherwise.
     pub(super) fn files(&self) -> Result<Files, ChartError> {
         let is_data = |path: &Path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
         match &self.csv {
@@ -62,7 +62,7 @@ impl OutputArguments {
 }
 
 impl Files {
-    /// Writes what is asked for of a chart.
+    /// Writes the files of a chart.
     pub(super) fn write(&self, Chart { picture, data }: Chart) -> Result<(), ChartError> {
         if let Some(output) = &self.picture {
             output.write(&picture)?;

@@ -68,7 +68,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// What is known of the measurement, with so much to settle where nothing is said.
+    /// The stated corrections of the measurement, with `settle` as the default.
     fn correction(&self, counts_per_turn: f64, settle: f64) -> Correction {
         Correction {
             torque_delay: self.torque_delay,
@@ -207,7 +207,7 @@ fn report<'a>(
     }
 }
 
-/// What somebody must know before relying on the numbers.
+/// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
     if found.skew.is_significant() {

@@ -1,4 +1,4 @@
-//! What it takes a running board to judge a set of parameters that a host sends.
+//! Cost on a running board of certifying a set of parameters from a host.
 
 use std::path::Path;
 

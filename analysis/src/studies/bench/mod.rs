@@ -1,4 +1,4 @@
-//! What a certificate, a step and a tick cost, measured, each beside what it is compared with.
+//! Measured cost of a certificate, a step and a tick, each with its reference.
 
 pub mod live;
 pub mod parts;
@@ -21,13 +21,13 @@ pub const CORE_CLOCK: f64 = 170e6;
 /// One measured figure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// What was measured.
+    /// Its name.
     pub name: String,
     /// The figure.
     pub value: f64,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is compared with, in the same unit; `None` where there is nothing.
+    /// Its reference, in the same unit; `None` if there is none.
     pub against: Option<f64>,
     /// `value / against`: below 1 is better.
     pub ratio: Option<f64>,
@@ -130,7 +130,7 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 
 /// Milliseconds that a certificate adds to the compilation of a program: the difference between a
 /// program with `COPIES` certified scenes and the same program without, divided by their number.
-/// The two are compiled in turn, so that what else the machine does meets both.
+/// The two are compiled in turn, so that other load of the machine meets both.
 ///
 /// `library` is the built firmware library, `dependencies` the folder of what it depends on.
 ///

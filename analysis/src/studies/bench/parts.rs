@@ -1,4 +1,4 @@
-//! What each scene has of each part of a tick, and what it keeps: no more than it uses.
+//! Each scene's parts of a tick, and its state: no more than it uses.
 
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub struct Inventory {
     pub parts: Vec<PartShare>,
     /// What the servo keeps in `f32`.
     pub state_f32: State,
-    /// What it keeps in the scene's fixed-point format.
+    /// Its state in the scene's fixed-point format.
     pub state_fixed: State,
     /// Bytes of flash of the whole program, without log.
     pub flash: u64,

@@ -29,7 +29,7 @@ pub enum FailureError {
 pub struct Case {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What is asked, in a few words.
+    /// The question, in a few words.
     pub question: &'static str,
     pub(super) evaluate: fn() -> Result<CaseResult, FailureError>,
 }

@@ -21,7 +21,7 @@ const SAMPLES: usize = 5000;
 /// Fixed point with 16 bits behind the point, on a device without friction.
 pub fn fixed_point() -> Result<CaseResult, FailureError> {
     let scene = paper();
-    // Encoder and converter as fine as they get: their steps hum, too.
+    // The finest encoder and DAC: their steps cause limit cycles, too.
     let counts_per_turn = f64::from(1 << 22);
     let fine = Transducers { counts_per_turn, full_scale_torque: 0.3, ..PADDLES };
     let format = Format::Fixed { fraction_bits: 16 };
@@ -37,7 +37,7 @@ pub fn fixed_point() -> Result<CaseResult, FailureError> {
     Ok(CaseResult { methods: ideal(&scene)?, certificate, truth, runs: vec![hums, rests] })
 }
 
-/// The encoder's steps, without friction and with as much as section 8 asks for.
+/// The encoder's steps, without friction and with as much as section 8 requires.
 pub fn encoder() -> Result<CaseResult, FailureError> {
     let scene = paper();
     let needed = friction_for_rest(&scene, &PADDLES);

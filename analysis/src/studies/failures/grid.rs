@@ -21,8 +21,8 @@ const GRIDS: [u32; 4] = [100, 1000, 10_000, 100_000];
 /// Depth of the minimum over the device's passivity.
 const DEPTH: f64 = 100.0;
 
-/// A resonance that gives back what it should take: its real part is negative within a millionth
-/// of a radian, and nowhere else by more than the device pays for.
+/// An active resonance: its real part is negative within a millionth of a radian, and nowhere else
+/// by more than the device's passivity.
 pub fn grid() -> Result<CaseResult, FailureError> {
     let scene = coupled(PADDLE, resonance(DEPTH, angle()));
     let delta = PADDLE.damping;

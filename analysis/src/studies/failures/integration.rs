@@ -99,7 +99,7 @@ fn name(method: Method, substeps: u32) -> String {
     }
 }
 
-/// What a method says about a stiffness, and up to which it would say yes.
+/// A method's verdict on a stiffness, and the largest that it accepts.
 fn by_limit(
     experiment: &Experiment,
     method: Method,

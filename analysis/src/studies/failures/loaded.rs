@@ -1,5 +1,5 @@
-//! The device around a servo with everything that a simulation may have: masses in a hand, dry
-//! friction, missed ticks, an encoder's counts and a converter's codes.
+//! The device around a servo with all features of a simulation: masses in a hand, Coulomb friction,
+//! missed ticks, encoder counts and DAC codes.
 
 use firmware::dac::DacCode;
 use firmware::servo::Transducers;
@@ -32,7 +32,7 @@ impl LoadedDevice {
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
         let integration = Integration::default();
-        // Refuses what has no motion.
+        // Checks the plant's motion.
         experiment.tick(integration)?;
         let mut missed = experiment.missed.ticks();
         // The first tick is never missed.

@@ -1,4 +1,4 @@
-//! A loop that is run: simulated without converters, and on the emulated board with them.
+//! A run of a loop: simulated without quantisation, and on the emulated board with it.
 
 use firmware::certificate::{Certified, Rejection};
 use firmware::environment::Environment;
@@ -40,7 +40,7 @@ pub enum LoopRunError {
 /// A loop that is run.
 #[derive(Clone, Debug)]
 pub struct LoopRun {
-    /// What is run, in a few words.
+    /// The run, in a few words.
     pub what: &'static str,
     /// Scene, device, hand, friction, missed ticks.
     pub experiment: Experiment,
@@ -48,8 +48,8 @@ pub struct LoopRun {
     pub transducers: Transducers,
     /// What the board computes in.
     pub arithmetic: Arithmetic,
-    /// The device that the board is told of, in place of the scene's: one with more damping and
-    /// passivity than it has, since no board can be made to run what is refused in any other way.
+    /// The device in the board's scene, in place of the true one: with more damping and passivity,
+    /// since only so does a board run a rejected scene.
     pub claimed: Option<Device>,
     /// The expected outcome.
     pub expected: Outcome,
@@ -76,7 +76,7 @@ impl BoardResult {
 }
 
 impl LoopRun {
-    /// The motion of the loop in `f64`, without converters but for what the experiment has.
+    /// The motion of the loop in `f64`, with no quantisation but the experiment's.
     ///
     /// # Errors
     /// Where it cannot be simulated.

@@ -42,9 +42,9 @@ impl Verdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Failure {
-    /// It says safe, and is not.
+    /// A false positive.
     Dangerous,
-    /// It says unsafe, and is safe.
+    /// A false negative.
     Needless,
 }
 
@@ -85,7 +85,7 @@ impl MethodResult {
         Ok(Self::modulus(method, "largest eigenvalue", radius(&eigenvalues(&closed.matrix)?)))
     }
 
-    /// The verdict of a modulus that has to be inside the unit circle; `of` is what has it.
+    /// The verdict of a modulus that has to be inside the unit circle; `of` names it.
     pub fn modulus(method: impl Into<String>, of: &str, modulus: f64) -> Self {
         let (is_inside, beside) = (modulus < 1.0, significant((modulus - 1.0).abs(), 6));
         let side = if is_inside { "inside" } else { "outside" };

@@ -1,9 +1,8 @@
-//! Where methods fail: what each says about a loop, what is true, and what the certificate had said
+//! Where methods fail: the verdict of each on a loop, the truth, and the certificate's verdict
 //! before.
 //!
-//! A case is a question about one loop. Methods that others use answer it, and so do the certificate
-//! and something that does not err on it; the loop is then run, in simulation and with the emulated
-//! board as its servo.
+//! A case is a question about one loop. Common methods answer it, and so do the certificate and an
+//! exact reference; the loop is then run, in simulation and with the emulated board as its servo.
 
 mod case;
 pub mod converters;

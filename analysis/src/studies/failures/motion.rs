@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use crate::quantity::significant;
 
-/// How a motion goes on.
+/// How a motion ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Outcome {
     /// It ends.
     #[serde(rename = "rests")]
     Converges,
-    /// It goes on, smaller than it began.
+    /// It persists, but is smaller.
     #[serde(rename = "hums")]
     LimitCycles,
     /// It becomes larger than it was.
@@ -42,7 +42,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Of positions in rad, all of those that were asked for or as many as there are numbers for.
+    /// Of positions in rad: `asked` of them, or fewer if the motion leaves the range.
     pub fn of(positions: &[f64], asked: usize) -> Self {
         let tenth = (asked / 10).max(1).min(positions.len());
         let first = swing(&positions[..tenth]);

@@ -57,7 +57,7 @@ enum Divide {
     WhereItMoves,
 }
 
-/// The wall with the observer around it: what it asks the motor for.
+/// The motor torque of the wall with the observer around it.
 fn observed(
     scene: &Scene,
     loop_run: &LoopRun,

@@ -7,7 +7,7 @@ use crate::simulation::{Experiment, Integration};
 use crate::stability::critical_stiffness;
 use crate::studies::tradeoff::simulation;
 
-/// The methods that are looked at, the one that errs the most first.
+/// The compared methods, the least accurate one first.
 pub const METHODS: [Method; 4] = [Method::SemiImplicit, Method::Rk4, Method::Tustin, Method::Euler];
 
 /// Steps a tick that are looked at, about evenly apart on a logarithmic axis.

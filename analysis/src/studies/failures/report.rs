@@ -1,4 +1,4 @@
-//! What was said, what is so, and what was seen, as one answer.
+//! Verdicts, truth and observed motions as one report.
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ use crate::worst_hand::HandCase;
 pub struct CaseReport {
     /// Its name.
     pub name: &'static str,
-    /// What is asked.
+    /// The question.
     pub question: &'static str,
     /// The methods that others use.
     #[serde(rename = "claims")]
@@ -39,10 +39,10 @@ pub struct JudgedMethod {
     pub failure: Option<Failure>,
 }
 
-/// What a run was to show, and what it showed.
+/// Expected and observed outcome of a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunResult {
-    /// What was run, in a few words.
+    /// The run, in a few words.
     pub what: &'static str,
     /// The outcome that was expected.
     pub expected: Outcome,

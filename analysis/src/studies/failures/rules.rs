@@ -27,7 +27,7 @@ pub fn continuous_time() -> Result<CaseResult, FailureError> {
     let root = Complex::from(damping * damping - 4.0 * inertia * STIFFNESS).sqrt();
     let slowest = ((root - damping) / (2.0 * inertia)).re;
     let reason = "the slowest root of m s^2 + b s + K has the real part {} 1/s, whatever K > 0";
-    // K/(j w): a spring gives back what it took.
+    // K/(j w): a spring is lossless.
     let lossless = "in continuous time a spring's real part is {} N m s/rad at every frequency";
     let methods = vec![
         MethodResult::new("continuous time", Verdict::of(slowest < 0.0), slowest, reason),
@@ -77,7 +77,7 @@ pub fn negative_spring() -> Result<CaseResult, FailureError> {
     evaluate(methods, &scene, vec![runs_away.with_claimed_passivity(10.0), rests])
 }
 
-/// The damping in N m s/rad that Colgate's and Schenkel's inequality asks for, on a fine grid.
+/// The damping in N m s/rad by Colgate's and Schenkel's inequality, on a fine grid.
 fn colgate_schenkel(scene: &Scene) -> Result<f64, FailureError> {
     const POINTS: u32 = 10_000;
     let controller = controller(scene)?;

@@ -31,8 +31,8 @@ pub const KNOBS: Transducers = Transducers {
     largest_speed: Transducers::NO_HAND_IS_FASTER,
 };
 
-/// Encoder and motor of the paddle, its amplifier scaled to what these walls need: the smaller its steps,
-/// the nearer to its limit a wall can be told to be on one side of it.
+/// Encoder and motor of the paddle, its amplifier scaled to these walls: with smaller steps, walls nearer
+/// to the limit can be told apart.
 pub const PADDLES: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits32,
@@ -59,8 +59,8 @@ pub fn coupled(device: Device, environment: Environment) -> Scene {
     Scene { coupling: Coupling::Spring { stiffness }, ..scene }
 }
 
-/// Friction in N m that ends the hum of a wall (theory, section 8): that of the encoder, and half a
-/// step of the converter, which is an error of the torque.
+/// Friction in N m that ends the limit cycle of a wall (theory, section 8): that of the encoder,
+/// and half a step of the DAC, which is a torque error.
 pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
     let codes = f64::from(DacCode::CODES_TO_FULL_SCALE);
     encoder_friction(scene, transducers) + 0.5 * transducers.full_scale_torque / codes

@@ -1,5 +1,5 @@
-//! A hand that goes to and fro over one edge of the encoder, a tick each: the least friction that
-//! keeps a wall passive is no less than section 8 of the theory asks for.
+//! A hand that moves to and fro over one edge of the encoder, a tick each: the least friction that
+//! keeps a wall passive is no less than that of section 8 of the theory.
 
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ const ALMOST: f64 = 0.99;
 pub fn zigzag() -> Result<CaseResult, FailureError> {
     let scene = wall();
     let needed = encoder_friction(&scene, &PADDLES);
-    // Whatever the converter's steps are.
+    // With any DAC resolution.
     let steps = Resolution { full_scale: None, ..Resolution::of(&PADDLES, Some(ALMOST * needed)) };
     let certificate = MethodResult::at_rest(&scene, Format::F64, &steps);
     let mut rests = loop_run("in no hand", &scene, PADDLES, Outcome::Converges).pushed(1.0, 2000);

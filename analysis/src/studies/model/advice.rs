@@ -52,10 +52,10 @@ pub struct JudgedModel {
     pub model: String,
     /// What the fullest model has and this has not.
     pub lacks: Vec<String>,
-    /// What it says.
+    /// Its result.
     #[serde(flatten)]
     pub result: ModelResult,
-    /// How far that is from what the fullest says.
+    /// Its deviation from the fullest model.
     pub deviation: Deviation,
     /// What of it is beyond the bound; empty where the model is enough.
     pub beyond: Vec<String>,

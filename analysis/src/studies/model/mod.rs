@@ -66,7 +66,7 @@ impl Model {
         Plant::of(&self.chain(file)).with_hand(hand)
     }
 
-    /// In words, what it lacks of another model.
+    /// Its omissions from another model, in words.
     pub fn lacks(self, fuller: Self) -> Vec<String> {
         let mut lacks = Vec::new();
         match fuller.masses - self.masses {

@@ -24,7 +24,7 @@ pub struct Requirements {
     pub clock: f64,
 }
 
-/// A format with what it costs and loses.
+/// A format with its cost and its losses.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
     /// Its name.
@@ -33,10 +33,10 @@ pub struct Candidate {
     pub instructions: f64,
     /// Part of the core's time that these take at the rate.
     pub share: f64,
-    /// What it loses; none where the scene cannot be had in it.
+    /// Its losses; `None` if the format cannot hold the scene.
     pub losses: Option<Losses>,
-    /// The most that it may hum by as certified, with encoder and converter, and the device's
-    /// friction against that; none where nothing bounds it.
+    /// Certified bound on the limit cycle, with encoder and DAC, and the device's friction
+    /// against it; `None` without a bound.
     #[serde(serialize_with = "at_rest")]
     pub rest: Option<QuantizationBound>,
     /// Why it is not taken; empty where it is, or is only dearer.
@@ -44,7 +44,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Whether the device's friction ends every hum, as far as encoder and converter were stated.
+    /// Whether the device's friction ends every limit cycle of the stated encoder and DAC.
     pub fn is_still(&self) -> bool {
         is_still(self.rest.as_ref())
     }
@@ -63,8 +63,8 @@ fn at_rest<S: Serializer>(rest: &Option<QuantizationBound>, to: S) -> Result<S::
 pub struct Advice {
     /// The formats.
     pub candidates: Vec<Candidate>,
-    /// Torque in N m by which the encoder alone hums, in the finest format; `None` where nobody has
-    /// said how fine it is.
+    /// Torque in N m of the limit cycle by the encoder alone, in the finest format; `None` if its
+    /// resolution is not stated.
     pub encoder_hum: Option<f64>,
     /// Most of that which is wanted.
     hum: f64,
@@ -110,7 +110,7 @@ impl Advice {
         keep().find(|candidate| !self.hums(candidate)).or_else(|| keep().next())
     }
 
-    /// Whether the encoder makes a format hum by more than is wanted, and no friction ends it.
+    /// Whether the encoder's limit cycle is above the bound, and no friction ends it.
     pub fn hums(&self, candidate: &Candidate) -> bool {
         !candidate.is_still() && self.encoder_hum.is_some_and(|hum| hum > self.hum)
     }

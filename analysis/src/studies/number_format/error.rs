@@ -23,7 +23,7 @@ pub enum FormatError {
     /// The scene cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// What a format leaves of a motion at rest cannot be told.
+    /// The limit cycle at rest cannot be found.
     #[error(
         "the motion of this device does not decay by half in {seconds} s, so a limit cycle at rest \
          cannot be distinguished from it: give the device more damping, or the scene more margin"

@@ -6,11 +6,11 @@ use firmware::number::Arithmetic;
 use super::FormatProblem;
 
 impl FormatProblem {
-    /// The most that encoder, converter and a format's numbers move the torque, in N m, and the
-    /// device's friction against it (theory, section 8). `None` where nothing bounds it: the
-    /// controller's response does not end.
+    /// Bound on the torque error of encoder, DAC and a format's numbers, in N m, and the device's
+    /// friction against it (theory, section 8). `None` without a bound: the controller's impulse
+    /// response is not summable.
     pub fn rest(&self, arithmetic: Arithmetic) -> Option<QuantizationBound> {
-        // In the units that the servo counts in, since those are what it rounds.
+        // In the units of the servo, since it rounds in those.
         let units = self.units(arithmetic);
         let Resolution { encoder, full_scale, friction } = self.steps;
         let steps = Resolution {

@@ -9,7 +9,7 @@ use super::{FormatError, FormatProblem, FormatServo};
 use crate::device::{Hand, HandSetpoint, Motion, SimulatedEncoder};
 use crate::simulation::held_device::HeldDevice;
 
-/// What is left of the motion of a device that is pushed against a wall, or let go in free mode.
+/// The limit cycle of a device that is pressed against a wall, or released in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LimitCycle {
     /// Torque in N m from its lowest to its highest, the most that any start ends with.
@@ -109,7 +109,7 @@ struct Settling<'a> {
 }
 
 impl Settling<'_> {
-    /// What is left in a window of so many ticks when it has become as little as it will.
+    /// The limit cycle in a window of so many ticks, once it no longer shrinks.
     fn settle(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
         let mut last = self.window(ticks)?;
         for _ in 1..WINDOWS {

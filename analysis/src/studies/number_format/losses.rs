@@ -12,9 +12,9 @@ pub struct Losses {
     pub error: f64,
     /// The same around 1 rad; `None` where the scene cannot be moved there.
     pub error_elsewhere: Option<f64>,
-    /// What is left at rest by the format alone.
+    /// Limit cycle by the format alone.
     pub alone: LimitCycle,
-    /// What is left at rest with the encoder; `None` where nobody has said how fine that is.
+    /// The same with the encoder; `None` if its resolution is not stated.
     pub with_encoder: Option<LimitCycle>,
 }
 

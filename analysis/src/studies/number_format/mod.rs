@@ -25,8 +25,8 @@ use firmware::servo::Transducers;
 
 use crate::controller::{Controller, controller};
 
-/// Largest angle in rad to each side that a scaled format has to hold, unless it is told: a knob's or
-/// a paddle's.
+/// Default of the largest angle in rad to each side that a scaled format has to hold: a knob's or a
+/// paddle's.
 pub const HALF_A_TURN: f64 = std::f64::consts::PI;
 
 /// A scene with its sensor and motor, to be computed in any format.
@@ -36,7 +36,7 @@ pub struct FormatProblem {
     pub scene: Scene,
     /// Its sensor and its motor.
     pub transducers: Transducers,
-    /// What somebody has said of their steps, and of the device's friction.
+    /// The stated resolution, and the device's friction.
     pub steps: Resolution,
     /// Largest angle in rad to each side that a scaled format has to hold.
     pub range: f64,
@@ -77,7 +77,7 @@ impl FormatProblem {
 }
 
 impl FormatServo {
-    /// The torque in N m at a raw count, and the converter's code.
+    /// The torque in N m at a raw count, and the DAC's code.
     pub fn tick(&mut self, raw: i32) -> (f64, u16) {
         let tick = self.controller.tick(raw);
         (tick.torque * self.units.torque, tick.code)

@@ -16,7 +16,7 @@ pub enum ListingError {
     /// Its line tables are not what they should be.
     #[error("bad line tables: {0}")]
     Lines(#[from] DwarfError),
-    /// It does not say where code is, or what it came from.
+    /// It has no symbols or no line information.
     #[error(
         "the program has no {0}; it must be built with the release profile of this repository, and not \
          stripped"

@@ -86,7 +86,7 @@ impl TickParts {
         Ok(parts)
     }
 
-    /// What it has of a part; all zero where there is no trace of it.
+    /// Its share of a part; all zero if there is no trace of it.
     pub fn share(&self, part: Part) -> Share {
         self.shares[part as usize]
     }

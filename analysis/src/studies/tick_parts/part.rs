@@ -28,7 +28,7 @@ pub enum Part {
     Limit,
     /// Torque to a code.
     Converter,
-    /// What belongs to none of them: what is stored, and what the optimiser shares.
+    /// The remainder: stores, and code that the optimiser shares.
     Rest,
 }
 

@@ -1,4 +1,4 @@
-//! What is compared, in which columns, and which values are the better ones.
+//! Comparisons: their columns, and which values are the better ones.
 
 use crate::table::Column;
 
@@ -19,7 +19,7 @@ pub enum Direction {
 pub struct Axis {
     /// The column in the file.
     pub column: Column,
-    /// What it is, and its unit, as it stands at the axis.
+    /// Its name and its unit, as on the axis.
     pub label: &'static str,
     /// Which way is better.
     pub direction: Direction,
@@ -63,10 +63,10 @@ impl Axis {
     }
 }
 
-/// What is compared, in which columns.
+/// A comparison and its columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// What its files are called, without the extension.
+    /// Name of its files, without the extension.
     pub name: &'static str,
     /// Above its picture.
     pub title: &'static str,

@@ -1,8 +1,8 @@
-//! Speed against accuracy: tables of measured methods, each with what it costs and how far off it
-//! is, and the methods that no other beats in both.
+//! Speed against accuracy: tables of measured methods, each with its cost and its error, and their
+//! Pareto front.
 //!
-//! A [`Comparison`] says what is compared and in which columns; a [`Tradeoff`] is the table that was
-//! measured, kept as CSV beside the picture that is drawn of it ([`crate::chart::tradeoff`]).
+//! A [`Comparison`] has the topic and its columns; a [`Tradeoff`] is the measured table, kept as CSV
+//! beside its chart ([`crate::chart::tradeoff`]).
 
 pub mod certificate;
 mod comparison;
@@ -37,9 +37,9 @@ const NAME: Column = Column { names: &["name"], bound: "a name" };
 /// A method with its figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
-    /// On what it was measured: only methods of one case are compared.
+    /// Its case: only methods of one case are compared.
     pub case: String,
-    /// What it is one of: drawn with the same mark, joined by a line in the order of the table.
+    /// Its family: drawn with the same mark, joined by a line in the order of the table.
     pub family: String,
     /// Its own name, short enough to stand beside its mark.
     pub name: String,
@@ -55,7 +55,7 @@ impl Method {
         Self { case: case.to_owned(), family: family.to_owned(), name: name.into(), values }
     }
 
-    /// What it costs.
+    /// Its cost.
     pub fn cost(&self) -> Option<f64> {
         self.values[0]
     }
@@ -69,7 +69,7 @@ impl Method {
 /// A table of measured methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tradeoff {
-    /// What is compared.
+    /// The comparison.
     pub comparison: &'static Comparison,
     /// The methods.
     pub methods: Vec<Method>,
@@ -158,9 +158,9 @@ impl Tradeoff {
     }
 }
 
-/// The shortest time in s that each of some works has taken in so many rounds, in which they take
-/// turns: what it takes where nothing else is in the way. Each is done twice in a turn, of which the
-/// second counts: what the one before has left in the processor's memories is no cost of its own.
+/// The shortest time in s of each work in so many rounds, in which they take turns: the time without
+/// other load. Each runs twice in a turn, and the second run counts, so that the state of the
+/// processor's caches after another work costs nothing.
 fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     let mut times = vec![f64::INFINITY; works.len()];
     for _ in 0..rounds {
@@ -174,7 +174,7 @@ fn fastest(rounds: usize, works: &mut [impl FnMut()]) -> Vec<f64> {
     times
 }
 
-/// An emulated board that computes what it is asked to of the scenes that have a program, and sines.
+/// An emulated board that computes the scenes that have a program, and sines.
 ///
 /// # Errors
 /// Where its program cannot be built or the emulator cannot be started.
@@ -182,7 +182,7 @@ pub fn board() -> Result<BenchClient, TradeoffError> {
     boot("building the trial of the formats", Toolchain::build_bench_programs)
 }
 
-/// One that computes what it is asked to of any scene, whose program takes longer to build.
+/// The same for any scene; its program takes longer to build.
 ///
 /// # Errors
 /// As of [`board`].

@@ -9,7 +9,7 @@ use crate::program::Program;
 use crate::studies::bench::CORE_CLOCK;
 use crate::table::Column;
 
-/// What is compared.
+/// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "rate",
     title: "Sample rate: walls one sample late behind the standard coupling, 65536 counts a turn",
@@ -44,7 +44,7 @@ fn row(program: &Program, instructions: f64, rate: f64) -> Option<Method> {
     let Limit::RoundUp3(stiffness) = largest_stiffness(&with_wall(&scene, 0.0, Some(1))) else {
         return None;
     };
-    // What is found in one sample is felt in the next, whatever the coupling.
+    // The delay is one sample with any coupling.
     let damping = scene.environment.wall()?.damping;
     let ripple = (stiffness + damping * rate) * TAU / COUNTS;
     let processor = 100.0 * instructions * rate / CORE_CLOCK;

@@ -1,4 +1,4 @@
-//! Number formats of the servo: what a tick takes on the emulated board, and what is lost of the
+//! Number formats of the servo: instructions of a tick on the emulated board, and errors of the
 //! torque (theory, section 9).
 
 use firmware::certificate::Resolution;
@@ -14,7 +14,7 @@ use crate::program::{self, Program};
 use crate::studies::number_format::{self, FormatError, HALF_A_TURN, Losses, Motion, cost};
 use crate::table::{Column, Table, TableError};
 
-/// What is compared.
+/// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "servo",
     title: "Servo: number formats, a tick of each scene at 1 kHz on the emulated Cortex-M4",
@@ -178,8 +178,8 @@ mod tests {
         assert!(methods.next().is_none());
     }
 
-    /// Theory, section 9: the paper's wall at rest. What it says is of one filter that has all of
-    /// the controller; here three products are rounded, each with a coefficient as fine as 31 bits.
+    /// Theory, section 9: the paper's wall at rest. Its bound is for one filter with the whole
+    /// controller; here three products are rounded, each with a coefficient as fine as 31 bits.
     #[test]
     fn the_wall_hums_as_much_as_experiments_found() {
         let case = Case::of(Program::find("damper_wall").unwrap());

@@ -8,7 +8,7 @@ use firmware_harness::sines::Sine;
 use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
 use crate::table::Column;
 
-/// What is compared.
+/// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "sine",
     title: "Sine of a sweep, of a part of a turn in f32, on the emulated Cortex-M4",
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// Dearer means are not used where a cheaper one is below the converter's rounding.
+    /// No costlier method is used if the error of a cheaper one is below a DAC step.
     #[test]
     fn the_sweep_has_the_cheapest_sine_that_no_code_shows() {
         let kept = kept();

@@ -1,4 +1,4 @@
-//! What the tests of the program share: a scene, and the program as somebody runs it.
+//! Shared by the tests of the program: a scene, and the program as a process.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

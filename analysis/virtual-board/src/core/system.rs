@@ -20,7 +20,7 @@ const RESET_REQUEST: u32 = 1 << 2;
 const GROUPING: u32 = 0b111 << 8;
 /// CPACR: full access to the floating-point unit.
 const FLOATING_POINT: u32 = 0xF << 20;
-/// FPCCR: the floating-point registers are kept for whoever is interrupted, and later if possible.
+/// FPCCR: floating-point registers are saved on exception entry, lazily if possible.
 const KEPT: u32 = 0b11 << 30;
 /// HFSR: a fault that could not be served as itself.
 const FORCED: u32 = 1 << 30;
@@ -36,7 +36,7 @@ pub struct System {
     pub exceptions: Exceptions,
     /// The core's timer.
     pub systick: SysTick,
-    /// Somebody asked for a reset.
+    /// A reset was requested.
     pub reset_requested: bool,
     vectors: u32,
     coprocessors: u32,

@@ -47,7 +47,7 @@ pub enum Cause {
     Power,
     /// The supply was too low.
     BrownOut,
-    /// Somebody pulled the pin down.
+    /// The reset pin was low.
     Pin,
     /// The program asked for it.
     Software,
@@ -199,8 +199,8 @@ impl Clock {
         Ok(())
     }
 
-    /// A register's bits that the chip itself sets, which are written back by whoever changes
-    /// something else.
+    /// A register's bits that the chip itself sets; programs write them back when they change
+    /// other bits.
     fn own(&self, offset: u32) -> u32 {
         let choice = if offset == self.layout.choice { 0b1100 } else { 0 };
         let causes = if offset == self.layout.causes { CAUSES } else { 0 };

@@ -27,7 +27,7 @@ impl InertRegisters {
         self.values.get(offset as usize / 4).copied().unwrap_or(0)
     }
 
-    /// Has a register of the layout hold this, whoever may write it.
+    /// Sets a register of the layout, also a read-only one.
     pub fn set(&mut self, offset: u32, value: u32) {
         self.values[offset as usize / 4] = value;
     }

@@ -265,7 +265,7 @@ impl Case {
         assert!(periods <= bound, "{what}: {periods} periods");
         let told = self.check_told(&mut bench, &what);
         check_torque(&bench, off, &what);
-        // Somebody arms again, where what was wrong has gone.
+        // Arming works again once the cause is gone.
         let persists = told == Fault::NotANumber;
         match bench.arm() {
             Outcome::Done => assert!(!persists, "{what}"),

@@ -91,7 +91,7 @@ fn damping_is_injected_where_there_is_a_deficit() {
     });
 }
 
-/// The codes of the same cycle on the host, which nobody has to talk to.
+/// The codes of the same cycle on the host, without a link.
 fn on_the_host(chip: &Chip, rendering: RenderingOptions, samples: &[Sample]) -> Vec<u16> {
     let program = supervised_spring::PROGRAM;
     let mut host = Replica::<_, Latched>::boot(Program {

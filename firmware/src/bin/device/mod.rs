@@ -1,8 +1,8 @@
 //! Your device. Its numbers are here and nowhere else: measure them with `identify`, write them down
 //! here, and each scene that `haptic new` began is certified against them.
 
-// A program that renders no scene needs the transducers alone; whoever reads several scenes' files at
-// once has this one in each.
+// A program that renders no scene uses the transducers alone; a crate that includes several scenes has
+// this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
 use firmware::encoder::CounterWidth;

@@ -1,7 +1,7 @@
 //! The device of the scenes in this folder that come with the project: the paddle that the paper's
 //! examples are of. A scene of your own is of *your* device, which is in `device`.
 
-// Whoever reads several scenes' files at once has this one in each.
+// A crate that includes several scenes has this module in each.
 #![allow(dead_code, clippy::duplicate_mod)]
 
 use firmware::encoder::CounterWidth;

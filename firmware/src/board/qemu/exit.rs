@@ -4,7 +4,7 @@ use super::lines;
 
 /// Exit status of a run that the host ended.
 pub const EXIT_DONE: i32 = 0;
-/// Exit status of a program that could not start; the log says why.
+/// Exit status of a program that could not start, for a logged reason.
 pub const EXIT_REFUSED: i32 = 1;
 
 /// Ends a program that cannot start. Where this machine refuses a scene that passed when it was compiled,

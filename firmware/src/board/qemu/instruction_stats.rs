@@ -1,4 +1,4 @@
-//! What a run's measurements come to.
+//! Statistics of a run.
 
 /// Smallest, largest and sum of a number of instructions.
 #[derive(Clone, Copy)]

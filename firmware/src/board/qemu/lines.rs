@@ -9,7 +9,7 @@ use crate::encoder::RawCount;
 
 /// The encoder's counter.
 static COUNT: AtomicU32 = AtomicU32::new(0);
-/// What the DAC holds.
+/// The DAC's code.
 static CODE: AtomicU32 = AtomicU32::new(DacCode::MID_SCALE.get() as u32);
 /// Whether the amplifier is on.
 static AMPLIFIER: AtomicBool = AtomicBool::new(false);
@@ -37,7 +37,7 @@ pub fn amplifier(on: bool) {
     AMPLIFIER.store(on, Ordering::Relaxed);
 }
 
-/// What the DAC holds, and whether the amplifier is on.
+/// The DAC's code and the amplifier's state.
 pub fn outputs() -> (u16, bool) {
     (CODE.load(Ordering::Relaxed) as u16, AMPLIFIER.load(Ordering::Relaxed))
 }

@@ -23,15 +23,15 @@ use crate::servo_loop::State;
 #[derive(Clone, Copy, Debug)]
 pub struct NoHost;
 
-/// Counts from the host, and what the board shows to it.
+/// Counts from the host, and the board's output.
 struct Pipes {
     counts: File,
     codes: File,
 }
 
 static PIPES: IsrCell<Pipes> = IsrCell::empty();
-/// What the host has said last. In memory of its own, so that a fault at whatever instruction finds
-/// there what was read.
+/// The last input from the host. In a static of its own, so that it is there after a fault at any
+/// instruction.
 static LATEST_INPUT: [AtomicU8; TickInput::BYTES] = [const { AtomicU8::new(0) }; TickInput::BYTES];
 /// Number of the last tick that was shown.
 static SHOWN: AtomicU16 = AtomicU16::new(0);
@@ -67,7 +67,7 @@ pub fn words<const N: usize>(from: &mut File) -> Result<[u64; N], Error> {
 /// The interrupt that uses the pipes must not be enabled yet.
 pub(super) unsafe fn open() -> Result<(), NoHost> {
     let (counts, codes) = pipes()?;
-    // SAFETY: nobody uses the place yet, as the caller promises.
+    // SAFETY: the caller guarantees that the cell is unused.
     unsafe { PIPES.init(Pipes { counts, codes }) };
     Ok(())
 }
@@ -83,9 +83,9 @@ pub(super) fn zero_count() {
 /// # Safety
 /// The pipes must be open.
 pub(super) unsafe fn receive() -> Option<u32> {
-    // SAFETY: open, as the caller promises, and nobody holds more than a shared reference.
+    // SAFETY: the caller opened the pipes, and only shared references exist.
     let mut counts = unsafe { &PIPES.borrow().counts };
-    // SAFETY: the bytes of the atomics, which nobody else looks at meanwhile.
+    // SAFETY: no other code accesses the atomics' bytes meanwhile.
     let bytes =
         unsafe { from_raw_parts_mut(LATEST_INPUT.as_ptr().cast_mut().cast(), LATEST_INPUT.len()) };
     if counts.read_exact(bytes).is_err() {
@@ -99,7 +99,7 @@ pub(super) unsafe fn receive() -> Option<u32> {
     Some(missed.into())
 }
 
-/// What the host has said last, and the number of that tick.
+/// The last input from the host, and its tick.
 fn latest_input() -> (TickInput, u16) {
     TickInput::from_bytes(LATEST_INPUT.each_ref().map(|byte| byte.load(Ordering::Relaxed)))
 }

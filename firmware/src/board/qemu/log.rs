@@ -1,5 +1,5 @@
-//! What the servo did, told to the host: ticks through a lock-free queue, summed up and logged
-//! below the servo's priority. Nothing is logged in the servo's interrupt.
+//! The servo's log for the host: ticks pass through a lock-free queue and are summed up and logged
+//! below the servo's priority, never in the servo's interrupt.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -106,7 +106,7 @@ pub struct Log<P> {
     total: u32,
     interrupt: InstructionStats,
     lockstep: InstructionStats,
-    /// What is done below the interrupt at a time.
+    /// A round of work below the interrupt.
     below: InstructionStats,
 }
 
@@ -118,13 +118,13 @@ impl<P: Parts> Log<P> {
     pub unsafe fn open(scale: Scale, parts: P) -> Self {
         static QUEUE: StaticCell<Queue<Measured, LENGTH>> = StaticCell::new();
         let (push, ticks) = QUEUE.init(Queue::new()).split();
-        // SAFETY: nobody uses the place yet, as the caller promises.
+        // SAFETY: the caller guarantees that the cell is unused.
         unsafe { TICKS.init(push) };
         let [interrupt, lockstep, below] = [InstructionStats::EMPTY; 3];
         Self { ticks, scale, parts, total: 0, interrupt, lockstep, below }
     }
 
-    /// Does what is to be done below the interrupt, and measures it.
+    /// Runs work below the interrupt, and measures it.
     pub fn around(&mut self, work: impl FnOnce()) {
         let start = time_below();
         work();

@@ -28,15 +28,15 @@ pub fn uncertified_servo<E: Discretize<N>, N: Number>(
     Servo::build(scene, transducers)
 }
 
-/// What the counter's numbers mean.
+/// Scale of the counter.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
     /// Counts that one instruction takes.
     pub per_instruction: u32,
     /// Instructions that a [`measurement`](measure) counts of itself.
     pub overhead: u32,
-    /// Instructions that the measurement of an interrupt counts of itself: one that does nothing
-    /// but return has one of its own.
+    /// Overhead of the measurement of an interrupt in instructions: an empty interrupt has one
+    /// instruction of its own.
     pub around: u32,
 }
 

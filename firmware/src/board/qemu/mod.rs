@@ -44,7 +44,7 @@ unsafe fn DefaultHandler(number: i16) {
 #[macro_export]
 macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
-        /// The scene, whose torque is as late as it says.
+        /// The scene, with its delay checked.
         const TIMED: $crate::certificate::TimingChecked<
             $crate::scene::Scene<$environment>,
             $crate::board::qemu::Mode,
@@ -64,8 +64,8 @@ macro_rules! board_program {
         /// A tick, with the world around it.
         #[unsafe(export_name = "SysTick")]
         unsafe extern "C" fn sys_tick() {
-            // SAFETY: the place is filled before the interrupt is enabled, and these are called
-            // before and after a tick, when nobody holds what is in it.
+            // SAFETY: the cell is filled before the interrupt is enabled, and this is called
+            // before and after a tick, when no reference into it is alive.
             let state = || unsafe { STATICS.isr.borrow_mut() }.servo_loop.state();
             // SAFETY: as above.
             let lose = |missed| unsafe { STATICS.isr.borrow_mut() }.hardware.lose(missed);

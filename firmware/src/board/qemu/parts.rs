@@ -1,8 +1,8 @@
-//! What the parts of a tick cost, measured below the servo's priority by doing them again: the
-//! servo's interrupt is measured as it is flashed, without a meter inside.
+//! Instructions of the parts of a tick, measured below the servo's priority by repeating them: the
+//! servo's interrupt stays as it is flashed, without a meter inside.
 //!
-//! Where a part is in memory is hidden from the optimiser: it would work with addresses that are
-//! too far from what it has in a register, which in the interrupt they are not.
+//! The addresses of the parts are hidden from the optimiser: known addresses would be too far from
+//! a base register, unlike those in the interrupt.
 
 use core::hint::black_box;
 

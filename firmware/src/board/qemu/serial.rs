@@ -77,7 +77,7 @@ pub fn open() -> Serial {
 pub(super) unsafe fn receive() {
     // SAFETY: the place was filled before the interrupt was enabled, and nothing else uses it.
     let incoming = unsafe { INCOMING.borrow_mut() };
-    // SAFETY: the port's registers; reading the data says that they were taken.
+    // SAFETY: the port's registers; reading the data clears the flag.
     while unsafe { STATUS.read_volatile() } & RECEIVED != 0 {
         let byte = unsafe { DATA.read_volatile() } as u8;
         if incoming.enqueue(byte).is_err() {
@@ -86,7 +86,7 @@ pub(super) unsafe fn receive() {
     }
 }
 
-/// Bytes that were lost because nobody took those before them.
+/// Bytes that were lost because earlier ones were not read.
 #[cfg(feature = "log")]
 pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)

@@ -92,7 +92,7 @@ where
     }
 }
 
-/// Everything up to the first tick; gives what serves the host.
+/// Everything up to the first tick; returns the host's service.
 ///
 /// In a frame of its own, which is not there any more when the host's sets are judged.
 #[inline(never)]

@@ -1,4 +1,4 @@
-//! What a fault leaves behind on this board.
+//! The end of a program by a fault.
 
 use super::{lines, lockstep};
 use crate::board::fault_memory;

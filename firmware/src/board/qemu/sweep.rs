@@ -11,7 +11,7 @@ use super::{
     start::calibrate,
 };
 
-/// Where a sweep's interrupt finds what it plays.
+/// The state of a sweep's interrupt.
 pub type SweepCell = IsrCell<Exciter<'static>>;
 
 /// Plays a sweep.

@@ -28,7 +28,7 @@ pub fn load() {
     // SAFETY: the linker keeps the region from `START` to `END` for this code, and as many words of
     // flash at `LOAD`; both are aligned to words, and nothing runs there yet.
     unsafe { copy_nonoverlapping(&raw const LOAD, start, words) };
-    // What was written is there before it is fetched.
+    // The writes complete before the fetch.
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
 }

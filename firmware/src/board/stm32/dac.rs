@@ -52,7 +52,7 @@ impl DacChannel {
         self.registers.dhr12r(self.channel).write(|w| w.set_dhr(code.get()));
     }
 
-    /// From now on each update of the pacing timer passes on what was written last: a code written
+    /// From now on each update of the pacing timer outputs the last written code: a code written
     /// anywhere within a period appears exactly at its end.
     pub fn latch(self) {
         self.registers.cr().modify(|w| {
@@ -66,7 +66,7 @@ impl DacChannel {
         self.registers.dor(self.channel).read().dor()
     }
 
-    /// Gives no torque at once, whatever the timer does.
+    /// Zero torque at once, without the timer.
     pub fn stop(self) {
         self.registers.cr().modify(|w| w.set_ten(self.channel, false));
         self.write(DacCode::MID_SCALE);

@@ -21,8 +21,8 @@ pub fn non_maskable() -> Fault {
 const F405: u16 = 0x413;
 const REVISION_A: u16 = 0x1000;
 
-/// Switches the flash memory's caches and its prefetching on: it has five wait states at 168 MHz, and
-/// the clock set-up writes zeros over whatever was in that register beside them.
+/// Enables the caches and the prefetching of the flash memory: it has five wait states at 168 MHz, and
+/// the clock set-up clears the other bits of that register.
 pub fn cache() {
     let chip = DBGMCU.idcode().read();
     FLASH.acr().modify(|w| {
@@ -32,7 +32,7 @@ pub fn cache() {
     });
 }
 
-/// Has the watchdog go on while a debugger halts the core, whatever that has asked for.
+/// Keeps the watchdog running while a debugger halts the core.
 pub fn keep_watchdog_running() {
     DBGMCU.apb1fzr().modify(|w| w.set_iwdg(false));
 }

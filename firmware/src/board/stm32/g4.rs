@@ -33,7 +33,7 @@ pub fn cache() {
     });
 }
 
-/// Has the watchdog go on while a debugger halts the core, whatever that has asked for.
+/// Keeps the watchdog running while a debugger halts the core.
 pub fn keep_watchdog_running() {
     DBGMCU.apb1lfzr().modify(|w| w.set_iwdg(false));
 }

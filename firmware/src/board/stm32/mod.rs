@@ -1,5 +1,5 @@
 //! What the boards with an STM32 chip have in common: the registers that a tick touches, the way
-//! from reset to a running servo, and what a panic or a fault leaves behind.
+//! from reset to a running servo, and the end by a panic or a fault.
 //!
 //! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
 
@@ -45,7 +45,7 @@ pub use sweep::{Setup, SweepCell, measure};
 /// When a torque reaches the motor.
 pub type Mode = crate::servo::Latched;
 
-/// What a board gives besides its registers.
+/// A board's data besides registers.
 pub struct BoardPeripherals {
     /// The port to the host.
     pub serial: serial::Serial,

@@ -21,7 +21,7 @@ pub trait Counter: Copy {
     /// Bits after which it wraps.
     const WIDTH: CounterWidth;
 
-    /// What it has counted.
+    /// The count.
     fn count(self) -> RawCount;
 
     /// Finishes what the driver began: the full range, and a filter against short spikes.

@@ -79,7 +79,7 @@ impl Startup for Registers {
         // While the core is halted the DAC holds its last code: what takes that away shall not
         // be halted with it.
         family::keep_watchdog_running();
-        // A count more makes up for what the cast rounds down.
+        // A count more covers the cast's rounding.
         let counts = PATIENCE * self.period.seconds() * WATCHDOG_CLOCK + 1.0;
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
         pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));

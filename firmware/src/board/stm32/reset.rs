@@ -7,8 +7,8 @@ use crate::board::fault_memory;
 use crate::reset::ResetCause;
 
 /// Flags of RCC_CSR that the F4's and the G4's have in common (RM0090, 7.3.21; RM0440, 7.4.30), the
-/// watchdogs' under different names. Whatever resets the chip pulls the pin down, too, so that the
-/// pin's flag alone means the pin.
+/// watchdogs' under different names. Every reset pulls the pin low, too, so the pin is the cause
+/// only if its flag is alone.
 const PIN: u32 = 1 << 26;
 const SOFTWARE: u32 = 1 << 28;
 const INDEPENDENT_WATCHDOG: u32 = 1 << 29;

@@ -65,8 +65,8 @@ impl Port for Serial {
     }
 }
 
-/// What a future gives at once. The executor's next round is not later than the next interrupt, and
-/// the port's own are among those, so nobody needs to be woken.
+/// Polls a future once. No waker is needed: the executor polls again after the next interrupt, and
+/// the port's own interrupts are among those.
 fn now<T>(future: impl Future<Output = T>) -> Option<T> {
     match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(value) => Some(value),

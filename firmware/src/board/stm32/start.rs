@@ -46,7 +46,7 @@ pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>
 
 /// The static places of a program, whose types are its scene's.
 pub struct Statics<E: Discretize<N> + 'static, N: Number> {
-    /// What the servo's interrupt works with.
+    /// State of the servo's interrupt.
     pub servo: &'static ServoCell<E, N>,
     /// Where it meets the task below.
     pub mailbox: &'static MailboxCell<E, N, Mode>,
@@ -76,8 +76,8 @@ where
     })
 }
 
-/// A program as this board has it, or a compile error: the counter's width is the board's, whatever the
-/// program was first written for.
+/// The program with the counter's width of this board in place of the one that it was written for, or a
+/// compile error.
 ///
 /// # Panics
 /// Where the counter would wrap unseen; in a constant that is the compile error.
@@ -87,10 +87,10 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
     Program { transducers, ..program }.checked()
 }
 
-/// Everything from reset to the first tick; gives what the task below the servo works with.
+/// Everything from reset to the first tick; returns the state of the task below the servo.
 ///
-/// In a frame of its own, which is gone when that task judges a set: judging takes most of the
-/// stack, and must not find what was only needed here below itself.
+/// Not inlined, so that its stack frame is gone when that task certifies a set, which takes most of
+/// the stack.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
 fn bring_up<E, N>(
@@ -128,8 +128,8 @@ where
 }
 
 impl<E: Tunable<N> + SupportsTiming<Mode>, N: Number> HostLink<E, N> {
-    /// Serves the host, and sleeps from one interrupt to the next: whatever there is to do, an
-    /// interrupt has made it so.
+    /// Serves the host, and sleeps from one interrupt to the next: all work begins with an
+    /// interrupt.
     pub async fn serve(&mut self) -> ! {
         loop {
             self.poll();
@@ -305,7 +305,7 @@ macro_rules! board_filter {
     };
 }
 
-/// The handler of the pacing timer's interrupt, for what is in the place `ISR_STATE`.
+/// The handler of the pacing timer's interrupt, for the state in `ISR_STATE`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_tick {

@@ -6,7 +6,7 @@ use super::wiring::{AMPLIFIER, DAC};
 use crate::board::fault_memory;
 use crate::fault::Fault;
 
-/// Takes the torque away, by registers alone: it works with whatever is left of the program.
+/// Removes the torque by registers alone: it works in any state of the program.
 pub fn stop() {
     AMPLIFIER.set(false);
     DAC.stop();
@@ -15,7 +15,7 @@ pub fn stop() {
 /// Ends the program because of a non-maskable interrupt: an error of the flash memory, of RAM, or of the
 /// crystal, without which the core runs on by its internal oscillator.
 pub fn end_non_maskable() -> ! {
-    // What the chip says of it may take an access that fails, too.
+    // First, as reading the cause may fault as well.
     AMPLIFIER.set(false);
     end(family::non_maskable())
 }

@@ -1,8 +1,8 @@
-//! Plays a sweep on a real device and tells the host what came of it, as the lines of a record.
+//! Plays a sweep on a real device and sends the measurement to the host, as lines of a record.
 //!
-//! The motor is driven open loop, so nothing is certified and nothing runs by itself: the host begins
-//! with a byte, goes on saying that it listens, and ends it with another ([`byte`]). The sweep also
-//! ends where the device moves farther or faster than it may.
+//! The motor is driven open loop, so nothing is certified and nothing runs by itself: the host starts
+//! it with a byte, sends keep-alive bytes, and ends it with another ([`byte`]). The sweep also ends
+//! if the device moves farther or faster than it may.
 
 use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -30,12 +30,12 @@ use crate::servo_loop::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardw
 use crate::text::ShortF64;
 use crate::torque::LimitReason;
 
-/// Where the sweep's interrupt finds what it works with.
+/// The state of the sweep's interrupt.
 pub type SweepCell = IsrCell<SweepIsr>;
 
-/// What a sweep's device is measured with, and kept within.
+/// Transducers and limits of a sweep.
 pub struct Setup {
-    /// What the sweep was planned for.
+    /// The plan of the sweep.
     pub transducers: Transducers,
     /// How far and how fast the device may move.
     pub limits: MotionLimits,
@@ -52,14 +52,14 @@ const LINE: usize = 80;
 
 /// Whether the host wants a sweep to begin.
 static BEGIN: AtomicBool = AtomicBool::new(false);
-/// Whether it wanted the one that is played to end.
+/// Whether it wants the running sweep to end.
 static STOP: AtomicBool = AtomicBool::new(false);
-/// Ticks for which the host will still be believed to listen.
+/// Ticks until the host counts as lost.
 static LISTENING: AtomicU32 = AtomicU32::new(0);
-/// How the last sweep ended, as one more than its number; 0 once the host was told.
+/// The end of the last sweep, as its number plus one; 0 once it has been sent.
 static ENDED: AtomicU32 = AtomicU32::new(0);
 
-/// What the sweep's interrupt works with.
+/// The state of the sweep's interrupt.
 pub struct SweepIsr {
     beginning: Exciter<'static>,
     exciter: Exciter<'static>,
@@ -72,7 +72,7 @@ pub struct SweepIsr {
     /// The position at the sweep's beginning, and in the last tick.
     start: i32,
     last: i32,
-    /// What the DAC has held since this tick's update.
+    /// The DAC's code since this tick's update.
     held: DacCode,
     hardware: Registers,
     rows: Frames<'static, ROWS>,
@@ -216,13 +216,13 @@ struct Writer {
     period: f64,
     /// Torque of one code in N m.
     step: f64,
-    /// What was not sent yet.
+    /// Unsent bytes.
     line: String<LINE>,
     /// The position of the last row.
     count: i32,
 }
 
-// What is written to a line fits; what did not would be cut off.
+// Every line fits; a longer one would be cut off.
 impl Writer {
     /// Sends lines as long as there are any and the port takes them.
     fn send(&mut self, serial: &mut Serial, told: &mut FrameReader<'_, ROWS>) {

@@ -45,7 +45,7 @@ impl Period {
         // From the smallest prescaler with which the period fits, which has the finest steps, the one
         // that comes nearest: usual periods are whole numbers of counts with one of the next few, to
         // the rounding of the product.
-        // All casts round down what is positive and small enough.
+        // All casts round down positive, small numbers.
         let first = (wanted / MOST) as u32 + 1;
         let with = |prescale: u32| {
             let counts = ((wanted / f64::from(prescale) + 1e-6) as u32).min(MOST as u32);
@@ -100,7 +100,7 @@ impl TickTimer {
         rcc::enable_and_reset::<peripherals::TIM6>();
         TIMER.psc().write_value((period.prescale - 1) as u16);
         TIMER.arr().write(|w| w.set_arr((period.counts - 1) as u16));
-        // The update is what the DAC is triggered by.
+        // The update triggers the DAC.
         TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
         // Prescaler and period are taken over at an update; this one shall be no tick.
         TIMER.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
@@ -115,7 +115,7 @@ impl TickTimer {
         Self { period: period.clock_counts(), in_time, began: 0 }
     }
 
-    /// Starts the clock and then the timer, so that a period never begins before the clock says so.
+    /// Starts the clock and then the timer, so that no period begins before the clock's.
     pub fn start(&mut self) {
         CLOCK.cnt().write_value(0);
         CLOCK.cr1().modify(|w| w.set_cen(true));

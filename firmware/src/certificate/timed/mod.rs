@@ -93,13 +93,13 @@ impl<S, M> TimingChecked<S, M> {
 pub enum TimingError {
     /// The torque takes a sample to the motor, and the environment allows none.
     NotLate,
-    /// The scene is linear and would not pass with a torque limit, which every board has: that of its
-    /// converter, and while the torque is faded in and out a lower one.
+    /// The scene is linear and would not pass with a torque limit, which every board has: the DAC range,
+    /// and a lower limit while the torque is faded in and out.
     Limited {
         /// Bound on the index with a torque limit in N m s/rad; `None` where none is known.
         bound: Option<f64>,
-        /// What it has to stay below; `None`: no limit is known behind a coupling that is stiffer than
-        /// the standard one, or rigid.
+        /// Its upper bound; `None`: unknown behind a coupling that is stiffer than the standard one, or
+        /// rigid.
         limit: Option<f64>,
     },
     /// The scene would pass if each count were read at the very beginning of its period.
@@ -108,7 +108,7 @@ pub enum TimingError {
         period: f64,
         /// Bound on the index in N m s/rad.
         bound: f64,
-        /// What it has to stay below.
+        /// Its upper bound.
         limit: f64,
     },
 }
@@ -197,7 +197,7 @@ impl Assessment {
     }
 }
 
-/// Whether a board may render a scene; if so, what it is with its torque limited.
+/// Whether a board may render a scene; if so, the scene with its torque limited.
 ///
 /// A board limits every torque, so that the nonlinear bound has to pass the paper's rule, whatever
 /// rule the scene's verdict follows. That proves the scene on its own: the bound is one on the index
@@ -206,9 +206,9 @@ impl Assessment {
 /// larger than the bound allows. So nothing is searched for, and a board has nothing of the
 /// polynomials by which a host finds the index itself.
 ///
-/// Where the type of an environment tells that it does not cancel damping, a program has nothing of
-/// what that takes: it is told that none is cancelled, and says no if some is.
-// In a frame of its own: what it takes is not on the stack of a small board when the servo is built.
+/// Where the type of an environment does not cancel damping, the program omits the code for
+/// cancelled damping, and rejects a scene that cancels some.
+// Not inlined: its frame is off a small board's stack when the servo is built.
 #[inline(never)]
 pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     scene: &Scene,
@@ -234,7 +234,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     }
 }
 
-/// Whether a scene with this assessment agrees with a mode; if so, what it is with its torque limited.
+/// Whether a scene with this assessment agrees with a mode; if so, the scene with its torque limited.
 pub(super) const fn agree<M: OutputMode>(
     scene: &Scene,
     assessment: &Assessment,
@@ -285,7 +285,7 @@ const fn stands_counts_read_late<M: OutputMode>(
     }
 }
 
-/// What the bound has to stay below for that.
+/// Upper limit of the bound for that.
 const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
     let late = Interval::exact(READ_WITHIN).div(n.period);
     Missed::read_late(n, late).limit(limited.coupling)

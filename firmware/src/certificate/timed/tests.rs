@@ -37,11 +37,11 @@ fn an_undelayed_scene_is_for_simulations_alone() {
     }
 }
 
-/// What a board fades in is what passes with a torque limit at any level.
+/// A board fades in only scenes that pass with any torque limit.
 #[test]
 fn a_scene_that_must_not_be_limited_is_for_simulations_alone() {
-    // Its coupling is softer than the standard one, and condition 18 asks for more than the exact
-    // rule does.
+    // Its coupling is softer than the standard one, and condition 18 requires more than the exact
+    // rule.
     let stiff = scene(DelayedSpring::<2> { stiffness: 15.0 }, 33.0);
     let certified = stiff.certify().unwrap();
     let Err(TimingError::Limited { bound: Some(bound), limit: Some(limit) }) =

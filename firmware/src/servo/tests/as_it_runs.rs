@@ -217,8 +217,8 @@ fn rounding_moves_the_torque_by_no_more_than_the_certificate_says() {
     assert!(largest.iter().all(|&share| share > 0.02), "{largest:?}");
 }
 
-/// Positions that are off by half a count to the side that moves the torque most move it by what
-/// the certificate says of the encoder.
+/// Position errors of half a count, each to the side that moves the torque most, move it by the
+/// certificate's bound for the encoder.
 #[test]
 fn an_encoder_moves_the_torque_by_as_much_as_the_certificate_says() {
     for environment in environments() {

@@ -116,8 +116,8 @@ proptest! {
     ) {
         let scene = Scene { coupling, torque_limit, ..scene(environment) };
         let limit = torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
-        // Some are past what can be certified, or have no coefficients; whatever can be built
-        // must be right, except that a loop that grows without bound forgets its digits.
+        // Some cannot be certified, or have no coefficients; every scene that can be built must
+        // be right, except that an unbounded loop loses its digits.
         let Ok(mut servo) = Servo::<_, f64>::build(&scene, &TRANSDUCERS) else { return Ok(()) };
         let mut reference = Reference::new(&scene, limit, TICKS);
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Limits, refusals, and what no input can do.
+//! Limits, refusals, and robustness.
 
 use super::*;
 
@@ -133,7 +133,7 @@ fn any_environment() -> impl Strategy<Value = Environment> {
     ]
 }
 
-/// Whatever could be built: no panic, and never more torque than allowed.
+/// Every servo that builds: no panic, and torque within its limit.
 fn endures<N: Number>(scene: &Scene<Environment>, transducers: &Transducers, raw: &[u32])
 where
     Environment: Discretize<N>,
@@ -142,7 +142,7 @@ where
     let largest = scene.torque_limit.unwrap_or(transducers.full_scale_torque);
     for raw in raw {
         let output = servo.tick(RawCount::from(*raw));
-        // What is beyond it, no board's DAC puts out.
+        // No board's DAC outputs more.
         assert!(output.code.offset().unsigned_abs() <= DacCode::CODES_TO_FULL_SCALE);
         assert!(servo.torque_nm().abs() <= largest);
         if output.limit == LimitReason::NotANumber {

@@ -1,4 +1,4 @@
-//! A board that exists in memory only, and remembers what was done to it.
+//! A board in memory only that records every access.
 
 use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
@@ -11,7 +11,7 @@ use crate::tuning::Tunable;
 /// Timer counts in a period of every board here.
 pub const PERIOD: u32 = 1000;
 
-/// What was done to the board.
+/// An access to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     Amplifier(bool),
@@ -138,7 +138,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> Bench<E, N, M>
         })
     }
 
-    /// Boots the board and asks for it to be armed.
+    /// Boots the board and requests arming.
     pub fn armed(program: &Program<E>, board: Board) -> Result<Self, Step> {
         let bench = Self::boot(program, board)?;
         bench.requests.arm();

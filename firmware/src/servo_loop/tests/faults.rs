@@ -12,7 +12,7 @@ fn assert_stopped(bench: &mut Bench<Spring, f32, Latched>, fault: Fault) {
     assert_eq!(bench.notices(), [Notice::Stopped(fault)]);
     let stored = FaultRecord::decode(&bench.board.stored).unwrap();
     assert_eq!((stored.fault, stored.count), (fault, bench.board.count));
-    // It stays so, and there is no torque whatever the device does.
+    // It stays so, without torque for any motion of the device.
     bench.board.events.clear();
     bench.stand(bench.board.count, 50);
     assert!(bench.board.codes().iter().all(|code| *code == 2048) && !bench.board.is_on());

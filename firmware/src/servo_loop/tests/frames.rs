@@ -1,4 +1,4 @@
-//! Frames: what each says of its tick, and that the interrupt never waits for whoever reads them.
+//! Frames: their contents, and that the interrupt never waits for their reader.
 
 use proptest::prelude::*;
 

@@ -65,8 +65,8 @@ fn boots_in_an_order_in_which_nothing_can_move() {
     bench.board.events.clear();
     bench.tick(900);
     assert_eq!(bench.board.events, [Event::Write(2048), Event::Amplifier(true), Event::Feed]);
-    // From there on the clamp opens by a hundredth of the torque limit a tick, whatever the
-    // spring asks for: 1 N m is 895.5 codes, and at 900 counts the spring wants 725.3.
+    // From there on the clamp opens by a hundredth of the torque limit a tick, for any torque of
+    // the spring: 1 N m is 895.5 codes, and at 900 counts the spring has 725.3.
     for ticks in 1..=80 {
         let (code, level) = (bench.tick(900).code, 8.955 * f64::from(ticks));
         assert!((f64::from(-code.offset()) - level).abs() <= 0.51, "{code:?} for {level}");
@@ -90,7 +90,7 @@ fn a_scene_that_fails_the_self_check_leaves_the_amplifier_off() {
     assert_eq!(board.events, [Event::Amplifier(false), Event::Write(2048)]);
 }
 
-/// After whatever reset, nothing moves before somebody asks for it.
+/// After any reset the servo stays off until it is armed.
 #[test]
 fn no_reset_arms_a_servo_that_nobody_has_asked_to_arm() {
     for reset in ResetCause::ALL {

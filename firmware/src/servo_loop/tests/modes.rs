@@ -70,7 +70,7 @@ fn injected_damping_is_felt_only_while_there_is_a_deficit() {
         let deficit = injecting.servo_loop.energy.is_deficit();
         let (with, without) = (injecting.tick(count).code, plain.tick(count).code);
         differed += usize::from(with != without);
-        // What was injected before leaves with the coupling's own echo, a quarter a tick.
+        // Torque injected before decays with the coupling's echo, a quarter a tick.
         assert!(deficit || differed > 0 || with == without);
     }
     assert!(differed > 100, "{differed}");

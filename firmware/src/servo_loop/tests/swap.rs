@@ -119,7 +119,7 @@ fn a_new_set_starts_at_rest_where_the_device_is() {
     let spring = *bench.board.codes().last().unwrap();
     bench.requests.submit(set(&program, &[(Parameter::Damping, 0.014)])).unwrap();
     assert_eq!(swing(&mut bench), spring);
-    // And so does one that is armed: what it remembers of a fault is not what the motor did.
+    // And so does one that is armed: its state from a fault is not that of the motor.
     bench.board.elapsed = PERIOD;
     bench.stand(900, 20);
     bench.requests.arm();
@@ -145,7 +145,7 @@ fn a_swap_takes_the_torque_away_for_as_long_as_it_says() {
     assert_eq!(codes.last(), Some(&full));
 }
 
-/// Nobody leans on a wall that was not there yet.
+/// No hand presses on a wall without torque.
 #[test]
 fn a_swap_does_not_hurry_an_arming() {
     let mut bench = bench(&SPRING);

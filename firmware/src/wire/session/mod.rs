@@ -42,7 +42,7 @@ use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
 use crate::servo_loop::{self, FrameReader, Notice, Requests};
 use crate::tuning::{self, Tunable};
 
-/// What a board reports about itself.
+/// A board's own description.
 #[derive(Clone, Copy, Debug)]
 pub struct BoardInfo {
     /// Name of the program.

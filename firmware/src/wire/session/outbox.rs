@@ -20,14 +20,14 @@ impl Outbox {
         self.gone >= self.end
     }
 
-    /// Takes a message, in place of what is left of the one before.
+    /// Takes a message, in place of the rest of the one before.
     pub(super) fn put(&mut self, message: &ToHost<&str>) {
         self.gone = 0;
-        // The buffer has room for the longest message; one that were longer would not be sent.
+        // The buffer has room for the longest message; a longer one would not be sent.
         self.end = encode(message, &mut self.buffer).map_or(0, <[u8]>::len);
     }
 
-    /// What is left to send.
+    /// Bytes left to send.
     pub(super) fn rest(&self) -> &[u8] {
         self.buffer.get(self.gone..self.end).unwrap_or_default()
     }

@@ -68,7 +68,7 @@ impl PendingReplies {
         }
     }
 
-    /// The servo has switched the amplifier, or says why it has not.
+    /// The servo has switched the amplifier, or refused with a fault.
     pub(super) fn switched(&mut self, on: bool, outcome: Result<(), Fault>) {
         if let Some((id, wanted)) = self.switching
             && wanted == on

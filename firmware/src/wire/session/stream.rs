@@ -23,9 +23,9 @@ pub(super) struct Stream {
 }
 
 impl Stream {
-    /// No ticks, until they are asked for. `period` in s.
+    /// No ticks until a request. `period` in s.
     pub(super) fn new(period: f64) -> Self {
-        // A cast of what is out of range gives the nearest.
+        // The cast saturates.
         let patience = (PATIENCE / period) as u32;
         let batch = Batch::new();
         Self { every: None, batch, first: 0, last: 0, patience, due: false, thinned: 0 }

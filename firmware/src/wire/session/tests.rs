@@ -113,7 +113,7 @@ impl Bench {
         self.servo_loop.run(&mut self.hardware, &mut self.inbox, &mut self.frames);
     }
 
-    /// So many ticks with the wire served after each; gives what the board said.
+    /// Runs ticks and serves the wire after each; returns the board's messages.
     fn run(&mut self, ticks: usize) -> Vec<Said> {
         let mut said = Vec::new();
         for _ in 0..ticks {
@@ -399,7 +399,7 @@ fn garbage() -> impl Strategy<Value = Vec<u8>> {
             0 => ToBoard::Hello,
             1 => ToBoard::Get,
             2 => ToBoard::Status,
-            // Never certified, whatever happens to its neighbours.
+            // Never certified, with any neighbours.
             3 => ToBoard::Set { id: 1, changes: set(1000.0) },
             4 => ToBoard::Stream(core::num::NonZeroU32::new(3)),
             _ => ToBoard::Arm { id: 9 },

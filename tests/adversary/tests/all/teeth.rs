@@ -165,7 +165,7 @@ fn judge(refuted: &RefutedScene, format: Numbers, latched: bool) -> Result<&'sta
         enough: 1,
         effort: Effort { drawn: 200, climbed: 200, ..Effort::USUAL },
     };
-    // Against the torque of a converter that is hardly, sometimes and nearly always at its end.
+    // Against the torque of a DAC that saturates rarely, sometimes and nearly always.
     for full_scale in [4.0, 1.0, 20.0] {
         let mut drawn = RandomScene::of(Kind::Wall, scene, format, latched, 0.1);
         drawn.judged_as = refuted.judged_as;

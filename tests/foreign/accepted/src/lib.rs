@@ -1,4 +1,4 @@
-//! A knob by somebody who wants the certificate and nothing else.
+//! A knob that uses the certificate and nothing else.
 #![no_std]
 
 use firmware::certificate::Certified;

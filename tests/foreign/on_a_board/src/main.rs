@@ -1,4 +1,4 @@
-//! A knob with a detent, by somebody who has a board and the firmware's library.
+//! A knob with a detent: a foreign program for a board.
 #![no_std]
 #![no_main]
 

@@ -56,7 +56,7 @@ fn every_section_has_a_cause_and_what_to_do() {
     }
 }
 
-/// Somebody looks for the sentence on the screen.
+/// Users search for the message they see.
 #[test]
 fn the_words_that_are_quoted_are_those_of_the_program() {
     let continued = regex(r"\\\n\s+");

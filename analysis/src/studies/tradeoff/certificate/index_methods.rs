@@ -29,11 +29,11 @@ pub enum Verdict {
     Open,
 }
 
-/// What a judge says.
+/// A method's result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndexResult {
-    /// The ends of what it says of the index in N m s/rad, one number twice where it has no bounds;
-    /// `None` where it says nothing.
+    /// Bounds on the index in N m s/rad, one number twice if the method has no bounds; `None` if it
+    /// has no result.
     pub alpha: Option<(f64, f64)>,
     /// The verdict.
     pub verdict: Verdict,
@@ -46,8 +46,8 @@ pub enum IndexMethod {
     ClosedForm,
     /// The certificate's enclosure, so tight relative to the index.
     Enclosure(f64),
-    /// The certificate's enclosure until it is clear whether it will be a proof; what is not proved
-    /// is refused, and the index is not looked for.
+    /// The certificate's enclosure until it is clear whether it will be a proof; an unproved scene
+    /// is rejected, and the index is not searched.
     Decision,
     /// The least of so many values, and how they lie.
     Grid(Grid),
@@ -93,8 +93,8 @@ impl Grid {
 }
 
 impl IndexMethod {
-    /// What it says of an environment on a device of passivity `delta`; `None` where it knows
-    /// nothing of such environments.
+    /// Its result for an environment on a device of passivity `delta`; `None` if it does not cover
+    /// such environments.
     pub fn evaluate(&self, environment: &Environment, delta: f64) -> Option<IndexResult> {
         let period = Interval::exact(PERIOD);
         match self {

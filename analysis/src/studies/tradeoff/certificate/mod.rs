@@ -1,7 +1,6 @@
-//! Ways to the certificate: how long each takes, how far off its index is, how often it passes what
-//! is not passive, and how often it does not pass what is, among ten thousand environments of known
-//! answer. The first of these two is the danger and the second only the price, so that they are
-//! never added up.
+//! Methods for the certificate: their time, the error of their index, and the rates of false
+//! positives and false negatives among ten thousand environments of known answer. A false positive
+//! is dangerous and a false negative only a loss, so the two are never added up.
 
 pub mod environments;
 pub mod index_methods;
@@ -17,7 +16,7 @@ use crate::table::Column;
 use environments::{EACH, Kind, environment, reference_index};
 use index_methods::{Grid, IndexMethod, IndexResult, Verdict};
 
-/// What is compared.
+/// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "certificate",
     title: "Certificate: ways to the index alpha and the verdict, on 2500 environments of each kind",
@@ -47,7 +46,7 @@ const TOLERANCES: [f64; 5] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-13];
 /// A way to the index, with its family and its name.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// What it is one of.
+    /// Its family.
     pub family: &'static str,
     /// Its own name.
     pub name: String,
@@ -124,12 +123,12 @@ fn evaluated(method: &IndexMethod, kind: Kind, number: usize) -> Option<IndexRes
     method.evaluate(&environment, environment.delta(reference_index(kind, number)))
 }
 
-/// What a judge says of many environments, beside what is right.
+/// Errors of a method on many environments.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MethodErrors {
-    /// It says yes where the answer is no.
+    /// False positives.
     pub wrong_yes: usize,
-    /// It says no where the answer is yes.
+    /// False negatives.
     pub wrong_no: usize,
     /// It leaves the verdict open.
     pub open: usize,
@@ -181,7 +180,7 @@ impl MethodErrors {
     }
 }
 
-/// How far the furthest of what was said is from the index, over the index.
+/// Distance of the farther bound from the index, over the index.
 fn error(said: Option<(f64, f64)>, truth: f64) -> f64 {
     said.map_or(f64::INFINITY, |(lo, hi)| (lo - truth).abs().max((hi - truth).abs()) / truth.abs())
 }

@@ -1,4 +1,4 @@
-//! Polynomials in doubles, as somebody writes them who trusts doubles.
+//! Polynomials in doubles, without bounds on rounding errors.
 
 use nalgebra::{Complex, DMatrix};
 

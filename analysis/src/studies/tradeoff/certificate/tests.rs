@@ -52,9 +52,8 @@ fn the_kept_errors_and_verdicts_are_those_that_are_found() {
     assert!(compared > 40, "{compared}");
 }
 
-/// Whatever its width, no enclosure says yes where the answer is no, nor the contrary, and the
-/// certificate's own leaves open next to none of those that are away from the border. Grids and
-/// roots say yes where the answer is no.
+/// No enclosure of any width has a false positive or a false negative, and the certificate's own
+/// leaves almost none undecided away from the border. Grids and roots have false positives.
 #[test]
 fn a_proof_is_never_wrong_and_grids_and_roots_are() {
     let count = |row: &Method, column: usize| row.values[column].unwrap();

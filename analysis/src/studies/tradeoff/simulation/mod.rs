@@ -17,7 +17,7 @@ pub use cases::{Case, cases};
 use cases::SAMPLES;
 use stepper::Stepper;
 
-/// What is compared.
+/// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "simulation",
     title: "Simulation: methods of integration by their steps in a sample of 1 ms",
@@ -44,7 +44,7 @@ pub const SUBSTEPS_COLUMN: usize = 3;
 const SUBSTEPS: [u32; 8] = [1, 2, 3, 5, 10, 20, 50, 100];
 /// Rounds of the measurement, of which the fastest counts.
 const ROUNDS: usize = 31;
-/// An angle this many times as far off as it is large says nothing of the motion.
+/// A relative error of the angle above which the motion is lost.
 const LOST: f64 = 1e3;
 
 /// The table that is kept.
@@ -86,7 +86,7 @@ pub fn measure() -> Result<Tradeoff, SimulationError> {
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
-/// What is measured of each case.
+/// Measured steps of a case.
 fn strides() -> Vec<Integration> {
     let of = |method| {
         let substeps = if method == Method::Exact { &SUBSTEPS[..1] } else { &SUBSTEPS[..] };
@@ -141,7 +141,7 @@ impl Truth {
             |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
         let size = largest(&mut self.motion.position.iter().copied());
         let differences = angles.iter().zip(&self.motion.position).map(|(is, should)| is - should);
-        // What is no number compares with nothing.
+        // NaN compares with nothing.
         let is_lost = angles.iter().any(|angle| !angle.is_finite());
         let error = largest(&mut differences.into_iter()) / size;
         if is_lost || error > LOST { f64::INFINITY } else { error }

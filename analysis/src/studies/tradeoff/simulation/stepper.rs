@@ -1,5 +1,5 @@
-//! A device taken through its ticks as somebody would write it for this device: states on the
-//! stack, the rates evaluated as often as the method asks for them.
+//! A simulation written for one device: states on the stack, the rates evaluated as often as
+//! the method needs them.
 //!
 //! The program's own simulation multiplies all steps of a tick into one matrix beforehand, so that
 //! there every method costs the same; here each step is made.

@@ -5,7 +5,7 @@ fn integration(method: Method, substeps: u32) -> Integration {
     Integration { method, substeps }
 }
 
-/// What is timed is what the program's own simulation computes.
+/// The timed steps equal the program's own simulation.
 #[test]
 fn steps_on_the_stack_are_the_programs_own() {
     for case in cases() {
