@@ -6,7 +6,6 @@ use super::rational::Rational;
 /// limits every torque, or a transfer function, which is enough for a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
-#[expect(clippy::large_enum_variant, reason = "there is no heap, and a scene has one")]
 pub enum StatedModel {
     /// A law that need not be linear.
     Bounded {
