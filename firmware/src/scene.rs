@@ -133,12 +133,9 @@ impl Scene {
 
     /// The same without a copy of the scene.
     pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
-        match self.environment.read(parameter) {
-            Some(value) => Some(value),
-            None => match self.own_value(parameter) {
-                Some(value) => Some(*value),
-                None => None,
-            },
+        match self.own_value(parameter) {
+            Some(value) => Some(*value),
+            None => self.environment.read(parameter),
         }
     }
 

@@ -78,7 +78,7 @@ pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParamet
             if !parameter.range().admits(value) {
                 return Some(InvalidParameter { parameter, value, bound, limit: None });
             }
-            if let Some(invalid) = unrelated(scene, parameter, value) {
+            if let Some(invalid) = conflict(scene, parameter, value) {
                 return Some(invalid);
             }
         }
@@ -88,7 +88,7 @@ pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParamet
 }
 
 /// A number in its range that conflicts with another one of the scene.
-const fn unrelated(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
+const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
             (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
