@@ -138,3 +138,33 @@ macro_rules! named_parameters {
     (@ $self:ident $parameter:ident $inner:ident) => { $self.$inner.value($parameter) };
 }
 pub(crate) use named_parameters;
+
+/// The numbers of a type by name, from one table: to be read and to be changed. A pattern binds the
+/// number.
+macro_rules! numbers {
+    ($number:ident, $number_mut:ident, $value:ident;
+     $($parameter:ident: $pattern:pat,)*) => {
+        /// The number of this name; `None` where there is none.
+        const fn $number(
+            &self,
+            parameter: $crate::parameter::Parameter,
+        ) -> Option<&f64> {
+            match (parameter, self) {
+                $(($crate::parameter::Parameter::$parameter, $pattern) => Some($value),)*
+                _ => None,
+            }
+        }
+
+        /// The same, to be changed.
+        const fn $number_mut(
+            &mut self,
+            parameter: $crate::parameter::Parameter,
+        ) -> Option<&mut f64> {
+            match (parameter, self) {
+                $(($crate::parameter::Parameter::$parameter, $pattern) => Some($value),)*
+                _ => None,
+            }
+        }
+    };
+}
+pub(crate) use numbers;

@@ -7,7 +7,7 @@ use crate::build_error::BuildError;
 use crate::environment::{Environment, LawContext};
 
 pub use crate::coupling::Coupling;
-use crate::parameter::{NamedParameters, Parameter};
+use crate::parameter::{NamedParameters, Parameter, numbers};
 
 /// A haptic scene: everything the certificate and the servo need to know.
 ///
@@ -75,13 +75,15 @@ impl<E> Scene<E> {
 }
 
 impl<E> Scene<E> {
-    /// Tunable values of the coupling and the torque limit.
-    const fn tunable(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match (parameter, &mut self.coupling) {
-            (Parameter::CouplingStiffness, Coupling::Spring { stiffness }) => Some(stiffness),
-            (Parameter::TorqueLimit, _) => self.torque_limit.as_mut(),
-            _ => None,
-        }
+    numbers! {
+        own_number, own_number_mut, value;
+        Inertia: Self { device: Device { inertia: value, .. }, .. },
+        DeviceDamping: Self { device: Device { damping: value, .. }, .. },
+        Passivity: Self { device: Device { passivity: Some(value), .. }, .. },
+        Period: Self { timing: Timing { period: value, .. }, .. },
+        WorstPeriod: Self { timing: Timing { worst_period: Some(value), .. }, .. },
+        CouplingStiffness: Self { coupling: Coupling::Spring { stiffness: value }, .. },
+        TorqueLimit: Self { torque_limit: Some(value), .. },
     }
 }
 
@@ -89,25 +91,13 @@ impl<E> Scene<E> {
 impl<E: NamedParameters> NamedParameters for Scene<E> {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match parameter {
-            Parameter::CouplingStiffness | Parameter::TorqueLimit => self.tunable(parameter),
+            Parameter::CouplingStiffness | Parameter::TorqueLimit => self.own_number_mut(parameter),
             _ => self.environment.value(parameter),
         }
     }
 }
 
 impl Scene {
-    /// The number of this name outside of the environment; `None` where the scene has none.
-    const fn own_value(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match parameter {
-            Parameter::Inertia => Some(&mut self.device.inertia),
-            Parameter::DeviceDamping => Some(&mut self.device.damping),
-            Parameter::Passivity => self.device.passivity.as_mut(),
-            Parameter::Period => Some(&mut self.timing.period),
-            Parameter::WorstPeriod => self.timing.worst_period.as_mut(),
-            _ => self.tunable(parameter),
-        }
-    }
-
     /// The value of a parameter; `None` where the scene has none, and for polynomials.
     ///
     /// ```
@@ -127,15 +117,9 @@ impl Scene {
     /// assert_eq!(softer.coupling, Coupling::Spring { stiffness: 40.0 });
     /// ```
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
-        let mut copy = *self;
-        copy.read(parameter)
-    }
-
-    /// The same without a copy of the scene.
-    pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
-        match self.own_value(parameter) {
+        match self.own_number(parameter) {
             Some(value) => Some(*value),
-            None => self.environment.read(parameter),
+            None => self.environment.get(parameter),
         }
     }
 
@@ -150,7 +134,7 @@ impl Scene {
                 changed.coupling = Coupling::Spring { stiffness: value }
             }
             Parameter::TorqueLimit => changed.torque_limit = Some(value),
-            _ => match changed.own_value(parameter) {
+            _ => match changed.own_number_mut(parameter) {
                 Some(place) => *place = value,
                 None => match changed.environment.with(parameter, value) {
                     Some(environment) => changed.environment = environment,

@@ -363,34 +363,35 @@ pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
 /// What the servo's gains make of the torque where the loop is solved in the tick: the larger of
 /// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 where the environment is late.
 ///
-/// `contact` is the scale of the environment's own [`transfer`] where that is known already. `None`
-/// where it cannot be had.
+/// `None` where it cannot be had.
 pub(super) const fn largest_solved(
     environment: &Environment,
-    contact: Option<Interval>,
     n: &LoopIntervals,
 ) -> Option<Interval> {
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    let contact = match contact {
-        Some(scale) => scale,
-        None => match scale(environment, n) {
-            Some(scale) => scale,
-            None => return None,
-        },
-    };
+    let Some(contact) = scale(environment, n) else { return None };
     Some(match environment {
         Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()).max(contact),
         _ => contact.max(Interval::ONE),
     })
 }
 
+/// What the servo's gains make of an environment out of its [feedthrough](Transfer::feedthrough): that of
+/// a wall and a canceller is the sum of theirs. `None` for a rational environment, for which no bound
+/// asks.
 const fn scale(environment: &Environment, n: &LoopIntervals) -> Option<Interval> {
-    match transfer(environment, n) {
-        Ok(transfer) => Some(transfer.scale),
-        Err(_) => None,
-    }
+    let feedthrough = match (environment, environment.wall()) {
+        (Environment::FreeModeWall { .. }, Some(w)) => {
+            free_mode(n).feedthrough().add(wall(&w, n).feedthrough())
+        }
+        (Environment::FreeMode { .. }, _) => free_mode(n).feedthrough(),
+        (_, Some(w)) => wall(&w, n).feedthrough(),
+        _ => return None,
+    };
+    let scale = n.solved(feedthrough);
+    if scale.is_finite() { Some(scale) } else { None }
 }
 
 const fn exactly_solved_bound<E: EnvironmentModel>(

@@ -70,12 +70,12 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
 
 /// The same without polynomials, on which no bound for a board depends.
 pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParameter> {
-    let (mut copy, mut i) = (*scene, 0);
+    let mut i = 0;
     while i < Parameter::ALL.len() {
         let parameter = Parameter::ALL[i];
-        if let Some(value) = copy.read(parameter) {
-            let bound = requirement(parameter.range());
+        if let Some(value) = scene.get(parameter) {
             if !parameter.range().admits(value) {
+                let bound = requirement(parameter.range());
                 return Some(InvalidParameter { parameter, value, bound, limit: None });
             }
             if let Some(invalid) = conflict(scene, parameter, value) {

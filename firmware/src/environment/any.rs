@@ -10,7 +10,6 @@ use super::wall_law::{AnySide, WallLaw};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::number::Number;
-use crate::parameter::Parameter;
 
 /// A spring with an optional damper, as data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,17 +146,6 @@ impl Wall {
     /// A spring that pushes and pulls, at rest at zero.
     pub const fn spring(stiffness: f64, delay: usize) -> Self {
         Self { stiffness, damping: 0.0, filter: None, delay, face: 0.0, one_sided: false }
-    }
-
-    /// The number of this name, if it has one.
-    pub(crate) const fn number(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match parameter {
-            Parameter::Stiffness => Some(&mut self.stiffness),
-            Parameter::Damping => Some(&mut self.damping),
-            Parameter::Filter => self.filter.as_mut(),
-            Parameter::Face => Some(&mut self.face),
-            _ => None,
-        }
     }
 }
 

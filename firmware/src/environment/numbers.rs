@@ -1,24 +1,16 @@
 //! The numbers of any environment by name.
 
-use super::any::Environment;
-use super::stated::StatedModel;
-use crate::parameter::{NamedParameters, Parameter};
+use super::any::{Environment, Wall};
+use super::stated::{StatedBound, StatedModel};
+use crate::parameter::{NamedParameters, Parameter, numbers};
 
 impl Environment {
     /// The value of a parameter, whole numbers included; `None` where it has none.
     pub const fn get(&self, parameter: Parameter) -> Option<f64> {
-        let mut copy = *self;
-        copy.read(parameter)
-    }
-
-    /// The same without a copy of the environment.
-    pub(crate) const fn read(&mut self, parameter: Parameter) -> Option<f64> {
-        match parameter {
-            Parameter::Delay => Some(*self.delay_mut() as f64),
-            Parameter::UnitZeros => match self.rational() {
-                Some(rational) => Some(rational.unit_zeros as f64),
-                None => None,
-            },
+        match (parameter, self.rational()) {
+            (Parameter::Delay, Some(rational)) => Some(rational.delay as f64),
+            (Parameter::Delay, None) => Some(self.delay() as f64),
+            (Parameter::UnitZeros, Some(rational)) => Some(rational.unit_zeros as f64),
             _ => match self.number(parameter) {
                 Some(value) => Some(*value),
                 None => None,
@@ -40,7 +32,7 @@ impl Environment {
             (Parameter::Filter, Self::DamperWall(wall) | Self::FreeModeWall { wall, .. }) => {
                 wall.filter = Some(value);
             }
-            _ => match changed.number(parameter) {
+            _ => match changed.number_mut(parameter) {
                 Some(place) => *place = value,
                 None => return None,
             },
@@ -48,31 +40,32 @@ impl Environment {
         Some(changed)
     }
 
-    /// The number of this name, unless it is a whole number.
-    const fn number(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        match (parameter, self) {
-            // A spring ignores its wall's damping.
-            (Parameter::Damping | Parameter::Filter, Self::DelayedSpring(_)) => None,
-            (
-                Parameter::Residual,
-                Self::FreeMode { residual, .. } | Self::FreeModeWall { residual, .. },
-            ) => Some(residual),
-            (Parameter::StatedIndex, Self::Stated(StatedModel::Bounded { bound, .. })) => {
-                Some(&mut bound.index)
-            }
-            (Parameter::StatedGain, Self::Stated(StatedModel::Bounded { bound, .. })) => {
-                Some(&mut bound.gain)
-            }
-            (_, environment) => match environment.wall_mut() {
-                Some(wall) => wall.number(parameter),
-                None => None,
-            },
-        }
+    numbers! {
+        number, number_mut, value;
+        Stiffness:
+            Self::DelayedSpring(Wall { stiffness: value, .. })
+            | Self::DamperWall(Wall { stiffness: value, .. })
+            | Self::FreeModeWall { wall: Wall { stiffness: value, .. }, .. },
+        // A spring ignores its wall's damping.
+        Damping:
+            Self::DamperWall(Wall { damping: value, .. })
+            | Self::FreeModeWall { wall: Wall { damping: value, .. }, .. },
+        Filter:
+            Self::DamperWall(Wall { filter: Some(value), .. })
+            | Self::FreeModeWall { wall: Wall { filter: Some(value), .. }, .. },
+        Face:
+            Self::DelayedSpring(Wall { face: value, .. })
+            | Self::DamperWall(Wall { face: value, .. })
+            | Self::FreeModeWall { wall: Wall { face: value, .. }, .. },
+        Residual: Self::FreeMode { residual: value, .. } | Self::FreeModeWall { residual: value, .. },
+        StatedIndex:
+            Self::Stated(StatedModel::Bounded { bound: StatedBound { index: value, .. }, .. }),
+        StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }
 
 impl NamedParameters for Environment {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
-        self.number(parameter)
+        self.number_mut(parameter)
     }
 }
