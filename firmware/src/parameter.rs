@@ -27,17 +27,22 @@ pub enum Range {
 
 impl Range {
     /// Whether `value` is in the range. No range has a value that is not finite.
+    ///
+    /// Doubles of one sign are in the order of their bits, and a small board compares integers in a tenth
+    /// of the time.
     pub const fn admits(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::Positive => value > 0.0,
-                Self::NotNegative => value >= 0.0,
-                Self::Fraction => value >= 0.0 && value < 1.0,
-                Self::Whole(least, most) => {
-                    value as u32 as f64 == value && value >= least as f64 && value <= most as f64
-                }
+        const INFINITE: u64 = f64::INFINITY.to_bits();
+        const MINUS_ZERO: u64 = (-0.0_f64).to_bits();
+        let bits = value.to_bits();
+        match self {
+            Self::Finite => bits & !MINUS_ZERO < INFINITE,
+            Self::Positive => bits != 0 && bits < INFINITE,
+            Self::NotNegative => bits < INFINITE || bits == MINUS_ZERO,
+            Self::Fraction => bits < 1.0_f64.to_bits() || bits == MINUS_ZERO,
+            Self::Whole(least, most) => {
+                value as u32 as f64 == value && value as u32 >= least && value as u32 <= most
             }
+        }
     }
 }
 
@@ -139,10 +144,10 @@ macro_rules! named_parameters {
 }
 pub(crate) use named_parameters;
 
-/// The numbers of a type by name, from one table: to be read and to be changed. A pattern binds the
-/// number.
+/// The numbers of a type by name, from one table: to be read, to be changed, and all of them at once.
+/// A pattern binds the number.
 macro_rules! numbers {
-    ($number:ident, $number_mut:ident, $value:ident;
+    ($number:ident, $number_mut:ident, $numbers:ident, $value:ident;
      $($parameter:ident: $pattern:pat,)*) => {
         /// The number of this name; `None` where there is none.
         const fn $number(
@@ -164,6 +169,21 @@ macro_rules! numbers {
                 $(($crate::parameter::Parameter::$parameter, $pattern) => Some($value),)*
                 _ => None,
             }
+        }
+
+        /// All of them; a check of every number costs less so than name by name.
+        pub(crate) const fn $numbers(
+            &self,
+        ) -> [($crate::parameter::Parameter, Option<f64>);
+            [$($crate::parameter::Parameter::$parameter),*].len()] {
+            [$((
+                $crate::parameter::Parameter::$parameter,
+                match self {
+                    $pattern => Some(*$value),
+                    #[allow(unreachable_patterns)]
+                    _ => None,
+                },
+            )),*]
         }
     };
 }

@@ -76,7 +76,7 @@ impl<E> Scene<E> {
 
 impl<E> Scene<E> {
     numbers! {
-        own_number, own_number_mut, value;
+        own_number, own_number_mut, own_numbers, value;
         Inertia: Self { device: Device { inertia: value, .. }, .. },
         DeviceDamping: Self { device: Device { damping: value, .. }, .. },
         Passivity: Self { device: Device { passivity: Some(value), .. }, .. },

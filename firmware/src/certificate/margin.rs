@@ -107,7 +107,7 @@ impl Limited {
     /// Of a scene with this bound on its index. `None` where that is not below the limit, or none is
     /// known.
     pub const fn of(scene: &Scene, n: &LoopIntervals, bound: Interval) -> Option<Self> {
-        match largest_solved(&scene.environment, n) {
+        match largest_solved::<Environment>(&scene.environment, n) {
             Some(solved) => Self::of_solved::<Environment>(scene, n, bound, solved),
             None => None,
         }

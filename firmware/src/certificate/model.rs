@@ -364,16 +364,18 @@ pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
 /// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 where the environment is late.
 ///
 /// `None` where it cannot be had.
-pub(super) const fn largest_solved(
+pub(super) const fn largest_solved<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
 ) -> Option<Interval> {
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    let Some(contact) = scale(environment, n) else { return None };
+    let Some(contact) = scale::<E>(environment, n) else { return None };
     Some(match environment {
-        Environment::FreeModeWall { .. } => n.solved(free_mode(n).feedthrough()).max(contact),
+        Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
+            n.solved(free_mode(n).feedthrough()).max(contact)
+        }
         _ => contact.max(Interval::ONE),
     })
 }
@@ -381,13 +383,18 @@ pub(super) const fn largest_solved(
 /// What the servo's gains make of an environment out of its [feedthrough](Transfer::feedthrough): that of
 /// a wall and a canceller is the sum of theirs. `None` for a rational environment, for which no bound
 /// asks.
-const fn scale(environment: &Environment, n: &LoopIntervals) -> Option<Interval> {
+const fn scale<E: EnvironmentModel>(
+    environment: &Environment,
+    n: &LoopIntervals,
+) -> Option<Interval> {
     let feedthrough = match (environment, environment.wall()) {
-        (Environment::FreeModeWall { .. }, Some(w)) => {
+        (Environment::FreeModeWall { .. }, Some(w)) if E::CANCELS_DAMPING => {
             free_mode(n).feedthrough().add(wall(&w, n).feedthrough())
         }
-        (Environment::FreeMode { .. }, _) => free_mode(n).feedthrough(),
-        (_, Some(w)) => wall(&w, n).feedthrough(),
+        (Environment::FreeMode { .. }, _) if E::CANCELS_DAMPING => free_mode(n).feedthrough(),
+        (Environment::DelayedSpring(_) | Environment::DamperWall(_), Some(w)) => {
+            wall(&w, n).feedthrough()
+        }
         _ => return None,
     };
     let scale = n.solved(feedthrough);

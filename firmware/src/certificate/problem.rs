@@ -98,7 +98,7 @@ impl PassivityProblem {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = match largest_solved(&scene.environment, &numbers) {
+            let bound = match largest_solved::<Environment>(&scene.environment, &numbers) {
                 Some(solved) => {
                     nonlinear_bound::<Environment>(&scene.environment, solved, &numbers)
                 }

@@ -70,10 +70,25 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
 
 /// The same without polynomials, on which no bound for a board depends.
 pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParameter> {
+    let environment = &scene.environment;
+    if let Some(invalid) = first_of(scene, &scene.own_numbers()) {
+        return Some(invalid);
+    }
+    if let Some(invalid) = first_of(scene, &environment.numbers()) {
+        return Some(invalid);
+    }
+    let whole = [
+        (Parameter::Delay, environment.get(Parameter::Delay)),
+        (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
+    ];
+    first_of(scene, &whole)
+}
+
+/// The first of these numbers of the scene that is out of its range or conflicts with another.
+const fn first_of(scene: &Scene, numbers: &[(Parameter, Option<f64>)]) -> Option<InvalidParameter> {
     let mut i = 0;
-    while i < Parameter::ALL.len() {
-        let parameter = Parameter::ALL[i];
-        if let Some(value) = scene.get(parameter) {
+    while i < numbers.len() {
+        if let (parameter, Some(value)) = numbers[i] {
             if !parameter.range().admits(value) {
                 let bound = requirement(parameter.range());
                 return Some(InvalidParameter { parameter, value, bound, limit: None });

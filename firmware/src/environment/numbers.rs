@@ -41,7 +41,7 @@ impl Environment {
     }
 
     numbers! {
-        number, number_mut, value;
+        number, number_mut, numbers, value;
         Stiffness:
             Self::DelayedSpring(Wall { stiffness: value, .. })
             | Self::DamperWall(Wall { stiffness: value, .. })

@@ -222,7 +222,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     let solved = match M::TIMING {
         OutputTiming::Latched if is_late => Some(Interval::ONE),
         OutputTiming::Latched => None,
-        OutputTiming::Simultaneous => largest_solved(&scene.environment, n),
+        OutputTiming::Simultaneous => largest_solved::<E>(&scene.environment, n),
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
     let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
@@ -307,7 +307,7 @@ pub(super) const fn limited_bound(
     if matches!(rule, Rule::Nonlinear) {
         return bound;
     }
-    match largest_solved(&scene.environment, n) {
+    match largest_solved::<Environment>(&scene.environment, n) {
         Some(solved) => nonlinear_bound::<Environment>(&scene.environment, solved, n),
         None => None,
     }
