@@ -3,7 +3,7 @@
 use firmware::certificate::PassivityProblem;
 use firmware::environment::Wall;
 use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::{Coupling, Scene, Timing};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
 
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
@@ -187,6 +187,7 @@ mod tests {
                 face: 0.0,
                 one_sided: false,
             }),
+            latency: Latency::NONE,
             torque_limit: None,
         }
     }

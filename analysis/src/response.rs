@@ -108,7 +108,7 @@ mod tests {
     use super::*;
     use firmware::certificate::LoopTransfers;
     use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Scene, Timing};
+    use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
     fn wall(delay: usize) -> Scene {
         Scene {
@@ -123,6 +123,7 @@ mod tests {
                 face: 0.0,
                 one_sided: false,
             }),
+            latency: Latency::NONE,
             torque_limit: None,
         }
     }

@@ -25,6 +25,9 @@ pub enum Coupling {
         /// Stiffness `K_vc` in N m/rad. The standard coupling is `2 delta / T`.
         stiffness: f64,
     },
+    /// The coupling that absorbs latency: the standard coupling where there is none, and as much more
+    /// compliance as delays and lags ask for, spread over the ticks that they take ([`crate::matched`]).
+    Matched,
 }
 
 /// What an environment offers to the coupling in one tick.

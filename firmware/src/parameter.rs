@@ -102,6 +102,10 @@ parameters! {
     TorqueLimit: "limits.torque", "torque limit", "N m", Range::Positive;
     StatedIndex: "environment.index", "stated index", "N m s/rad", Range::NotNegative;
     StatedGain: "environment.gain", "stated gain", "N m s/rad", Range::NotNegative;
+    OutputDelay: "servo.output_delay", "output delay", "s", Range::NotNegative;
+    OutputJitter: "servo.output_jitter", "output jitter", "s", Range::NotNegative;
+    ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
+    SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
 }
 
 /// The parameters that may be changed while the servo runs, with the names that people type.

@@ -7,6 +7,7 @@ use crate::build_error::BuildError;
 use crate::environment::{Environment, LawContext};
 
 pub use crate::coupling::Coupling;
+pub use crate::latency::{Latency, TimeRange};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
 /// A haptic scene: everything the certificate and the servo need to know.
@@ -24,6 +25,8 @@ pub struct Scene<E = Environment> {
     pub coupling: Coupling,
     /// The environment.
     pub environment: E,
+    /// What delays the torque beside the environment's whole samples.
+    pub latency: Latency,
     /// Largest coupling torque in N m, applied between environment and coupling so that
     /// saturation stays inside the certificate (theory, end of section 5). `None`: the scene is
     /// linear, and the certificate assumes that the DAC never saturates.
@@ -84,6 +87,10 @@ impl<E> Scene<E> {
         WorstPeriod: Self { timing: Timing { worst_period: Some(value), .. }, .. },
         CouplingStiffness: Self { coupling: Coupling::Spring { stiffness: value }, .. },
         TorqueLimit: Self { torque_limit: Some(value), .. },
+        OutputDelay: Self { latency: Latency { output_delay: TimeRange { most: value, .. }, .. }, .. },
+        OutputJitter: Self { latency: Latency { output_jitter: value, .. }, .. },
+        ActuatorLag: Self { latency: Latency { actuator_lag: TimeRange { most: value, .. }, .. }, .. },
+        SensorLag: Self { latency: Latency { sensor_lag: TimeRange { most: value, .. }, .. }, .. },
     }
 }
 
@@ -98,18 +105,19 @@ impl<E: NamedParameters> NamedParameters for Scene<E> {
 }
 
 impl Scene {
-    /// The value of a parameter; `None` where the scene has none, and for polynomials.
+    /// The value of a parameter; `None` where the scene has none, and for polynomials. Of a time that is
+    /// known to lie in a range it is the longest.
     ///
     /// ```
     /// use firmware::certificate::Parameter;
     /// # use firmware::environment::{Environment, Wall};
-    /// # use firmware::scene::{Coupling, Device, Scene, Timing};
+    /// # use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
     /// # let scene = Scene {
     /// #     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
     /// #     timing: Timing { period: 1e-3, worst_period: None },
     /// #     coupling: Coupling::Spring { stiffness: 44.0 },
     /// #     environment: Environment::FreeMode { residual: 0.01, delay: 1 },
-    /// #     torque_limit: None,
+    /// #     latency: Latency::NONE, torque_limit: None,
     /// # };
     /// assert_eq!(scene.get(Parameter::Residual), Some(0.01));
     /// assert_eq!(scene.get(Parameter::Stiffness), None);
@@ -134,6 +142,9 @@ impl Scene {
                 changed.coupling = Coupling::Spring { stiffness: value }
             }
             Parameter::TorqueLimit => changed.torque_limit = Some(value),
+            Parameter::OutputDelay => changed.latency.output_delay = TimeRange::exactly(value),
+            Parameter::ActuatorLag => changed.latency.actuator_lag = TimeRange::exactly(value),
+            Parameter::SensorLag => changed.latency.sensor_lag = TimeRange::exactly(value),
             _ => match changed.own_number_mut(parameter) {
                 Some(place) => *place = value,
                 None => match changed.environment.with(parameter, value) {

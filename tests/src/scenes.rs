@@ -7,7 +7,7 @@ use crate::exact::{Q, of_f64};
 use crate::poly::Poly;
 use crate::rules::Exact;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use num_traits::{One, Zero};
 use rand::Rng;
 use std::f64::consts::PI;
@@ -76,6 +76,7 @@ impl Frame {
                 timing: Timing { period, worst_period: None },
                 coupling,
                 environment,
+                latency: Latency::NONE,
                 torque_limit: None,
             },
             exact: Exact {

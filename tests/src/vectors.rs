@@ -4,7 +4,7 @@ use crate::exact::{Q, of_decimal};
 use crate::poly::Poly;
 use crate::rules::Exact;
 use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde_json::Value;
 
 /// A case: decimal text as it stands in the file.
@@ -50,6 +50,7 @@ impl Case {
                 delay: 0,
                 unit_zeros: 0,
             }),
+            latency: Latency::NONE,
             torque_limit: None,
         }
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::outcome::section;
 use super::shared_arguments::{DEFAULT_TICKS, MAX_TICKS};
@@ -48,6 +48,7 @@ const FIGURE_9: Scene = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 2000.0 },
     environment: Environment::FreeMode { residual: 0.05, delay: 0 },
+    latency: Latency::NONE,
     torque_limit: None,
 };
 
@@ -64,6 +65,7 @@ const DELAYED_WALL: Scene = Scene {
         face: 0.0,
         one_sided: false,
     }),
+    latency: Latency::NONE,
     torque_limit: None,
 };
 

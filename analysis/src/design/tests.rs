@@ -2,7 +2,7 @@ use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Device, Timing};
+use firmware::scene::{Device, Latency, Timing};
 
 fn scene(environment: Environment) -> Scene {
     Scene {
@@ -10,6 +10,7 @@ fn scene(environment: Environment) -> Scene {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Rigid,
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

@@ -2,7 +2,7 @@
 
 use firmware::certificate::Resolution;
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
-use firmware::scene::{Coupling, Scene, Timing};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
 
 use super::device::{self, Purpose};
 use super::faults::{Faults, Read, all};
@@ -67,7 +67,8 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let (name, (chain, device, friction)) = (name?.value, device?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (timing, coupling, environment) = (timing?, coupling?, environment?);
-    let scene = Scene { device, timing, coupling, environment, torque_limit };
+    let scene =
+        Scene { device, timing, coupling, environment, latency: Latency::NONE, torque_limit };
     let (simulation, hand) = (simulation?, hand?);
     Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction })
 }

@@ -1,7 +1,7 @@
 use firmware::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::torque::LimitReason;
 
 use super::*;
@@ -18,6 +18,7 @@ fn scene(device: Device, stiffness: Option<f64>, environment: Environment) -> Sc
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: stiffness.map_or(Coupling::Rigid, |stiffness| Coupling::Spring { stiffness }),
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

@@ -1,5 +1,5 @@
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::*;
 use crate::device::{Hand, Motion};
@@ -19,6 +19,7 @@ pub fn spring(stiffness: f64, delay: usize, coupling: Coupling) -> Experiment {
             timing: Timing { period: 1e-3, worst_period: None },
             coupling,
             environment: Environment::DelayedSpring(wall),
+            latency: Latency::NONE,
             torque_limit: None,
         },
         plant: Plant::rigid(DEVICE),

@@ -2,7 +2,7 @@ use super::*;
 use crate::chain::{EncoderPlace, Link, Mass};
 use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Timing};
+use firmware::scene::{Coupling, Device, Latency, Timing};
 
 fn device() -> Chain {
     Chain::rigid(2.2e-5, 0.022).unwrap()
@@ -15,6 +15,7 @@ fn scene(stiffness: f64, damping: f64, delay: usize, coupling: Coupling) -> Scen
         timing: Timing { period: 0.001, worst_period: None },
         coupling,
         environment: Environment::DamperWall(wall),
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }
@@ -58,6 +59,7 @@ fn a_mass_behind_nothing_is_no_hand() {
         timing: Timing { period: 0.003042550575872087, worst_period: None },
         coupling: Coupling::Spring { stiffness: 15.785823866956035 },
         environment: Environment::DamperWall(wall),
+        latency: Latency::NONE,
         torque_limit: None,
     };
     assert!(certify(&scene).is_ok());

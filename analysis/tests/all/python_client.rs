@@ -11,7 +11,7 @@ use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::fault::Fault;
 use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{OutputTiming, RenderingOptions, Step, Transducers};
 use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
@@ -95,6 +95,7 @@ fn description() -> Description {
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment: Environment::FreeModeWall { residual: 0.01, wall },
+            latency: Latency::NONE,
             torque_limit: Some(1.5),
         },
         transducers: Transducers {

@@ -12,7 +12,7 @@ use analysis::simulation::torque_signal::TorqueSignal;
 use analysis::simulation::{Experiment, Integration, Trajectory, simulate};
 use analysis::stability::{closed_loop, eigenvalues};
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 const SAMPLES: usize = 1000;
 const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
@@ -79,6 +79,7 @@ fn experiment(environment: Environment, coupling: Option<f64>, start: Motion) ->
         timing: Timing { period: PERIOD, worst_period: None },
         coupling,
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     };
     Experiment { start, samples: SAMPLES, ..Experiment::still(&scene) }

@@ -9,7 +9,7 @@ use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::{DamperWall, DelayedSpring, FilteredWall, FreeMode, OneSided, Placed};
 use firmware::reset::ResetCause;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{Latched, PreparedServo, RenderingOptions, SupportsTiming, Transducers};
 use firmware::servo_loop::{FrameQueue, Frames, Inbox, Mailbox, Options, ServoLoop};
 use firmware::tuning::{self, Tunable};
@@ -64,6 +64,7 @@ fn program<E>(environment: E, torque_limit: Option<f64>) -> Program<E> {
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment,
+            latency: Latency::NONE,
             torque_limit,
         },
         transducers: TRANSDUCERS,

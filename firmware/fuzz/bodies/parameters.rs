@@ -7,7 +7,7 @@ use firmware::environment::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
     Wall,
 };
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::tuning::{self, NamedParameters, TUNABLE, TuningError};
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
@@ -50,6 +50,7 @@ fn change<E: NamedParameters + Copy + PartialEq>(environment: E, changes: &[(Par
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment,
+        latency: Latency::NONE,
         torque_limit: Some(1.0),
     };
     let has = |parameter| tuning::get(&scene, parameter).is_some();

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use firmware::encoder::CounterWidth;
     use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Timing};
+    use firmware::scene::{Coupling, Device, Latency, Timing};
 
     #[test]
     fn requests_survive_their_words() {
@@ -97,6 +97,7 @@ mod tests {
                 timing: Timing { period: 0.4, worst_period: Some(0.8) },
                 coupling: Coupling::Rigid,
                 environment: Environment::DamperWall(wall),
+                latency: Latency::NONE,
                 torque_limit: None,
             },
             transducers: Transducers {

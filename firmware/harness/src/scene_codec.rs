@@ -6,7 +6,7 @@
 use firmware::certificate::{Answer, Assessment, Parameter, assess};
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// Numbers in a polynomial.
 const TERMS: usize = MAX_DEGREE + 1;
@@ -76,6 +76,7 @@ const BLANK: Scene = Scene {
     timing: Timing { period: 0.0, worst_period: None },
     coupling: Coupling::Rigid,
     environment: Environment::Rational(NO_RATIONAL),
+    latency: Latency::NONE,
     torque_limit: None,
 };
 
@@ -228,6 +229,7 @@ mod tests {
             timing: Timing { period: 0.4, worst_period: None },
             coupling: Coupling::Spring { stiffness: f64::MIN_POSITIVE },
             environment,
+            latency: Latency::NONE,
             torque_limit: Some(f64::INFINITY),
         }
     }

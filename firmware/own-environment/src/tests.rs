@@ -2,7 +2,7 @@ use firmware::certificate::{Certified, Rejection, certify_scene, timing_checked}
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::environment::DelayedSpring;
 use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{Latched, PreparedServo, RenderingOptions, Servo, Step, Transducers};
 use firmware::tuning;
 use proptest::prelude::*;
@@ -16,6 +16,7 @@ const PEDAL: Pedal = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
@@ -121,7 +122,14 @@ impl<N: Number> Discretize<N> for Hasty {
 #[test]
 fn a_law_that_is_not_late_is_not_latched() {
     let Scene { device, timing, coupling, torque_limit, .. } = PEDAL;
-    let scene = Scene { device, timing, coupling, torque_limit, environment: Hasty };
+    let scene = Scene {
+        device,
+        timing,
+        coupling,
+        latency: Latency::NONE,
+        torque_limit,
+        environment: Hasty,
+    };
     let options = RenderingOptions::DEFAULT;
     let timed = timing_checked::<_, Latched>(scene, Format::F32).unwrap();
     let error = PreparedServo::<_, f32, Latched>::new(&timed, &TRANSDUCERS, &options).unwrap_err();

@@ -6,7 +6,7 @@ mod paddle;
 
 use firmware::certificate::Certified;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Scene, Timing};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
 pub use paddle::TRANSDUCERS;
 
 /// What the hand feels.
@@ -18,6 +18,7 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: DelayedSpring { stiffness: 22.0 },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 

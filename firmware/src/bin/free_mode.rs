@@ -6,7 +6,7 @@ mod paddle;
 
 use firmware::certificate::Certified;
 use firmware::environment::FreeMode;
-use firmware::scene::{Coupling, Scene, Timing};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 
 /// What the hand feels: the paper's canceller, as late as a board's torque. It needs as much of the
@@ -21,6 +21,7 @@ pub const SCENE: Scene<Environment> = Scene {
     environment: FreeMode { residual: 0.001 },
     // The DAC range is the only limit. The certificate covers it: any part of the canceller's
     // torque takes no more than 0.021 N m s/rad.
+    latency: Latency::NONE,
     torque_limit: None,
 };
 

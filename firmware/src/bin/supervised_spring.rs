@@ -6,7 +6,7 @@ mod paddle;
 
 use firmware::certificate::Certified;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Scene, Timing};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
 use firmware::servo::RenderingOptions;
 use firmware::servo_loop::{LinkPolicy, Options};
 pub use paddle::TRANSDUCERS;
@@ -20,6 +20,7 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: DelayedSpring { stiffness: 14.0 },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 

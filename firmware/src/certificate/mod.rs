@@ -7,7 +7,7 @@
 //! ```
 //! use firmware::certificate::Certified;
 //! use firmware::environment::DamperWall;
-//! use firmware::scene::{Coupling, Device, Scene, Timing};
+//! use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 //!
 //! type WallScene = Scene<DamperWall<1>>;
 //! const WALL: WallScene = Scene {
@@ -15,7 +15,7 @@
 //!     timing: Timing { period: 0.001, worst_period: None },
 //!     coupling: Coupling::Spring { stiffness: 44.0 },
 //!     environment: DamperWall { stiffness: 22.0, damping: 0.01 },
-//!     torque_limit: None,
+//!     latency: Latency::NONE, torque_limit: None,
 //! };
 //! // A constant that would not pass stops the compiler here, with the sentence below.
 //! const CERTIFIED: Certified<WallScene> = WALL.certified();
@@ -125,6 +125,7 @@ impl<E: Copy> Scene<E> {
             timing: self.timing,
             coupling: self.coupling,
             environment,
+            latency: self.latency,
             torque_limit: self.torque_limit,
         }
     }

@@ -28,7 +28,7 @@ const ROUGHLY: f64 = 1e-4;
 /// ```
 /// use firmware::certificate::PassivityProblem;
 /// use firmware::environment::{Environment, Wall};
-/// use firmware::scene::{Coupling, Device, Scene, Timing};
+/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 ///
 /// let wall = |stiffness| Wall {
 ///     stiffness,
@@ -43,7 +43,7 @@ const ROUGHLY: f64 = 1e-4;
 ///     timing: Timing { period: 0.001, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
 ///     environment: Environment::DamperWall(wall(stiffness)),
-///     torque_limit: None,
+///     latency: Latency::NONE, torque_limit: None,
 /// };
 /// let passes = |stiffness| PassivityProblem::of(&scene(stiffness)).is_ok_and(|posed| posed.is_certified());
 /// assert!(passes(23.9) && !passes(24.1));

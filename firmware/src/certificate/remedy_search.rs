@@ -150,7 +150,7 @@ mod tests {
     use super::*;
     use crate::certificate::certify;
     use crate::environment::Wall;
-    use crate::scene::{Device, Timing};
+    use crate::scene::{Device, Latency, Timing};
 
     fn scene(stiffness: f64, coupling: Coupling) -> Scene {
         Scene {
@@ -165,6 +165,7 @@ mod tests {
                 face: 0.0,
                 one_sided: false,
             }),
+            latency: Latency::NONE,
             torque_limit: None,
         }
     }

@@ -1,6 +1,7 @@
 //! The range in which each number of a scene makes sense at all.
 
 use crate::parameter::{Parameter, Range};
+use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::scene::Scene;
 use crate::text::Text;
 
@@ -43,6 +44,11 @@ impl InvalidParameter {
 /// In a free hand, the slower the device moves, the nearer `Re(1/J)` comes to its damping.
 const NO_MORE_THAN_DAMPING: &str =
     "finite and at most the device damping, which no device's passivity exceeds:";
+
+const NO_LONGER_DELAY: &str = "at most eight periods:";
+const NO_LONGER_LAG: &str = "at most a hundred periods:";
+/// No torque comes before its count.
+const NO_TORQUE_BEFORE: &str = "at most the output delay:";
 
 const fn requirement(range: Range) -> &'static str {
     match range {
@@ -114,9 +120,49 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
         Parameter::Delay if value == 0.0 && !scene.environment.has_transfer() => {
             ("at least 1 where no transfer function is stated", None)
         }
-        _ => return None,
+        _ => return latency_conflict(scene, parameter, value),
     };
     Some(InvalidParameter { parameter, value, bound, limit })
+}
+
+/// The same of a time between count and torque.
+const fn latency_conflict(
+    scene: &Scene,
+    parameter: Parameter,
+    value: f64,
+) -> Option<InvalidParameter> {
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    let (range, longest) = match parameter {
+        Parameter::OutputDelay => (latency.output_delay, LONGEST_DELAY * period),
+        Parameter::OutputJitter if value > latency.output_delay.least => {
+            let limit = Some(latency.output_delay.least);
+            return Some(InvalidParameter { parameter, value, bound: NO_TORQUE_BEFORE, limit });
+        }
+        Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),
+        Parameter::SensorLag => (latency.sensor_lag, LONGEST_LAG * period),
+        _ => return None,
+    };
+    if value == 0.0 && range.least == 0.0 {
+        return None;
+    }
+    let TimeRange { least, .. } = range;
+    if !Range::NotNegative.admits(least) {
+        return Some(InvalidParameter {
+            parameter,
+            value: least,
+            bound: requirement(Range::NotNegative),
+            limit: None,
+        });
+    }
+    let (value, bound, limit) = if value > longest {
+        let is_delay = matches!(parameter, Parameter::OutputDelay);
+        (value, if is_delay { NO_LONGER_DELAY } else { NO_LONGER_LAG }, longest)
+    } else if least > value {
+        (least, "at most the other end of its range:", value)
+    } else {
+        return None;
+    };
+    Some(InvalidParameter { parameter, value, bound, limit: Some(limit) })
 }
 
 const fn not_finite(parameter: Parameter, value: f64) -> InvalidParameter {
@@ -139,7 +185,7 @@ mod tests {
     use super::*;
     use crate::certificate::{Rejection, certify};
     use crate::environment::{Environment, Wall};
-    use crate::scene::{Coupling, Device, Timing};
+    use crate::scene::{Coupling, Device, Latency, Timing};
 
     fn with_passivity(passivity: f64) -> Result<(), Rejection> {
         let wall = Wall::spring(21.0, 1);
@@ -148,6 +194,7 @@ mod tests {
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment: Environment::DelayedSpring(wall),
+            latency: Latency::NONE,
             torque_limit: None,
         };
         certify(&scene).map(|_| ())

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DelayedSpring, Discretize, Law, LawContext};
-use crate::scene::{Coupling, Device, Scene, Timing};
+use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers};
 
 const PERIOD: f64 = 1e-3;
@@ -25,6 +25,7 @@ const fn spring(stiffness: f64) -> Scene<DelayedSpring<1>> {
         timing: Timing { period: PERIOD, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment: DelayedSpring { stiffness },
+        latency: Latency::NONE,
         torque_limit: Some(1.5),
     }
 }

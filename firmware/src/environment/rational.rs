@@ -301,7 +301,7 @@ mod tests {
     use super::*;
     use crate::certificate::{Rejection, certify};
     use crate::environment::Environment;
-    use crate::scene::{Coupling, Device, Scene, Timing};
+    use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 
     fn rational(numerator: &[f64], denominator: &[f64], unit_zeros: usize) -> Rational {
         let coefficients = |c| Coefficients::new(c).unwrap();
@@ -315,6 +315,7 @@ mod tests {
             timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment: Environment::Rational(rational),
+            latency: Latency::NONE,
             torque_limit: None,
         }
     }

@@ -35,7 +35,7 @@ pub struct Output {
 /// ```
 /// use firmware::encoder::{CounterWidth, RawCount};
 /// use firmware::environment::DelayedSpring;
-/// use firmware::scene::{Coupling, Device, Scene, Timing};
+/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 /// use firmware::servo::{Servo, Transducers};
 ///
 /// let scene = Scene {
@@ -43,7 +43,7 @@ pub struct Output {
 ///     timing: Timing { period: 1e-3, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
 ///     environment: DelayedSpring::<1> { stiffness: 22.0 },
-///     torque_limit: None,
+///     latency: Latency::NONE, torque_limit: None,
 /// };
 /// let transducers = Transducers {
 ///     counts_per_turn: 61_440.0,

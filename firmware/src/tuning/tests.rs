@@ -3,7 +3,7 @@ use crate::encoder::CounterWidth;
 use crate::environment::{
     DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
 };
-use crate::scene::{Coupling, Device, Timing};
+use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::Latched;
 
 const TRANSDUCERS: Transducers = Transducers {
@@ -19,6 +19,7 @@ const fn scene<E>(environment: E) -> Scene<E> {
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment,
+        latency: Latency::NONE,
         torque_limit: Some(1.0),
     }
 }

@@ -15,7 +15,7 @@ use firmware::boot::Startup;
 use firmware::dac::DacCode;
 use firmware::encoder::Position;
 use firmware::environment::{DamperWall, OneSided};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 use firmware::servo_loop::Hardware;
 
@@ -38,6 +38,7 @@ const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 

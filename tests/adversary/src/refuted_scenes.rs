@@ -2,7 +2,7 @@
 //! wrong, and shows the rule's error.
 
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// One of them.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +22,7 @@ fn scene(coupling: f64, environment: Environment) -> Scene {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: coupling },
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

@@ -6,7 +6,7 @@ use firmware::certificate::{PassivityProblem, TimingError, assess_in};
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{Latched, RenderingOptions, Transducers};
 use rand::Rng;
 use tests::scenes::log_uniform;
@@ -270,6 +270,7 @@ pub fn draw(rng: &mut impl Rng, choice: &Choice) -> Option<RandomScene> {
         timing: Timing { period, worst_period: (worst > 1.0).then_some(worst * period) },
         coupling,
         environment: Environment::FreeMode { residual: 0.0, delay: 0 },
+        latency: Latency::NONE,
         torque_limit: limited.then(|| full_scale * log_uniform(rng, 0.05, 0.999)),
     };
     let mut face = 0.0;

@@ -5,7 +5,7 @@
 use firmware::certificate::Certified;
 use firmware::encoder::CounterWidth;
 use firmware::environment::DelayedSpring;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 
 /// An environment behind the paper's device and the standard coupling, and no torque limit.
@@ -15,6 +15,7 @@ pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

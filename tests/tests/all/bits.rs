@@ -12,7 +12,7 @@
 use firmware::certificate::{Assessment, assess};
 use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use std::hint::black_box;
 
 include!(concat!(env!("OUT_DIR"), "/vectors.rs"));
@@ -44,6 +44,7 @@ const fn scene(
             delay: 0,
             unit_zeros: 0,
         }),
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

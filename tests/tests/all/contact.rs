@@ -7,7 +7,7 @@
 
 use firmware::certificate::{Answer, assess};
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use nalgebra::DVector;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -46,6 +46,7 @@ fn scene(contact: &Contact) -> Scene {
             face: 0.0,
             one_sided: true,
         }),
+        latency: Latency::NONE,
         torque_limit: contact.limit.is_finite().then_some(contact.limit),
     }
 }

@@ -4,7 +4,7 @@
 use firmware::certificate::{Answer, PassivityProblem, Rejection, assess, timing_checked};
 use firmware::environment::{Environment, Wall};
 use firmware::number::{Format, Number};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{Latched, OutputMode, Simultaneous, Step, SupportsTiming};
 use fixed::types::{I8F24, I12F20};
 use rand::{Rng, SeedableRng};
@@ -95,6 +95,7 @@ fn wall(rng: &mut ChaCha8Rng, delay: usize, coupling: Coupling) -> Scene {
         timing: Timing { period, worst_period: rng.random_bool(0.2).then_some(0.0015) },
         coupling,
         environment,
+        latency: Latency::NONE,
         torque_limit: rng.random_bool(0.1).then_some(1.0),
     }
 }

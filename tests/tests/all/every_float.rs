@@ -5,7 +5,7 @@ use firmware::certificate::{Answer, Assumptions, Rejection, Resolution, Rule, as
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use proptest::prelude::*;
 
 /// Any bits, the edges of the format, and numbers such as people write.
@@ -80,6 +80,7 @@ fn scene() -> impl Strategy<Value = Scene> {
             timing,
             coupling,
             environment,
+            latency: Latency::NONE,
             torque_limit,
         },
     )
@@ -207,6 +208,7 @@ fn a_delay_of_any_size_gets_an_answer() {
             timing: Timing { period: 0.001, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment,
+            latency: Latency::NONE,
             torque_limit: None,
         };
         let steps = Resolution { encoder: Some(1e-4), full_scale: Some(1.0), friction: Some(0.01) };

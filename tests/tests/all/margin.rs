@@ -3,7 +3,7 @@
 
 use firmware::certificate::{Rule, assess};
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tests::exact::of_f64;
@@ -58,6 +58,7 @@ fn wall(stiffness: f64, damping: f64, delay: usize, limit: Option<f64>) -> Scene
             face: 0.0,
             one_sided: false,
         }),
+        latency: Latency::NONE,
         torque_limit: limit,
     }
 }

@@ -8,7 +8,7 @@ use firmware::certificate::{Certified, Parameter};
 use firmware::dac::DacCode;
 use firmware::encoder::{CounterWidth, RawCount};
 use firmware::number::Number;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{Servo, Transducers};
 use fixed::types::I8F24;
 use own_environment::ProgressiveSpring;
@@ -21,6 +21,7 @@ const PEDAL: Scene<ProgressiveSpring<1>> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 

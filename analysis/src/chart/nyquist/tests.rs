@@ -1,6 +1,6 @@
 use firmware::certificate::assess;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::*;
 
@@ -14,6 +14,7 @@ fn scene(environment: Environment, coupling: Coupling) -> Scene {
         timing: Timing { period: 0.001, worst_period: None },
         coupling,
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

@@ -12,7 +12,7 @@ use std::time::Instant;
 use crate::stability_map::{Family, Map, MapError};
 use firmware::certificate::assess;
 use firmware::environment::{Coefficients, Environment, Rational};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
 /// Instructions a second of a board's core: 170 MHz, if an instruction took a cycle.
@@ -80,6 +80,7 @@ fn scene(rational: Rational) -> Scene {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment: Environment::Rational(rational),
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }
@@ -176,6 +177,7 @@ pub const fn scene(stiffness: f64) -> Scene<Wall> {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment: OneSided { face: 0.0, wall: DamperWall { stiffness, damping: 0.01 } },
+        latency: Latency::NONE,
         torque_limit: Some(1.0),
     }
 }

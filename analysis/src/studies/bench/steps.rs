@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use super::{ROUNDS, median};
 use crate::device::Motion;
@@ -24,6 +24,7 @@ pub fn experiment(damping: f64, delay: usize, torque_limit: Option<f64>) -> Expe
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment: Environment::DamperWall(wall),
+        latency: Latency::NONE,
         torque_limit,
     };
     let start = Motion { position: 1e-3, velocity: 0.0 };

@@ -6,7 +6,7 @@ use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Arithmetic;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 
 use super::loop_run::LoopRun;
@@ -49,7 +49,14 @@ pub fn wall_of(stiffness: f64, damping: f64, delay: usize) -> Environment {
 /// A scene without a coupling.
 pub fn rigid(device: Device, environment: Environment) -> Scene {
     let timing = Timing { period: PERIOD, worst_period: None };
-    Scene { device, timing, coupling: Coupling::Rigid, environment, torque_limit: None }
+    Scene {
+        device,
+        timing,
+        coupling: Coupling::Rigid,
+        environment,
+        latency: Latency::NONE,
+        torque_limit: None,
+    }
 }
 
 /// A scene behind the standard coupling `2 delta / T`.

@@ -163,7 +163,7 @@ mod tests {
     use firmware::certificate::Resolution;
     use firmware::encoder::CounterWidth;
     use firmware::environment::Wall;
-    use firmware::scene::{Coupling, Device, Scene, Timing};
+    use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
     use firmware::transducers::Transducers;
 
     use super::*;
@@ -191,6 +191,7 @@ mod tests {
             timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Spring { stiffness: 0.2 },
             environment,
+            latency: Latency::NONE,
             torque_limit: None,
         };
         let steps = Resolution::of(&transducers, None);

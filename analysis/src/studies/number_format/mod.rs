@@ -111,7 +111,7 @@ impl InEach for Build {
 mod tests {
     use firmware::encoder::CounterWidth;
     use firmware::environment::{Coefficients, Environment, Rational, Wall};
-    use firmware::scene::{Coupling, Device, Timing};
+    use firmware::scene::{Coupling, Device, Latency, Timing};
 
     use super::*;
 
@@ -145,6 +145,7 @@ mod tests {
                 timing: Timing { period: 1e-3, worst_period: None },
                 coupling: Coupling::Spring { stiffness: 43.9 },
                 environment,
+                latency: Latency::NONE,
                 torque_limit: match environment {
                     Environment::DelayedSpring(_) => Some(0.3),
                     _ => None,

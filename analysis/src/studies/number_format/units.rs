@@ -40,6 +40,7 @@ impl Units {
                 Coupling::Spring { stiffness: k } => Coupling::Spring { stiffness: k * stiffness },
             },
             environment: self.environment(scene.environment),
+            latency: scene.latency,
             torque_limit: scene.torque_limit.map(|limit| limit / self.torque),
         }
     }

@@ -26,6 +26,7 @@ const FREE_MODE: Scene<FreeMode<1>> = Scene {
     timing: free_mode::SCENE.timing,
     coupling: free_mode::SCENE.coupling,
     environment: FreeMode { residual: free_mode::SCENE.environment.residual },
+    latency: free_mode::SCENE.latency,
     torque_limit: free_mode::SCENE.torque_limit,
 };
 

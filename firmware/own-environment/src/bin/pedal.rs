@@ -3,7 +3,7 @@
 
 use firmware::certificate::Certified;
 use firmware::encoder::CounterWidth;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 use own_environment::ProgressiveSpring;
 
@@ -16,6 +16,7 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: ProgressiveSpring { soft: 4.0, stiff: 24.0, knee: 0.1 },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 

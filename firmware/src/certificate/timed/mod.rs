@@ -27,7 +27,7 @@ use crate::text::Sentence;
 /// ```
 /// use firmware::certificate::{Certified, TimingChecked};
 /// use firmware::environment::DelayedSpring;
-/// use firmware::scene::{Coupling, Device, Scene, Timing};
+/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 /// use firmware::servo::Latched;
 ///
 /// type SpringScene = Scene<DelayedSpring<1>>;
@@ -36,7 +36,7 @@ use crate::text::Sentence;
 ///     timing: Timing { period: 0.001, worst_period: None },
 ///     coupling: Coupling::Spring { stiffness: 44.0 },
 ///     environment: DelayedSpring { stiffness: 22.0 },
-///     torque_limit: None,
+///     latency: Latency::NONE, torque_limit: None,
 /// };
 /// const CERTIFIED: Certified<SpringScene> = SPRING.certified();
 /// // Late by one sample, which is what the latch takes: this compiles.

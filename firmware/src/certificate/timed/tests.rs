@@ -3,7 +3,7 @@ use crate::certificate::Certified;
 use crate::environment::{
     DamperWall, DelayedSpring, Environment, FreeMode, FreeModeWall, OneSided, Rational,
 };
-use crate::scene::{Coupling, Device, Timing};
+use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, Simultaneous};
 
 const fn scene<E>(environment: E, coupling: f64) -> Scene<E> {
@@ -12,6 +12,7 @@ const fn scene<E>(environment: E, coupling: f64) -> Scene<E> {
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: coupling },
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

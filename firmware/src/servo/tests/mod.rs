@@ -14,7 +14,7 @@ use reference::{Reference, impulse_response};
 use super::*;
 use crate::encoder::CounterWidth;
 use crate::environment::*;
-use crate::scene::{Coupling, Device, Timing};
+use crate::scene::{Coupling, Device, Latency, Timing};
 
 const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
@@ -31,6 +31,7 @@ const fn scene<E>(environment: E) -> Scene<E> {
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

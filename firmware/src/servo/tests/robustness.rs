@@ -171,6 +171,7 @@ proptest! {
             timing: Timing { period, worst_period: None },
             coupling,
             environment,
+            latency: Latency::NONE,
             torque_limit,
         };
         let counter = if narrow { CounterWidth::Bits16 } else { CounterWidth::Bits32 };

@@ -14,7 +14,7 @@ use crate::encoder::CounterWidth;
 use crate::environment::DelayedSpring;
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
-use crate::scene::{Coupling, Device, Scene, Timing};
+use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 
 /// A spring that pulls to both sides, so that any deflection shows.
@@ -28,6 +28,7 @@ const fn program<E: Copy>(environment: E) -> Program<E> {
             timing: Timing { period: 1e-3, worst_period: None },
             coupling: Coupling::Spring { stiffness: 44.0 },
             environment,
+            latency: Latency::NONE,
             torque_limit: Some(1.0),
         },
         transducers: Transducers {

@@ -13,7 +13,7 @@ use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DamperWall, OneSided};
 use crate::number::Format;
-use crate::scene::{Coupling, Device, Timing};
+use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
 use crate::tuning::RenderError;
@@ -27,6 +27,7 @@ const SCENE: Scene<Wall> = Scene {
     timing: Timing { period: 0.001, worst_period: None },
     coupling: Coupling::Spring { stiffness: 44.0 },
     environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    latency: Latency::NONE,
     torque_limit: Some(1.0),
 };
 
@@ -188,6 +189,7 @@ fn largest_description() -> Description {
             timing: Timing { worst_period: Some(1.0), ..SCENE.timing },
             coupling: SCENE.coupling,
             environment: crate::environment::Environment::FreeModeWall { residual: 1.0, wall },
+            latency: Latency::NONE,
             torque_limit: Some(1.0),
         },
         transducers: program.transducers,

@@ -11,7 +11,7 @@ use adversary::search::{Effort, Search, Task, booted};
 use firmware::boot::Program;
 use firmware::environment::{Environment, Wall};
 use firmware::number::Number;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{OutputMode, SupportsTiming};
 use firmware::tuning::Tunable;
 use rand::SeedableRng;
@@ -49,6 +49,7 @@ fn readme(one_sided: bool, torque_limit: Option<f64>) -> Scene {
             one_sided,
             ..refuted_scenes::wall(22.0, 0.01, 1)
         }),
+        latency: Latency::NONE,
         torque_limit,
     }
 }

@@ -7,7 +7,7 @@ use firmware::servo_loop::{LinkPolicy, Options};
 use firmware::encoder::CounterWidth;
 use firmware::environment::DamperWall;
 use firmware::number::fixed::types::I8F24;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
 
 /// A detent, as late as the board's torque.
@@ -19,6 +19,7 @@ pub const SCENE: Scene<Detent> = Scene {
     timing: Timing { period: 0.0005, worst_period: None },
     coupling: Coupling::Spring { stiffness: 40.0 },
     environment: DamperWall { stiffness: 12.0, damping: 0.004 },
+    latency: Latency::NONE,
     torque_limit: None,
 };
 

@@ -9,7 +9,7 @@ use firmware::environment::{
     Coefficients, DamperWall, DelayedSpring, FilteredWall, FreeMode, FreeModeWall, OneSided,
     Rational,
 };
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::energy::EnergyMonitor;
 use firmware::servo::{Latched, Output, PreparedServo, RenderingOptions, Servo, Transducers};
 use fixed::types::{I8F24, I16F16};
@@ -28,6 +28,7 @@ fn scene<E>(environment: E) -> Scene<E> {
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
         environment,
+        latency: Latency::NONE,
         torque_limit: None,
     }
 }

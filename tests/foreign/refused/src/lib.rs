@@ -3,7 +3,7 @@
 
 use firmware::certificate::Certified;
 use firmware::environment::DamperWall;
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 /// A detent that is computed one sample late.
 pub const DETENT: Certified<Scene<DamperWall<1>>> = Scene {
@@ -11,6 +11,7 @@ pub const DETENT: Certified<Scene<DamperWall<1>>> = Scene {
     timing: Timing { period: 0.0005, worst_period: None },
     coupling: Coupling::Spring { stiffness: 40.0 },
     environment: DamperWall { stiffness: 12.0, damping: 0.008 },
+    latency: Latency::NONE,
     torque_limit: None,
 }
 .certified();

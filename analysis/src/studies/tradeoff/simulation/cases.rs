@@ -1,7 +1,7 @@
 //! The motions that the methods are measured on.
 
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
 use crate::chain::{Link, Mass};
 use crate::device::{Hand, Motion};
@@ -50,6 +50,7 @@ fn released(plant: Plant, device: Device) -> Experiment {
         timing: Timing { period: 1e-3, worst_period: None },
         coupling: Coupling::Rigid,
         environment: Environment::DelayedSpring(wall),
+        latency: Latency::NONE,
         torque_limit: None,
     };
     let start = Motion { position: 1e-3, velocity: 0.0 };

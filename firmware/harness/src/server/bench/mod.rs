@@ -177,8 +177,9 @@ pub struct BenchJob<'a> {
 impl BenchJob<'_> {
     /// Its ticks, as a servo of this environment.
     fn run<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), HostClosed> {
-        let Scene { device, timing, coupling, torque_limit, .. } = *self.scene;
-        let scene = Scene { device, timing, coupling, environment, torque_limit };
+        let Scene { device, timing, coupling, latency, torque_limit, .. } = *self.scene;
+        let scene =
+            Scene { device, timing, coupling, environment, latency, torque_limit };
         self.host.ticks::<E, N>(scene, self.transducers)
     }
 

@@ -1,0 +1,100 @@
+//! What lies between a count and its torque: delays of the output, and lags of amplifier and sensor.
+//!
+//! A lag is first order, with a gain of 1. All of it belongs to the controller's side of the device's
+//! port: the device's passivity is that from the motor's torque to the velocity at the encoder
+//! (theory, section 13).
+
+/// Longest delay of the output, in periods.
+pub const LONGEST_DELAY: f64 = 8.0;
+
+/// Longest lag, in periods: a slower loop filters whatever a servo at this rate could add.
+pub const LONGEST_LAG: f64 = 100.0;
+
+/// A time in s that is constant, and known to lie in a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct TimeRange {
+    /// The shortest that it may be.
+    pub least: f64,
+    /// The longest that it may be.
+    pub most: f64,
+}
+
+impl TimeRange {
+    /// No time.
+    pub const ZERO: Self = Self::exactly(0.0);
+
+    /// A time that is known.
+    pub const fn exactly(time: f64) -> Self {
+        Self { least: time, most: time }
+    }
+
+    /// A time that is known to lie between two others.
+    pub const fn between(least: f64, most: f64) -> Self {
+        Self { least, most }
+    }
+
+    /// Whether it is certainly no time.
+    pub const fn is_zero(self) -> bool {
+        self.least == 0.0 && self.most == 0.0
+    }
+
+    /// Whether it is known.
+    pub const fn is_exact(self) -> bool {
+        self.least == self.most
+    }
+
+    /// The time in the middle of the range.
+    pub const fn middle(self) -> f64 {
+        if self.is_exact() { self.least } else { 0.5 * (self.least + self.most) }
+    }
+}
+
+/// Delays and lags between the instant of a count and that of its torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Latency {
+    /// Time from the instant of a count to that of its torque, beside the environment's whole samples.
+    pub output_delay: TimeRange,
+    /// Largest deviation in s from that delay, to either side, which may differ from tick to tick.
+    pub output_jitter: f64,
+    /// Time constant of the amplifier.
+    pub actuator_lag: TimeRange,
+    /// Time constant of the filter between encoder and servo.
+    pub sensor_lag: TimeRange,
+}
+
+impl Latency {
+    /// A torque at the instant of its count: what an environment's whole samples leave where torques
+    /// are latched by the next count, in front of an amplifier that is fast beyond all that counts.
+    pub const NONE: Self = Self {
+        output_delay: TimeRange::ZERO,
+        output_jitter: 0.0,
+        actuator_lag: TimeRange::ZERO,
+        sensor_lag: TimeRange::ZERO,
+    };
+
+    /// A delay of the output in s that is known and constant.
+    pub const fn delayed(output_delay: f64) -> Self {
+        Self { output_delay: TimeRange::exactly(output_delay), ..Self::NONE }
+    }
+
+    /// The same in front of an amplifier with this time constant in s.
+    pub const fn with_actuator_lag(self, lag: f64) -> Self {
+        Self { actuator_lag: TimeRange::exactly(lag), ..self }
+    }
+
+    /// Whether there is none of it.
+    pub const fn is_none(&self) -> bool {
+        self.output_delay.is_zero()
+            && self.output_jitter == 0.0
+            && self.actuator_lag.is_zero()
+            && self.sensor_lag.is_zero()
+    }
+}
+
+impl Default for Latency {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
