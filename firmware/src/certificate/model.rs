@@ -364,6 +364,8 @@ pub(super) const fn nonlinear_bound<E: EnvironmentModel>(
 /// [`LoopIntervals::solved`] out of contact and in contact. Exactly 1 where the environment is late.
 ///
 /// `None` where it cannot be had.
+// In a frame of its own, which the caller would otherwise have for what it calls later, too.
+#[inline(never)]
 pub(super) const fn largest_solved<E: EnvironmentModel>(
     environment: &Environment,
     n: &LoopIntervals,
