@@ -51,6 +51,11 @@ pub enum BuildError {
     },
     /// The law of an environment that is said to be late gives torques for the present position.
     NotLate,
+    /// The law of the environment does not remember the torques that the scene's coupling needs, or
+    /// remembers some for a coupling that needs none.
+    CouplingMemory,
+    /// There is no matched coupling for the scene's latency.
+    NoMatchedCoupling,
     /// The environment is known by its bounds alone, and its law is in another crate.
     LawElsewhere,
     /// A numerator of higher degree than its denominator, or a denominator that is zero.
@@ -155,6 +160,18 @@ impl BuildError {
             }
             Self::NotLate => {
                 t.push("the environment says that it is late, and its law is not");
+            }
+            Self::CouplingMemory => {
+                t.push(
+                    "a matched coupling goes with an environment that is `Matched`, with as many whole \
+                     samples and lags as the scene's latency has, and no other coupling does",
+                );
+            }
+            Self::NoMatchedCoupling => {
+                t.push(
+                    "there is no matched coupling for this latency: actuator lag and sensor lag are too \
+                     much alike, the jitter is a whole period, or a number is out of range",
+                );
             }
             Self::LawElsewhere => {
                 t.push(

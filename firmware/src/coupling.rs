@@ -88,18 +88,15 @@ pub struct Solver<N: Number> {
 }
 
 impl<N: Number> Solver<N> {
-    /// Computes the gains.
+    /// Computes the gains, with the coupling's compliance in rad/(N m) for the torque of the same tick;
+    /// `None`: rigid.
     ///
     /// # Errors
     /// Where a coefficient does not fit the number format, or the loop of coupling and environment
     /// has no solution or more than one.
-    pub fn new(coupling: Coupling, slopes: Slopes) -> Result<Self, BuildError> {
-        let stiffness = match coupling {
-            Coupling::Rigid => None,
-            Coupling::Spring { stiffness } => Some(stiffness),
-        };
-        let compliance = stiffness.map_or(0.0, |stiffness| 1.0 / stiffness);
-        let compliance = N::FORMAT.coefficient(compliance, Rounding::Outward);
+    pub fn new(compliance: Option<f64>, slopes: Slopes) -> Result<Self, BuildError> {
+        let is_rigid = compliance.is_none();
+        let compliance = N::FORMAT.coefficient(compliance.unwrap_or(0.0), Rounding::Outward);
         let compliance = BuildError::coefficient::<N>("1 / coupling stiffness", compliance)?;
         // From here on with the compliance as rounded: the solution shall be that of the loop
         // that runs.
@@ -116,14 +113,14 @@ impl<N: Number> Solver<N> {
             compliance,
             line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
             contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
-            stiffness: match stiffness {
+            stiffness: match is_rigid {
                 // Not above that of the compliance as rounded: while the environment slides on
                 // the face, it must not come back out as the device goes in.
-                Some(_) => {
+                false => {
                     let stiffness = N::FORMAT.coefficient(1.0 / given, Rounding::Inward);
                     Some(BuildError::coefficient::<N>("coupling stiffness", stiffness)?)
                 }
-                None => None,
+                true => None,
             },
         })
     }
@@ -168,8 +165,8 @@ mod tests {
 
     use super::*;
 
-    fn spring(stiffness: f64) -> Coupling {
-        Coupling::Spring { stiffness }
+    fn spring(stiffness: f64) -> Option<f64> {
+        Some(1.0 / stiffness)
     }
 
     #[test]
@@ -182,12 +179,12 @@ mod tests {
         assert!(!ill(spring(32.0), slopes(-33.0, 0.0)));
         assert!(ill(spring(32.0), slopes(-33.0, 5.0)));
         assert!(ill(spring(32.0), slopes(0.0, -40.0)));
-        assert!(!ill(Coupling::Rigid, slopes(-33.0, 5.0)));
+        assert!(!ill(None, slopes(-33.0, 5.0)));
     }
 
     #[test]
     fn a_rigid_coupling_puts_the_environment_where_the_device_is() {
-        let solver = Solver::<f32>::new(Coupling::Rigid, Slopes { line: 5.0, wall: 0.0 }).unwrap();
+        let solver = Solver::<f32>::new(None, Slopes { line: 5.0, wall: 0.0 }).unwrap();
         assert_eq!(solver.torque(Response::Line(3.0)), 3.0);
         assert_eq!(solver.environment_position(0.5, 3.0), 0.5);
     }
@@ -196,7 +193,7 @@ mod tests {
     #[test]
     fn what_is_no_number_is_not_taken_for_a_place_outside_of_a_wall() {
         const NAN: f32 = f32::NAN;
-        for coupling in [Coupling::Rigid, spring(32.0)] {
+        for coupling in [None, spring(32.0)] {
             let solver = Solver::<f32>::new(coupling, Slopes { line: 0.0, wall: 5.0 }).unwrap();
             for (torque, depth) in [(NAN, NAN), (NAN, 0.5)] {
                 let contact = Contact { torque, depth };

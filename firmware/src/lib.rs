@@ -41,6 +41,7 @@ pub mod servo;
 // Shared by the modules above.
 pub mod build_error;
 pub mod latency;
+pub mod matched;
 pub mod number;
 pub mod output_timing;
 pub mod parameter;

@@ -22,6 +22,8 @@ pub enum OutputTiming {
     Simultaneous,
     /// At the next count, by the timer.
     Latched,
+    /// This many nanoseconds after the beginning of the period of its count, by the timer.
+    AtPhase(u32),
 }
 
 /// The timer that begins a period latches the code of the tick before: a torque appears exactly
@@ -35,6 +37,26 @@ pub struct Latched;
 /// with one. No DAC can do this.
 #[derive(Clone, Copy, Debug)]
 pub struct Simultaneous;
+
+/// The timer puts the code of a count out a fixed time after the beginning of the count's own period,
+/// which the scene states as its output delay: no torque waits for the next count, and none depends on
+/// when the computation ended. One that has not ended by then is a fault.
+///
+/// The time belongs to the coupling ([`Coupling::Matched`](crate::coupling::Coupling)), so that an
+/// environment need not be late.
+#[derive(Clone, Copy, Debug)]
+pub struct AtPhase<const NANOSECONDS: u32>;
+
+impl<const NANOSECONDS: u32> AtPhase<NANOSECONDS> {
+    /// The time in s, for the scene.
+    pub const DELAY: f64 = NANOSECONDS as f64 / 1e9;
+}
+
+impl<const NANOSECONDS: u32> sealed::Sealed for AtPhase<NANOSECONDS> {}
+
+impl<const NANOSECONDS: u32> OutputMode for AtPhase<NANOSECONDS> {
+    const TIMING: OutputTiming = OutputTiming::AtPhase(NANOSECONDS);
+}
 
 impl sealed::Sealed for Latched {}
 impl sealed::Sealed for Simultaneous {}

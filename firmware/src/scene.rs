@@ -56,13 +56,25 @@ pub struct Timing {
     pub worst_period: Option<f64>,
 }
 
+impl Device {
+    /// Output strict passivity `delta` in N m s/rad: the damping where no other was declared.
+    pub const fn passivity(&self) -> f64 {
+        match self.passivity {
+            Some(passivity) => passivity,
+            None => self.damping,
+        }
+    }
+}
+
 impl<E> Scene<E> {
     /// The rest of the scene, for the environment.
     pub(crate) const fn context(&self) -> LawContext {
         LawContext {
             period: self.timing.period,
             damping: self.device.damping,
+            passivity: self.device.passivity(),
             coupling: self.coupling,
+            latency: self.latency,
         }
     }
 

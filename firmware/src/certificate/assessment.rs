@@ -20,6 +20,10 @@ pub struct Assessment {
     pub alpha: Option<Interval>,
     /// Index of `E'`, the environment that behind the standard coupling gives the same controller.
     pub alpha_coupled: Option<Interval>,
+    /// Index at the device's port with delay, lag and sensor (equation 38): the least passivity of a
+    /// device that would be enough. `None` where the scene has none of them, where the index does not
+    /// exist, and where only the verdict was asked for.
+    pub alpha_port: Option<Interval>,
     /// Bound on the index that holds for one-sided and limited scenes; `None` for linear ones.
     pub bound: Option<Interval>,
     /// The device's passivity, scaled to the worst period.
@@ -43,7 +47,10 @@ impl Assessment {
     /// The index that the verdict compared with `delta`.
     pub const fn deciding_index(&self) -> Option<Interval> {
         match self.rule {
-            Rule::Exact => self.alpha_coupled,
+            Rule::Exact => match self.alpha_port {
+                Some(index) => Some(index),
+                None => self.alpha_coupled,
+            },
             Rule::Nonlinear => self.bound,
         }
     }
@@ -75,6 +82,7 @@ pub(super) const fn assessed(scene: &Scene, format: Format, extent: Extent) -> A
     let mut out = Assessment {
         alpha: None,
         alpha_coupled: None,
+        alpha_port: None,
         bound: None,
         delta: Interval::ENTIRE,
         cos_theta: None,
@@ -116,25 +124,31 @@ const fn judge(
         return nonlinear_outcome(n, &alone, out);
     }
     let coupled = posed.coupled(Some(alone), &Precision::TIGHT);
+    if n.latency.is_some() && matches!(extent, Extent::BothRules) {
+        (out.alpha_coupled, out.alpha_port) = posed.coupled_and_at_port();
+    }
     if let Ok(found) = coupled {
-        out.alpha_coupled = Some(found.minimum);
+        if n.latency.is_none() {
+            out.alpha_coupled = Some(found.minimum);
+        }
         if matches!(out.rule, Rule::Exact) {
             out.cos_theta = Some(found.cos_theta);
         }
     }
     out.exact = posed.exact(&coupled);
     match out.rule {
-        Rule::Exact => exact_outcome(n, &alone, &coupled, out),
+        Rule::Exact => exact_outcome(posed, &alone, &coupled, out),
         Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
     }
 }
 
 const fn exact_outcome(
-    n: &LoopIntervals,
+    posed: &PassivityProblem,
     alone: &Result<RealPart, IndexError>,
     coupled: &Result<RealPart, IndexError>,
     out: &Assessment,
 ) -> Result<(), Rejection> {
+    let n = &posed.numbers;
     let limit = exact_limit(n);
     // An environment that would pass at the standard coupling: it is the coupling that fails.
     let blames_coupling = match alone {
@@ -155,7 +169,11 @@ const fn exact_outcome(
             }
             Answer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
             Answer::Fail => Err(Rejection::Shortage {
-                alpha: found.minimum,
+                // What the device lacks where torques lag, rather than what fails for this one.
+                alpha: match posed.port_needed() {
+                    Ok(needed) if n.latency.is_some() => needed,
+                    _ => found.minimum,
+                },
                 delta: limit,
                 cos_theta: found.cos_theta,
                 remedies: Remedies::NONE,

@@ -101,6 +101,8 @@ pub(super) struct Limited {
     pub coupling: Interval,
     delta: Interval,
     missed: Option<Missed>,
+    /// Whether torques lag.
+    lags: bool,
 }
 
 impl Limited {
@@ -129,7 +131,15 @@ impl Limited {
         if !bound.is_below(limit) {
             return None;
         }
-        Some(Self { bound, limit, gain, coupling, delta: n.delta, missed: n.missed })
+        Some(Self {
+            bound,
+            limit,
+            gain,
+            coupling,
+            delta: n.delta,
+            missed: n.missed,
+            lags: n.latency.is_some(),
+        })
     }
 
     /// Limit less bound, in N m s/rad.
@@ -149,7 +159,8 @@ impl Limited {
     pub const fn margin(&self, injected: f64) -> f64 {
         let injected = Interval::exact(injected);
         let bound = self.bound.add(injected);
-        if !bound.is_below(self.limit) {
+        // Where torques lag no loss is known to be allowed: the coupling was made for this passivity.
+        if !bound.is_below(self.limit) || self.lags {
             return 0.0;
         }
         let (k, gain) = (self.coupling, self.gain.add(injected.double()));

@@ -34,6 +34,7 @@ mod between;
 mod digits;
 mod margin;
 mod model;
+mod port;
 mod problem;
 mod quantization;
 mod rejection;
@@ -251,7 +252,14 @@ impl<E: Copy> Certified<Scene<E>> {
 }
 
 macro_rules! certify_for {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident;)*) => {$(
+        certify_for! { @ [$($generics)*] $environment }
+        certify_for! { @
+            [const WHOLE: usize, const LAGS: usize, $($generics)*]
+            Matched<$environment, WHOLE, LAGS>
+        }
+    )*};
+    (@ [$($generics:tt)*] $environment:ty) => {
         impl<$($generics)*> Scene<$environment> {
             /// The same scene with its environment as data.
             pub const fn as_data(&self) -> Scene {
@@ -266,6 +274,10 @@ macro_rules! certify_for {
 
             /// Judges the coefficients that a servo in this number format multiplies by.
             pub const fn certify_in(self, format: Format) -> Result<Certified<Self>, Rejection> {
+                let memory = <$environment as EnvironmentModel>::MEMORY;
+                if !memory.serves(&self.coupling, &self.latency, self.timing.period) {
+                    return Err(Rejection::CouplingMemory);
+                }
                 self.judged(self.as_data(), format)
             }
 
@@ -281,7 +293,7 @@ macro_rules! certify_for {
                 }
             }
         }
-    )*};
+    };
 }
 
 for_every_environment!(certify_for);

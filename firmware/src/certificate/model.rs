@@ -7,6 +7,8 @@
 
 use super::validity::first_invalid;
 use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, Wall};
+use crate::latency::Latency;
+use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -34,6 +36,23 @@ pub(super) struct LoopIntervals {
     pub is_standard: bool,
     /// The number format of the servo's coefficients.
     pub format: Format,
+    /// Whether the worst period is another one than the period.
+    pub misses_updates: bool,
+    /// Whether the coupling is the matched one.
+    pub is_matched: bool,
+    /// Delays and lags; `None`: none at all, and a coupling without memory.
+    pub latency: Option<Lagging>,
+}
+
+/// What a scene with latency needs besides.
+#[derive(Clone, Copy)]
+pub(super) struct Lagging {
+    /// The times.
+    pub latency: Latency,
+    /// The coupling where it is matched.
+    pub matched: Option<MatchedCoupling>,
+    /// Upper bound on the index by the paper's rule; `None` where none is known.
+    pub limit: Option<Interval>,
 }
 
 /// Updates that may be missed by a scene whose torques may be latched one period after their counts.
@@ -111,10 +130,57 @@ impl LoopIntervals {
                 let stiffness = Interval::decimal(stiffness);
                 (Some(stiffness), Interval::ONE.div(stiffness))
             }
+            // The part of it that answers in the same tick.
+            Coupling::Matched => {
+                let standard = standard(period, delta);
+                (Some(Interval::ONE.div(standard)), standard)
+            }
         };
         let compliance = rounded(written, format, Rounding::Outward);
         let is_standard = written.sub(standard(period, delta)).contains(0.0);
-        Self { period, delta, missed, cancelled, coupling, compliance, is_standard, format }
+        let mut out = Self {
+            period,
+            delta,
+            missed,
+            cancelled,
+            coupling,
+            compliance,
+            is_standard,
+            format,
+            misses_updates: matches!(
+                scene.timing.worst_period,
+                Some(worst) if worst != scene.timing.period
+            ),
+            is_matched: matches!(scene.coupling, Coupling::Matched),
+            latency: None,
+        };
+        if !scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched) {
+            out.add_latency(scene);
+        }
+        out
+    }
+
+    // In a frame of its own, which no scene without latency needs.
+    #[inline(never)]
+    const fn add_latency(&mut self, scene: &Scene) {
+        let latency = scene.latency;
+        let mut lagging = Lagging { latency, matched: None, limit: None };
+        self.is_standard = false;
+        if self.misses_updates {
+            // No proof covers both.
+        } else if self.is_matched {
+            let passivity = scene.device.passivity();
+            let period = scene.timing.period;
+            lagging.matched = MatchedCoupling::of(period, passivity, &latency, self.format);
+            if let Some(matched) = &lagging.matched {
+                lagging.limit = Some(matched.limit);
+                self.compliance = Interval::exact(matched.compliance);
+            }
+        } else if self.coupling.is_some() {
+            let (period, delta) = (self.period, self.delta);
+            lagging.limit = limit_behind_spring(period, delta, self.compliance, &latency);
+        }
+        self.latency = Some(lagging);
     }
 
     /// The coefficient that a servo makes of a value.

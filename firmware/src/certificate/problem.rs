@@ -234,6 +234,13 @@ impl PassivityProblem {
             return None;
         };
         let delta = self.numbers.delta;
+        if self.numbers.latency.is_some() {
+            let limit = paper_limit(&self.numbers);
+            return Some(match limit {
+                Some(limit) => bound.sub(limit),
+                None => delta.max(bound),
+            });
+        }
         let over_the_limit = bound.sub(match paper_limit(&self.numbers) {
             Some(limit) => limit,
             None => delta.min(coupling),
@@ -267,6 +274,12 @@ impl PassivityProblem {
     /// Index at the device's port, which knows nothing of `delta`: that of the whole controller, a
     /// sample late. The loop is passive while `delta + Re(T C / (z - 1)) > 0` (equation 30).
     pub(super) const fn at_port(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
+        if self.numbers.latency.is_some() {
+            return match self.port_needed() {
+                Ok(minimum) => Ok(RealPart { minimum, cos_theta: Interval::new(-1.0, 1.0) }),
+                Err(error) => Err(error),
+            };
+        }
         match self.behind_reduced(self.numbers.compliance, true) {
             Ok(late) => reduced_index(&late, closeness),
             Err(obstacle) => Err(obstacle),
@@ -302,6 +315,9 @@ impl PassivityProblem {
         if self.stated.is_some() {
             return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
         }
+        if self.numbers.latency.is_some() {
+            return self.port_index(closeness);
+        }
         let at_once = match alone {
             Some(alone) if self.is_standard() => alone,
             None if self.is_standard() => self.alone(closeness),
@@ -317,9 +333,14 @@ impl PassivityProblem {
         }
     }
 
+    /// Whether only a bound is stated.
+    pub(super) const fn has_no_transfer(&self) -> bool {
+        self.stated.is_some()
+    }
+
     /// Index of `E'` for a coupling with this much compliance over the standard one.
     #[inline(never)]
-    const fn behind(
+    pub(super) const fn behind(
         &self,
         excess: Interval,
         closeness: &Precision,

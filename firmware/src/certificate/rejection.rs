@@ -21,6 +21,8 @@ pub enum Rejection {
         /// `1 + E(inf) V`; 0 where the environment's own denominator degenerates.
         loop_gain: Interval,
     },
+    /// The law of the environment's type does not remember the torques that the coupling needs.
+    CouplingMemory,
     /// The device has no passivity to spend.
     NoPassivity {
         /// Its output strict passivity.
@@ -119,7 +121,7 @@ impl Rejection {
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
             Self::NegativeResidue { .. } => "negative_residue",
-            Self::Coupling { .. } => "coupling",
+            Self::Coupling { .. } | Self::CouplingMemory => "coupling",
             Self::Undecided { .. } => "undecided",
         }
     }
@@ -163,6 +165,10 @@ impl Rejection {
                 t.push_number(if loop_gain.contains(0.0) { 0.0 } else { loop_gain.midpoint() });
                 t.push("); delay the environment or change the coupling stiffness");
             }
+            Self::CouplingMemory => t.push(
+                "a matched coupling goes with an environment that is `Matched`, with as many whole samples \
+                 and lags as the scene's latency has, and no other coupling does",
+            ),
             Self::NoPassivity { delta } => {
                 t.push("the device's passivity delta = ");
                 t.push_number(delta.midpoint());
@@ -286,6 +292,9 @@ const fn write_doubt(
         UndecidedReason::TooClose => "the index is too close to its limit to tell",
         UndecidedReason::NoNonlinearBound => {
             "no bound is known for a general rational environment with a torque limit"
+        }
+        UndecidedReason::MissedWithLatency => {
+            "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"

@@ -66,7 +66,7 @@ impl fmt::Display for Remedy {
     }
 }
 
-pub(super) const CANDIDATES: usize = 6;
+pub(super) const CANDIDATES: usize = 9;
 
 /// The numbers that are looked at, in the order in which they are printed. What more of a device
 /// would help is the damping where its passivity is not declared.
@@ -77,6 +77,9 @@ pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::CouplingStiffness,
     Parameter::Period,
     Parameter::Passivity,
+    Parameter::OutputDelay,
+    Parameter::ActuatorLag,
+    Parameter::SensorLag,
 ];
 
 /// The values of one number, infinite where a [`Remedy`] has no end.

@@ -3,6 +3,7 @@
 use super::model::LoopIntervals;
 #[cfg(doc)]
 use super::model::Missed;
+use super::port::port_limit;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -52,7 +53,13 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 /// standard coupling, and without compliance, `Q` is not passive (equation 19).
 ///
 /// Where updates may be missed and torques latched, [`Missed::limit`] has to hold as well.
+///
+/// Where torques lag, condition 18 is that of the coupling's excess over the matched one
+/// ([`crate::matched`]).
 pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
+    if let Some(lagging) = &n.latency {
+        return lagging.limit;
+    }
     match (n.coupling_damping(), &n.missed) {
         (Some(damping), _) if n.delta.is_below(damping) => None,
         (Some(damping), None) => Some(n.delta.min(damping)),
@@ -73,7 +80,12 @@ pub(super) const fn compare(index: Interval, limit: Interval) -> Answer {
 
 /// What `alpha_coupled` has to stay below: `delta`; at the standard coupling also the `K_vc T / 2`
 /// that equals it to the digits that were written and to the rounding of the compliance.
+///
+/// Where torques lag, it is the index at the port that has to stay below the passivity.
 pub(super) const fn exact_limit(n: &LoopIntervals) -> Interval {
+    if let Some(lagging) = &n.latency {
+        return port_limit(lagging, n);
+    }
     match n.coupling_damping() {
         Some(damping) if n.is_standard => n.delta.min(damping),
         _ => n.delta,

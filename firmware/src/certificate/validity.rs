@@ -1,7 +1,7 @@
 //! The range in which each number of a scene makes sense at all.
 
-use crate::parameter::{Parameter, Range};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
+use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
 use crate::text::Text;
 

@@ -42,7 +42,7 @@ impl EnergyMonitor {
         let offset = i32::from(code.offset());
         match M::TIMING {
             OutputTiming::Latched => self.held = core::mem::replace(&mut self.next, offset),
-            OutputTiming::Simultaneous => self.held = offset,
+            OutputTiming::Simultaneous | OutputTiming::AtPhase(_) => self.held = offset,
         }
     }
 

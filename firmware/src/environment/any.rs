@@ -3,12 +3,13 @@
 use super::delay_line::VariableDelay;
 use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
 use super::law::{Discretize, Law, LawContext};
+use super::matched::CouplingMemory;
 use super::rational::{Rational, RationalLaw};
 use super::stated::StatedModel;
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
 use crate::build_error::BuildError;
-use crate::coupling::{Response, Slopes};
+use crate::coupling::{Coupling, Response, Slopes};
 use crate::number::Number;
 
 /// A spring with an optional damper, as data.
@@ -169,7 +170,7 @@ impl<N: Number> Discretize<N> for Wall {
     }
 }
 
-/// The law of any [`Environment`].
+/// The law of any [`Environment`] alone.
 #[derive(Clone, Debug)]
 pub enum EnvironmentLaw<N: Number> {
     /// Of a spring or a wall.
@@ -220,10 +221,72 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
     }
 }
 
+/// The law of any [`Environment`], behind any coupling.
+#[derive(Clone, Debug)]
+pub struct DataLaw<N: Number> {
+    law: EnvironmentLaw<N>,
+    memory: Option<CouplingMemory<N, VariableDelay<N>, 2>>,
+}
+
+impl<N: Number> Law<N> for DataLaw<N> {
+    fn evaluate(&self, x: N) -> Response<N> {
+        self.law.evaluate(x)
+    }
+
+    fn update(&mut self, x_e: N) {
+        self.law.update(x_e);
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        self.law.rest_at(x_e);
+        if let Some(memory) = &mut self.memory {
+            memory.rest();
+        }
+    }
+
+    fn slopes(&self) -> Slopes {
+        self.law.slopes()
+    }
+
+    fn has_memory(&self) -> bool {
+        self.memory.is_some()
+    }
+
+    #[inline]
+    fn lasting_deflection(&self) -> N {
+        self.memory.as_ref().map_or(N::ZERO, CouplingMemory::deflection)
+    }
+
+    #[inline]
+    fn remember(&mut self, torque: N) {
+        if let Some(memory) = &mut self.memory {
+            memory.remember(torque);
+        }
+    }
+}
+
 impl<N: Number> Discretize<N> for Environment {
-    type Law = EnvironmentLaw<N>;
+    type Law = DataLaw<N>;
 
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
+        let memory = match setting.coupling {
+            Coupling::Matched => {
+                let coupling = setting.matched(N::FORMAT)?;
+                let torques = VariableDelay::at_rest(coupling.whole)?;
+                Some(CouplingMemory::new(&coupling, torques)?)
+            }
+            Coupling::Rigid | Coupling::Spring { .. } => None,
+        };
+        Ok(DataLaw { law: self.memoryless_law(setting)?, memory })
+    }
+}
+
+impl Environment {
+    /// The law without its coupling's memory.
+    fn memoryless_law<N: Number>(
+        &self,
+        setting: &LawContext,
+    ) -> Result<EnvironmentLaw<N>, BuildError> {
         Ok(match self {
             // A spring ignores its wall's damping.
             Self::DelayedSpring(wall) => {

@@ -8,6 +8,8 @@ use crate::number::Number;
 pub trait DelayLine<N>: Clone + core::fmt::Debug {
     /// The torque that is due in this tick; `None` where there is no delay.
     fn due(&self) -> Option<N>;
+    /// The sum of the torques.
+    fn sum(&self) -> N;
     /// Stores this tick's torque and drops the oldest one.
     fn push(&mut self, torque: N);
     /// Fills it with one torque.
@@ -32,6 +34,11 @@ impl<N: Number, const DELAY: usize> DelayLine<N> for FixedDelay<N, DELAY> {
     #[inline(always)]
     fn due(&self) -> Option<N> {
         self.oldest_first.first().copied()
+    }
+
+    #[inline(always)]
+    fn sum(&self) -> N {
+        self.oldest_first.iter().fold(N::ZERO, |sum, torque| sum.plus(*torque))
     }
 
     #[inline(always)]
@@ -67,6 +74,11 @@ impl<N: Number> VariableDelay<N> {
 impl<N: Number> DelayLine<N> for VariableDelay<N> {
     fn due(&self) -> Option<N> {
         if self.delay == 0 { None } else { self.oldest_first.first().copied() }
+    }
+
+    fn sum(&self) -> N {
+        let used = self.oldest_first.iter().take(self.delay);
+        used.fold(N::ZERO, |sum, torque| sum.plus(*torque))
     }
 
     fn push(&mut self, torque: N) {

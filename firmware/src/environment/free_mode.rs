@@ -40,9 +40,14 @@ pub(crate) fn canceller<N: Number>(
     setting: &LawContext,
 ) -> Result<Washout<N>, BuildError> {
     let be = setting.damping - residual;
-    match setting.coupling {
-        Coupling::Rigid => Washout::new(-be / setting.period, 1.0),
-        Coupling::Spring { stiffness } => {
+    let stiffness = match setting.coupling {
+        Coupling::Rigid => None,
+        Coupling::Spring { stiffness } => Some(stiffness),
+        Coupling::Matched => Some(2.0 * setting.passivity / setting.period),
+    };
+    match stiffness {
+        None => Washout::new(-be / setting.period, 1.0),
+        Some(stiffness) => {
             let leading = stiffness * setting.period + be;
             Washout::new(-be * stiffness / leading, stiffness * setting.period / leading)
         }

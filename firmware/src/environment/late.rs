@@ -1,9 +1,10 @@
 //! What an environment must be to stand the time that a torque takes to the motor.
 
 use super::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, OneSided, Placed, Rational,
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched, OneSided, Placed,
+    Rational,
 };
-use crate::output_timing::{Latched, OutputMode, Simultaneous};
+use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
 /// An environment that is late by at least one sample, so that its torque is known one tick early.
 ///
@@ -39,5 +40,12 @@ delayed!(@ Environment, Rational,);
 )]
 pub trait SupportsTiming<M: OutputMode> {}
 
+impl<E: Delayed, const WHOLE: usize, const LAGS: usize> Delayed for Matched<E, WHOLE, LAGS> {}
+
 impl<E> SupportsTiming<Simultaneous> for E {}
+impl<E, const WHOLE: usize, const LAGS: usize, const NANOSECONDS: u32>
+    SupportsTiming<AtPhase<NANOSECONDS>> for Matched<E, WHOLE, LAGS>
+{
+}
+impl<const NANOSECONDS: u32> SupportsTiming<AtPhase<NANOSECONDS>> for Environment {}
 impl<E: Delayed> SupportsTiming<Latched> for E {}

@@ -2,7 +2,9 @@
 
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
-use crate::number::Number;
+use crate::latency::Latency;
+use crate::matched::MatchedCoupling;
+use crate::number::{Format, Number};
 
 /// The difference equation of an environment, at rest at zero to begin with.
 pub trait Law<N: Number> {
@@ -13,6 +15,19 @@ pub trait Law<N: Number> {
     fn update(&mut self, x_e: N);
     /// Starts anew, as if the environment had always been at `x_e` (rad). Between two ticks.
     fn rest_at(&mut self, x_e: N);
+    /// Deflection in rad that the coupling has in this tick of the torques of earlier ticks: none, but
+    /// behind a coupling with memory.
+    #[inline(always)]
+    fn lasting_deflection(&self) -> N {
+        N::ZERO
+    }
+    /// Whether it remembers torques for the coupling.
+    fn has_memory(&self) -> bool {
+        false
+    }
+    /// Ends the tick for the coupling, with this torque in N m.
+    #[inline(always)]
+    fn remember(&mut self, _torque: N) {}
     /// Slopes of the lines that are offered, in N m/rad, of the coefficients as rounded.
     fn slopes(&self) -> Slopes;
 }
@@ -28,6 +43,29 @@ pub trait Discretize<N: Number> {
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError>;
 }
 
+impl LawContext {
+    /// The matched coupling in a number format.
+    ///
+    /// # Errors
+    /// Where it does not exist.
+    pub(crate) fn matched(&self, format: Format) -> Result<MatchedCoupling, BuildError> {
+        MatchedCoupling::of(self.period, self.passivity, &self.latency, format)
+            .ok_or(BuildError::NoMatchedCoupling)
+    }
+
+    /// Compliance of the coupling in rad/(N m) for the torque of the same tick; `None`: rigid.
+    ///
+    /// # Errors
+    /// Where there is no such coupling.
+    pub(crate) fn compliance(&self, format: Format) -> Result<Option<f64>, BuildError> {
+        Ok(match self.coupling {
+            Coupling::Rigid => None,
+            Coupling::Spring { stiffness } => Some(1.0 / stiffness),
+            Coupling::Matched => Some(self.matched(format)?.compliance),
+        })
+    }
+}
+
 /// What an environment's coefficients depend on besides the environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LawContext {
@@ -35,6 +73,10 @@ pub struct LawContext {
     pub period: f64,
     /// Damping `b` of the device in N m s/rad.
     pub damping: f64,
+    /// Passivity `delta` of the device in N m s/rad.
+    pub passivity: f64,
     /// The coupling.
     pub coupling: Coupling,
+    /// What delays the torque beside the environment's whole samples.
+    pub latency: Latency,
 }

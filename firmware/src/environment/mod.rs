@@ -8,29 +8,30 @@
 //! Each is data first; [`Discretize`] turns it into its [`Law`], which the servo runs. A
 //! [`StatedEnvironment`] of another crate runs beside them.
 
-/// Gives a macro all environments, each with its generic parameters and with whether it may cancel the
-/// device's damping: the one list of them.
+/// Gives a macro all environments, each with its generic parameters, with whether it may cancel the
+/// device's damping, and with what its law remembers for a coupling: the one list of them. Each is there
+/// as [`Matched`], too.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
-            [const N: usize] DelayedSpring<N>: false;
-            [const N: usize] Placed<DelayedSpring<N>>: false;
-            [const N: usize] OneSided<DelayedSpring<N>>: false;
-            [const N: usize] DamperWall<N>: false;
-            [const N: usize] Placed<DamperWall<N>>: false;
-            [const N: usize] OneSided<DamperWall<N>>: false;
-            [const N: usize] FilteredWall<N>: false;
-            [const N: usize] Placed<FilteredWall<N>>: false;
-            [const N: usize] OneSided<FilteredWall<N>>: false;
-            [const N: usize] FreeMode<N>: true;
-            [const N: usize] FreeModeWall<DelayedSpring<N>>: true;
-            [const N: usize] FreeModeWall<DamperWall<N>>: true;
-            [const N: usize] FreeModeWall<FilteredWall<N>>: true;
-            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true;
-            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true;
-            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true;
-            [] Rational: false;
-            [] Environment: true;
+            [const N: usize] DelayedSpring<N>: false, None;
+            [const N: usize] Placed<DelayedSpring<N>>: false, None;
+            [const N: usize] OneSided<DelayedSpring<N>>: false, None;
+            [const N: usize] DamperWall<N>: false, None;
+            [const N: usize] Placed<DamperWall<N>>: false, None;
+            [const N: usize] OneSided<DamperWall<N>>: false, None;
+            [const N: usize] FilteredWall<N>: false, None;
+            [const N: usize] Placed<FilteredWall<N>>: false, None;
+            [const N: usize] OneSided<FilteredWall<N>>: false, None;
+            [const N: usize] FreeMode<N>: true, None;
+            [const N: usize] FreeModeWall<DelayedSpring<N>>: true, None;
+            [const N: usize] FreeModeWall<DamperWall<N>>: true, None;
+            [const N: usize] FreeModeWall<FilteredWall<N>>: true, None;
+            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true, None;
+            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true, None;
+            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None;
+            [] Rational: false, None;
+            [] Environment: true, Any;
         }
     };
 }
@@ -47,6 +48,7 @@ mod delay_line;
 mod free_mode;
 mod late;
 mod law;
+mod matched;
 mod model;
 mod numbers;
 mod rational;
@@ -55,12 +57,13 @@ mod velocity;
 mod wall_law;
 mod walls;
 
-pub use any::{Environment, EnvironmentLaw, Wall};
+pub use any::{DataLaw, Environment, EnvironmentLaw, Wall};
 pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
 pub use free_mode::{FreeMode, FreeModeLaw, FreeModeWall, FreeModeWallLaw};
 pub use late::{Delayed, SupportsTiming};
 pub use law::{Discretize, Law, LawContext};
-pub use model::{EnvironmentModel, StatedEnvironment};
+pub use matched::{CouplingMemory, Matched, MatchedLaw};
+pub use model::{EnvironmentModel, Memory, StatedEnvironment};
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};
 pub use velocity::{AnyVelocity, Difference, NoDamping, Velocity, Washout};

@@ -11,6 +11,8 @@
 //! again when it starts and for each change, and does not run a scene that passes only by the value.
 
 use super::*;
+use crate::coupling::Coupling;
+use crate::latency::Latency;
 use crate::parameter::NamedParameters;
 
 /// An environment of another crate.
@@ -22,11 +24,47 @@ pub trait StatedEnvironment: NamedParameters + Copy + 'static {
     fn stated(&self, context: &LawContext) -> StatedModel;
 }
 
+/// What the law of a type of environment remembers of past torques, for its coupling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// Nothing: it is behind no coupling, or behind a spring.
+    None,
+    /// What [`Matched`] says of its scene's latency.
+    Of {
+        /// Whole samples of the output delay.
+        whole: usize,
+        /// How many of amplifier and sensor lag.
+        lags: usize,
+    },
+    /// Whatever the scene asks for.
+    Any,
+}
+
+impl Memory {
+    /// Whether it is what a scene with this coupling and latency needs.
+    pub const fn serves(self, coupling: &Coupling, latency: &Latency, period: f64) -> bool {
+        let is_matched = matches!(coupling, Coupling::Matched);
+        match self {
+            Self::None => !is_matched,
+            Self::Any => true,
+            Self::Of { whole, lags } => {
+                let needed = (latency.output_delay.middle() / period) as usize;
+                let lagging = !latency.actuator_lag.is_zero() as usize
+                    + !latency.sensor_lag.is_zero() as usize;
+                is_matched && needed == whole && lagging == lags
+            }
+        }
+    }
+}
+
 /// An environment that the certificate knows: one of this crate's, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// Whether it may cancel the device's damping. If not, the program of the environment omits the
     /// code that certifies cancelled damping.
     const CANCELS_DAMPING: bool;
+
+    /// What its law remembers for a coupling.
+    const MEMORY: Memory;
 
     /// As data, for the certificate.
     fn as_data(&self, context: &LawContext) -> Environment;
@@ -36,6 +74,7 @@ impl<E: StatedEnvironment> sealed::Sealed for E {}
 
 impl<E: StatedEnvironment> EnvironmentModel for E {
     const CANCELS_DAMPING: bool = false;
+    const MEMORY: Memory = Memory::None;
 
     fn as_data(&self, context: &LawContext) -> Environment {
         Environment::Stated(self.stated(context))
@@ -43,11 +82,37 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 }
 
 macro_rules! known_models {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident;)*) => {$(
+        impl<const WHOLE: usize, const LAGS: usize, $($generics)*> sealed::Sealed
+            for Matched<$environment, WHOLE, LAGS>
+        {
+        }
+
+        impl<const WHOLE: usize, const LAGS: usize, $($generics)*> EnvironmentModel
+            for Matched<$environment, WHOLE, LAGS>
+        {
+            const CANCELS_DAMPING: bool = $cancels;
+            const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS };
+
+            fn as_data(&self, _: &LawContext) -> Environment {
+                Self::as_data(self)
+            }
+        }
+
+        impl<const WHOLE: usize, const LAGS: usize, $($generics)*>
+            Matched<$environment, WHOLE, LAGS>
+        {
+            /// The environment as data.
+            pub const fn as_data(&self) -> Environment {
+                self.environment.as_data()
+            }
+        }
+
         impl<$($generics)*> sealed::Sealed for $environment {}
 
         impl<$($generics)*> EnvironmentModel for $environment {
             const CANCELS_DAMPING: bool = $cancels;
+            const MEMORY: Memory = Memory::$memory;
 
             fn as_data(&self, _: &LawContext) -> Environment {
                 // The constant function of the type, which has the same name.

@@ -34,6 +34,82 @@ impl Series {
     /// The zero series.
     pub const ZERO: Self = Self { coefficients: [Interval::ZERO; CAPACITY], len: 1 };
 
+    /// A number.
+    pub const fn constant(value: Interval) -> Self {
+        Self::linear(value, Interval::ZERO)
+    }
+
+    /// `value + slope c`.
+    pub const fn linear(value: Interval, slope: Interval) -> Self {
+        let mut out = Self::ZERO;
+        out.coefficients[0] = value;
+        out.coefficients[1] = slope;
+        out.len = if slope.is_zero() { 1 } else { 2 };
+        out
+    }
+
+    /// `self + other`.
+    pub const fn plus(&self, other: &Self) -> Self {
+        let mut out = *self;
+        out.len = if self.len > other.len { self.len } else { other.len };
+        let mut k = 0;
+        while k < other.len {
+            out.coefficients[k] = out.coefficients[k].add(other.coefficients[k]);
+            k += 1;
+        }
+        out
+    }
+
+    /// `self - other`.
+    pub const fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.scaled(Interval::ONE.neg()))
+    }
+
+    /// `factor self`.
+    pub const fn scaled(&self, factor: Interval) -> Self {
+        let mut out = *self;
+        let mut k = 0;
+        while k < self.len {
+            out.coefficients[k] = self.coefficients[k].mul(factor);
+            k += 1;
+        }
+        out
+    }
+
+    /// `self other`, by `2 T_i T_j = T_(i+j) + T_|i-j|`; `None` beyond the capacity.
+    #[inline(never)]
+    pub const fn times(&self, other: &Self) -> Option<Self> {
+        if self.len + other.len - 1 > CAPACITY {
+            return None;
+        }
+        let mut out = Self::ZERO;
+        out.len = self.len + other.len - 1;
+        let mut i = 0;
+        while i < self.len {
+            let mut j = 0;
+            while j < other.len {
+                let half = self.coefficients[i].mul(other.coefficients[j]).half();
+                out.coefficients[i + j] = out.coefficients[i + j].add(half);
+                let apart = i.abs_diff(j);
+                out.coefficients[apart] = out.coefficients[apart].add(half);
+                j += 1;
+            }
+            i += 1;
+        }
+        Some(out)
+    }
+
+    /// The value at one `c`, by Clenshaw's recurrence.
+    pub const fn at(&self, c: Interval) -> Interval {
+        let (mut next, mut after) = (Interval::ZERO, Interval::ZERO);
+        let mut k = self.len - 1;
+        while k > 0 {
+            (after, next) = (next, self.coefficients[k].add(c.double().mul(next)).sub(after));
+            k -= 1;
+        }
+        self.coefficients[0].add(c.mul(next)).sub(after)
+    }
+
     /// Coefficient of `T_k`.
     pub const fn coefficient(&self, k: usize) -> Interval {
         if k < self.len { self.coefficients[k] } else { Interval::ZERO }

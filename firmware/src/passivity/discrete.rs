@@ -142,7 +142,7 @@ const fn real_part(g: &Reduced, closeness: &Precision) -> Result<RealPart, Index
 }
 
 /// The kernel of the poles at 1 and -1, and the power of `z` that is left beside it.
-const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
+pub(super) const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
     // 1 / (z^2 - 2 c0 z + 1) = z^-1 / (2 (c - c0)) on the circle.
     let shift = if g.pair.is_some() { g.shift - 1 } else { g.shift };
     match (g.at_one, g.at_minus_one) {
@@ -154,7 +154,7 @@ const fn kernel_of(g: &Reduced) -> (Kernel, i32) {
 }
 
 /// Residues at `z = 1` and `z = -1`: `k = residue / z_0` must be positive.
-const fn residues_at_real_points(g: &Reduced) -> Result<(), IndexError> {
+pub(super) const fn residues_at_real_points(g: &Reduced) -> Result<(), IndexError> {
     if g.at_one {
         let residue = residue_at(g, UnitRoot::Plus);
         if residue.is_negative() {

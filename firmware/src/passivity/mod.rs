@@ -12,7 +12,9 @@
 pub mod bernstein;
 pub mod chebyshev;
 pub mod discrete;
+mod exponential;
 pub mod interval;
+pub mod lagged;
 pub mod poles;
 pub mod polynomial;
 mod rounding;

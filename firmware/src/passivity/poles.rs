@@ -71,6 +71,8 @@ pub enum UndecidedReason {
     NoNonlinearBound,
     /// The environment is stated by a bound, without a transfer function.
     NoTransferFunction,
+    /// Updates may be missed and the torque lags.
+    MissedWithLatency,
 }
 
 /// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.
@@ -120,6 +122,12 @@ pub const fn cancelled(g: &Transfer) -> Transfer {
     if g.numerator.is_zero() { *g } else { Work::new(g, true).wide }
 }
 
+/// The same with the coefficients as they are.
+#[inline(never)]
+pub const fn cancelled_exactly(g: &Transfer) -> Transfer {
+    if g.numerator.is_zero() { *g } else { Work::new(g, false).exact }
+}
+
 const fn constant_zero() -> Reduced {
     Reduced {
         scale: Interval::ONE,
@@ -132,7 +140,7 @@ const fn constant_zero() -> Reduced {
     }
 }
 
-const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
+pub(super) const fn zeros_multiplied(g: &Transfer) -> Option<Polynomial> {
     let ones = if g.ones > 0 { g.ones as usize } else { 0 };
     let minus = if g.minus_ones > 0 { g.minus_ones as usize } else { 0 };
     let Some(p) = g.numerator.times_unit_root(UnitRoot::Plus, ones) else { return None };

@@ -118,6 +118,36 @@ impl Transfer {
         })
     }
 
+    /// `G / (1 + V G)` behind a coupling `V = numerator / denominator`.
+    #[inline(never)]
+    pub const fn behind_rational(
+        &self,
+        numerator: &Polynomial,
+        denominator: &Polynomial,
+    ) -> Result<Self, Unbuildable> {
+        let out_of_range = Unbuildable::OutOfRange;
+        let own = self.numerator_with_roots(self.shift, self.ones, self.minus_ones);
+        let (Some(own), Some(poles)) = (own, self.denominator_with_roots()) else {
+            return Err(out_of_range);
+        };
+        let (Some(own), Some(poles)) = (own.times(numerator), poles.times(denominator)) else {
+            return Err(out_of_range);
+        };
+        let sum = poles.plus(&own.scaled(self.scale));
+        if self.denominator.is_zero() || sum.coefficient(poles.degree()).contains(0.0) {
+            return Err(Unbuildable::IllPosed);
+        }
+        let Some(zeros) = self.numerator.times(denominator) else { return Err(out_of_range) };
+        Ok(Self {
+            scale: self.scale,
+            shift: positive(self.shift),
+            ones: positive(self.ones),
+            minus_ones: positive(self.minus_ones),
+            numerator: zeros,
+            denominator: sum,
+        })
+    }
+
     /// `self + other`; `None` if the result has too high a degree.
     #[inline(never)]
     pub const fn plus(&self, other: &Self) -> Option<Self> {

@@ -7,12 +7,12 @@ pub use prepared_servo::{PreparedServo, RenderingOptions, TimingLimits};
 
 pub use crate::build_error::BuildError;
 pub use crate::environment::{Delayed, SupportsTiming};
-pub use crate::output_timing::{Latched, OutputMode, OutputTiming, Simultaneous};
+pub use crate::output_timing::{AtPhase, Latched, OutputMode, OutputTiming, Simultaneous};
 pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
 use crate::certificate::{Certified, certify_scene};
-use crate::coupling::{Response, Solver};
+use crate::coupling::{Coupling, Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
@@ -91,11 +91,14 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
         let law = scene.environment.law(&scene.setting()?)?;
+        if law.has_memory() != matches!(scene.coupling, Coupling::Matched) {
+            return Err(BuildError::CouplingMemory);
+        }
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)
                 .map_err(|reason| BuildError::Unrepresentable { name: "encoder step", reason })?,
-            solver: Solver::new(scene.coupling, law.slopes())?,
+            solver: Solver::new(scene.context().compliance(N::FORMAT)?, law.slopes())?,
             law,
             limiter: transducers.limiter(scene.torque_limit)?,
             code_scale: N::code_scale(codes_per_torque)
@@ -126,7 +129,9 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         action: &mut impl Action<N>,
     ) -> Output {
         match M::TIMING {
-            OutputTiming::Simultaneous => self.tick_zero_delay(raw, action),
+            OutputTiming::Simultaneous | OutputTiming::AtPhase(_) => {
+                self.tick_zero_delay(raw, action)
+            }
             OutputTiming::Latched => self.tick_latched(raw, action),
         }
     }
@@ -135,6 +140,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw);
+        let x = x.minus(self.law.lasting_deflection());
         let offer = action.add_to(self.law.evaluate(x));
         let output = self.solve_to_code(offer, fits);
         self.update_environment(x, action);
@@ -160,17 +166,18 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
-        let x = N::from_f64(angle)?;
+        let x = N::from_f64(angle)?.minus(self.law.lasting_deflection());
         self.solve_to_code(self.law.evaluate(x), true);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
     }
 
-    /// Ends the tick with the device at `x` (rad) under this tick's torque.
+    /// Ends the tick with the device at `x` (rad), less the lasting deflection, under this tick's torque.
     #[inline(always)]
     fn update_environment(&mut self, x: N, action: &mut impl Action<N>) {
         let x_e = self.solver.environment_position(x, self.torque);
         self.law.update(x_e);
+        self.law.remember(self.torque);
         action.update(x_e);
     }
 

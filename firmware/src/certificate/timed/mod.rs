@@ -102,6 +102,18 @@ pub enum TimingError {
         /// rigid.
         limit: Option<f64>,
     },
+    /// The board puts torques out at another time than the scene says.
+    Phase {
+        /// The scene's output delay in s; the middle of its range.
+        scene: f64,
+        /// That of the board in s.
+        board: f64,
+    },
+    /// A board reads counts later than the scene allows for.
+    Jitter {
+        /// The scene's output jitter in s.
+        jitter: f64,
+    },
     /// The scene would pass if each count were read at the very beginning of its period.
     ReadLate {
         /// Its period in s.
@@ -128,6 +140,23 @@ impl TimingError {
                 t.push(" N m s/rad below ");
                 t.push_number(*limit);
                 t.push(" N m s/rad for that: make the environment a little softer");
+            }
+            Self::Phase { scene, board } => {
+                t.push("the scene has an output delay of ");
+                t.push_number(*scene);
+                t.push(" s, and this board puts its torques out ");
+                t.push_number(*board);
+                t.push(" s after the beginning of a period");
+            }
+            Self::Jitter { jitter } => {
+                t.push("a board reads a count up to ");
+                t.push_number(READ_WITHIN);
+                t.push(
+                    " s after the beginning of its period, which is jitter where torques lag: the ",
+                );
+                t.push("scene's output jitter has to be that at least, and is ");
+                t.push_number(*jitter);
+                t.push(" s");
             }
             Self::NotLate => t.push(
                 "the environment is not late by a whole sample, but on this board a torque takes \
@@ -218,11 +247,16 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if first_invalid_number(scene).is_some() {
         return Err(Step::Certificate);
     }
+    if !is_at_its_phase::<M>(scene) {
+        return Err(Step::Certificate);
+    }
     let n = &LoopIntervals::of_late(scene, is_late, format);
     let solved = match M::TIMING {
         OutputTiming::Latched if is_late => Some(Interval::ONE),
         OutputTiming::Latched => None,
-        OutputTiming::Simultaneous => largest_solved::<E>(&scene.environment, n),
+        OutputTiming::Simultaneous | OutputTiming::AtPhase(_) => {
+            largest_solved::<E>(&scene.environment, n)
+        }
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
     let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
@@ -241,6 +275,15 @@ pub(super) const fn agree<M: OutputMode>(
 ) -> Result<Limited, TimingError> {
     if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
+    }
+    if !is_at_its_phase::<M>(scene) {
+        let board = board_delay::<M>();
+        return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
+    }
+    let is_on_a_board = !matches!(M::TIMING, OutputTiming::Simultaneous);
+    let jitter = scene.latency.output_jitter;
+    if is_on_a_board && !scene.latency.is_none() && jitter < READ_WITHIN {
+        return Err(TimingError::Jitter { jitter });
     }
     let n = &LoopIntervals::of(scene, assessment.format);
     let bound = limited_bound(scene, assessment.rule, assessment.bound, n);
@@ -270,6 +313,27 @@ pub(super) const fn agree<M: OutputMode>(
     })
 }
 
+/// Whether the board's torques come when the scene says, to a part in a billion, which the jitter that
+/// a board needs is far above. A simulation puts them out as the scene says.
+const fn is_at_its_phase<M: OutputMode>(scene: &Scene) -> bool {
+    let delay = scene.latency.output_delay;
+    let board = board_delay::<M>();
+    match M::TIMING {
+        OutputTiming::Simultaneous => true,
+        OutputTiming::Latched => delay.is_zero(),
+        OutputTiming::AtPhase(_) => delay.is_exact() && (delay.least - board).abs() <= 1e-9 * board,
+    }
+}
+
+/// Time in s from a count to the torque that the servo computes from it, beside an environment's whole
+/// samples.
+const fn board_delay<M: OutputMode>() -> f64 {
+    match M::TIMING {
+        OutputTiming::AtPhase(nanoseconds) => nanoseconds as f64 / 1e9,
+        OutputTiming::Latched | OutputTiming::Simultaneous => 0.0,
+    }
+}
+
 /// Whether a scene stands counts that are read up to [`READ_WITHIN`] after the beginning of a period,
 /// as they are where torques are latched.
 const fn stands_counts_read_late<M: OutputMode>(
@@ -277,7 +341,12 @@ const fn stands_counts_read_late<M: OutputMode>(
     scene: &Scene,
     n: &LoopIntervals,
 ) -> bool {
+    if !matches!(M::TIMING, OutputTiming::Simultaneous) && n.latency.is_some() {
+        return scene.latency.output_jitter >= READ_WITHIN;
+    }
     match M::TIMING {
+        // Only behind the coupling that was made for it.
+        OutputTiming::AtPhase(_) => false,
         OutputTiming::Latched => {
             scene.timing.period > READ_WITHIN && limited.bound.is_below(read_late(limited, n))
         }

@@ -178,8 +178,7 @@ impl BenchJob<'_> {
     /// Its ticks, as a servo of this environment.
     fn run<E: Discretize<N>, N: Number>(self, environment: E) -> Result<(), HostClosed> {
         let Scene { device, timing, coupling, latency, torque_limit, .. } = *self.scene;
-        let scene =
-            Scene { device, timing, coupling, environment, latency, torque_limit };
+        let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
         self.host.ticks::<E, N>(scene, self.transducers)
     }
 

@@ -1,0 +1,177 @@
+//! Environments behind the coupling that absorbs latency.
+
+use super::delay_line::{DelayLine, FixedDelay};
+use super::law::{Discretize, Law, LawContext};
+use crate::build_error::BuildError;
+use crate::coupling::{Coupling, Response, Slopes};
+use crate::matched::{MatchedCoupling, Trail};
+use crate::number::Number;
+use crate::parameter::{NamedParameters, Parameter};
+
+/// An environment behind [`Coupling::Matched`]: the coupling's memory is part of the type, so that a scene
+/// without latency has none.
+///
+/// `WHOLE` is the whole samples in the scene's output delay, `LAGS` how many of amplifier and sensor lag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0> {
+    /// The environment.
+    pub environment: E,
+}
+
+impl<E: NamedParameters, const WHOLE: usize, const LAGS: usize> NamedParameters
+    for Matched<E, WHOLE, LAGS>
+{
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        self.environment.value(parameter)
+    }
+}
+
+/// What a coupling remembers of past torques.
+#[derive(Clone, Debug)]
+pub struct CouplingMemory<N: Number, D, const LAGS: usize> {
+    held: N::Coefficient,
+    arriving: N::Coefficient,
+    trails: [Fading<N>; LAGS],
+    torques: D,
+    deflection: N,
+}
+
+#[derive(Clone, Debug)]
+struct Fading<N: Number> {
+    gain: N::Coefficient,
+    decay: N::Coefficient,
+    torque: N,
+}
+
+impl<N: Number> Fading<N> {
+    fn of(trail: Trail) -> Result<Self, BuildError> {
+        Ok(Self {
+            gain: BuildError::coefficient::<N>("coupling's gain after a lag", trail.gain)?,
+            decay: BuildError::coefficient::<N>("decay of a lag", trail.decay)?,
+            torque: N::ZERO,
+        })
+    }
+}
+
+impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
+    /// Of a matched coupling, with a line as long as its whole samples, full of zeros.
+    ///
+    /// # Errors
+    /// Where a coefficient does not fit the number format, or there are more lags than it can hold.
+    pub(crate) fn new(coupling: &MatchedCoupling, torques: D) -> Result<Self, BuildError> {
+        let lags = coupling.trails.iter().filter(|trail| trail.gain != 0.0);
+        if lags.clone().count() > LAGS {
+            return Err(BuildError::CouplingMemory);
+        }
+        let nothing = Fading::of(Trail { gain: 0.0, decay: 0.0 })?;
+        let mut trails: [Fading<N>; LAGS] = core::array::from_fn(|_| nothing.clone());
+        for (place, trail) in trails.iter_mut().zip(lags) {
+            *place = Fading::of(*trail)?;
+        }
+        Ok(Self {
+            held: BuildError::coefficient::<N>("coupling's compliance", coupling.held)?,
+            arriving: BuildError::coefficient::<N>("coupling's compliance", coupling.arriving)?,
+            trails,
+            torques,
+            deflection: N::ZERO,
+        })
+    }
+
+    /// Deflection in rad in this tick of the torques of earlier ticks.
+    #[inline(always)]
+    pub(crate) fn deflection(&self) -> N {
+        self.deflection
+    }
+
+    /// Ends the tick with this torque in N m.
+    #[inline(always)]
+    pub(crate) fn remember(&mut self, torque: N) {
+        let arriving = match self.torques.due() {
+            None => torque,
+            Some(oldest) => {
+                self.torques.push(torque);
+                oldest
+            }
+        };
+        let mut deflection = arriving.times(self.arriving);
+        if self.torques.due().is_some() {
+            deflection = deflection.plus(self.torques.sum().times(self.held));
+        }
+        for trail in &mut self.trails {
+            deflection = deflection.plus(trail.torque.times(trail.gain));
+            trail.torque = trail.torque.times(trail.decay).plus(arriving);
+        }
+        self.deflection = deflection;
+    }
+
+    /// Forgets all torques.
+    pub(crate) fn rest(&mut self) {
+        self.torques.fill(N::ZERO);
+        self.trails.iter_mut().for_each(|trail| trail.torque = N::ZERO);
+        self.deflection = N::ZERO;
+    }
+}
+
+/// The law of an environment behind a coupling with memory.
+#[derive(Clone, Debug)]
+pub struct MatchedLaw<N: Number, L, D, const LAGS: usize> {
+    law: L,
+    memory: CouplingMemory<N, D, LAGS>,
+}
+
+impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
+    for MatchedLaw<N, L, D, LAGS>
+{
+    #[inline(always)]
+    fn evaluate(&self, x: N) -> Response<N> {
+        self.law.evaluate(x)
+    }
+
+    #[inline(always)]
+    fn update(&mut self, x_e: N) {
+        self.law.update(x_e);
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        self.law.rest_at(x_e);
+        self.memory.rest();
+    }
+
+    fn slopes(&self) -> Slopes {
+        self.law.slopes()
+    }
+
+    fn has_memory(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn lasting_deflection(&self) -> N {
+        self.memory.deflection()
+    }
+
+    #[inline(always)]
+    fn remember(&mut self, torque: N) {
+        self.memory.remember(torque);
+    }
+}
+
+impl<N: Number, E: Discretize<N>, const WHOLE: usize, const LAGS: usize> Discretize<N>
+    for Matched<E, WHOLE, LAGS>
+{
+    type Law = MatchedLaw<N, E::Law, FixedDelay<N, WHOLE>, LAGS>;
+
+    fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
+        let coupling = match setting.coupling {
+            Coupling::Matched => setting.matched(N::FORMAT)?,
+            _ => return Err(BuildError::CouplingMemory),
+        };
+        if coupling.whole != WHOLE {
+            return Err(BuildError::CouplingMemory);
+        }
+        Ok(MatchedLaw {
+            law: self.environment.law(setting)?,
+            memory: CouplingMemory::new(&coupling, FixedDelay::at_rest())?,
+        })
+    }
+}

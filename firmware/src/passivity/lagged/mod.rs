@@ -1,0 +1,336 @@
+//! Passivity at the device's port where the torque lags: delays of any length, an amplifier and a
+//! sensor of first order (theory, section 13).
+//!
+//! The port is passive if and only if `delta + Re(H g) >= D abs(H)^2 / (4 delta)` on the circle
+//! (equation 38), with `g` the sampled response of hold, amplifier, integrator and sensor, and `D` the
+//! part of their response between the samples. Both are rational, so that the bound of
+//! [`super::bernstein`] encloses the whole of it.
+//!
+//! All times in this module are in periods.
+
+use super::bernstein::{Minimum, Precision, minimum};
+use super::chebyshev::{Kernel, Series};
+use super::discrete::{RealPart, kernel_of, residues_at_real_points};
+use super::interval::Interval;
+use super::poles::{
+    IndexError, Reduced, UndecidedReason, cancelled_exactly, reduce, zeros_multiplied,
+};
+use super::polynomial::{Polynomial, UnitRoot};
+use super::transfer::Transfer;
+
+/// Delay and lags in periods, as far as they are known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LagIntervals {
+    /// Time from count to torque.
+    pub delay: Interval,
+    /// Time constants of amplifier and sensor; exactly 0 where there is none.
+    pub lags: [Interval; 2],
+}
+
+/// What a device with ideal sampling feels of a held torque, `z^-whole g`, and what of it no sample shows.
+///
+/// `g = T (bracket(z) / (z^2 lag(z))) z / (z - 1)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledResponse {
+    /// Whole samples of delay.
+    whole: i32,
+    bracket: Polynomial,
+    /// `(z - a)` of each lag.
+    lag: Polynomial,
+    /// `D abs(lag)^2 / T^2`.
+    ripple: Series,
+}
+
+/// One lag: its time constant, and what is left of it after a tick and after the rest of a tick.
+#[derive(Clone, Copy)]
+struct Decay {
+    tau: Interval,
+    tick: Interval,
+    rest: Interval,
+}
+
+impl Decay {
+    const NONE: Self = Self { tau: Interval::ZERO, tick: Interval::ZERO, rest: Interval::ZERO };
+
+    const fn of(tau: Interval, part: Interval) -> Self {
+        if tau.is_zero() {
+            return Self::NONE;
+        }
+        let rest = Interval::ONE.sub(part).div(tau).exp_of_negative();
+        Self { tau, tick: Interval::ONE.div(tau).exp_of_negative(), rest }
+    }
+
+    /// `(1 - rest) z + (rest - tick)`
+    const fn passed(&self) -> Polynomial {
+        Polynomial::ascending(&[self.rest.sub(self.tick), Interval::ONE.sub(self.rest)])
+    }
+
+    /// `z - tick`
+    const fn pole(&self) -> Polynomial {
+        Polynomial::ascending(&[self.tick.neg(), Interval::ONE])
+    }
+
+    /// `(tau / 2) (1 - tick^2)`
+    const fn spread(&self) -> Interval {
+        self.tau.half().mul(Interval::ONE.sub(self.tick.mul(self.tick)))
+    }
+}
+
+impl LagIntervals {
+    /// Pieces of the delay's range, each within a sample: at least one.
+    pub const fn pieces(&self) -> usize {
+        (self.last_whole() - self.first_whole()) as usize + 1
+    }
+
+    const fn first_whole(&self) -> i32 {
+        self.delay.lo().max(0.0) as i32
+    }
+
+    const fn last_whole(&self) -> i32 {
+        self.delay.hi().max(0.0) as i32
+    }
+
+    /// The response with a delay in one of the pieces.
+    ///
+    /// `None` where two lags are too much alike for their difference to be told from zero.
+    pub const fn response(&self, piece: usize) -> Option<SampledResponse> {
+        let whole = self.first_whole() + piece as i32;
+        let part = self.delay.sub(Interval::exact(whole as f64));
+        let part = part.and(Interval::new(0.0, 1.0));
+        let first = Decay::of(self.lags[0], part);
+        let second = Decay::of(self.lags[1], part);
+        match (first.tau.is_zero(), second.tau.is_zero()) {
+            (true, true) => SampledResponse::of(whole, part, None, None),
+            (false, true) => SampledResponse::of(whole, part, Some(first), None),
+            (true, false) => SampledResponse::of(whole, part, Some(second), None),
+            (false, false) => SampledResponse::of(whole, part, Some(first), Some(second)),
+        }
+    }
+}
+
+impl SampledResponse {
+    const fn of(
+        whole: i32,
+        part: Interval,
+        first: Option<Decay>,
+        second: Option<Decay>,
+    ) -> Option<Self> {
+        let rest = Interval::ONE.sub(part);
+        let held = Polynomial::ascending(&[part, rest]);
+        let lateness = Series::constant(part.mul(rest));
+        let Some(first) = first else {
+            let lag = Polynomial::ascending(&[Interval::ONE]);
+            return Some(Self { whole, bracket: held, lag, ripple: lateness });
+        };
+        let Some((lag, lost)) = lost(first, second) else { return None };
+        let Some(bracket) = bracket(&held, &lag, &lost) else { return None };
+        // `1 - part + part z`, the conjugate of what is held.
+        let Some(early) = Polynomial::ascending(&[rest, part]).times(&lost) else { return None };
+        let Some(cross) = Series::real_part(Kernel::AtOne, -1, &early, &lag) else { return None };
+        let Some(mut ripple) = lateness.times(&Series::squared_magnitude(&lag)) else {
+            return None;
+        };
+        ripple = ripple.minus(&cross).minus(&Series::squared_magnitude(&lost));
+        ripple = match second {
+            None => ripple.minus(&Series::constant(first.spread())),
+            Some(second) => {
+                let (a, b) = (first.spread(), second.spread());
+                let spread = Series::squared_magnitude(&second.pole()).scaled(a);
+                ripple = ripple.minus(&spread);
+                ripple = ripple.minus(&Series::squared_magnitude(&first.pole()).scaled(b));
+                // 2 (1 - c) a b
+                let both = a.mul(b).double();
+                ripple.plus(&Series::linear(both, both.neg()))
+            }
+        };
+        Some(Self { whole, bracket, lag, ripple })
+    }
+}
+
+/// `(z - a)` of each lag, and the numerator over `z` times that of what the lags hold back.
+const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polynomial)> {
+    let Some(second) = second else {
+        return Some((first.pole(), first.passed().scaled(first.tau)));
+    };
+    let apart = first.tau.sub(second.tau);
+    if apart.contains(0.0) {
+        return None;
+    }
+    let weights =
+        [first.tau.mul(first.tau).div(apart), second.tau.mul(second.tau).div(apart.neg())];
+    let one = first.passed().scaled(weights[0]).times(&second.pole());
+    let other = second.passed().scaled(weights[1]).times(&first.pole());
+    let (Some(one), Some(other)) = (one, other) else { return None };
+    match first.pole().times(&second.pole()) {
+        Some(lag) => Some((lag, one.plus(&other))),
+        None => None,
+    }
+}
+
+/// `held(z) lag(z) - (z - 1) lost(z)`
+const fn bracket(held: &Polynomial, lag: &Polynomial, lost: &Polynomial) -> Option<Polynomial> {
+    let (Some(held), Some(lost)) = (held.times(lag), lost.times_unit_root(UnitRoot::Plus, 1))
+    else {
+        return None;
+    };
+    Some(held.plus(&lost.scaled(Interval::ONE.neg())))
+}
+
+/// A controller in front of a response, with the two parts of equation 38 as series in
+/// `c = cos(theta)`.
+pub struct Port {
+    /// `2 Re(H g) r / scale`.
+    real: Series,
+    scale: Interval,
+    /// `D abs(H)^2 r`.
+    ripple: Series,
+    /// Common denominator, positive.
+    r: Series,
+    ends: [Interval; 2],
+}
+
+impl Port {
+    /// Of a controller `H` from position to torque; its poles have to be inside of the circle and
+    /// `H(1)` may not be negative (theory, section 13).
+    ///
+    /// # Errors
+    /// Where they are not, or where a pole on the circle or a number out of range leaves it open.
+    #[inline(never)]
+    pub const fn new(
+        controller: &Transfer,
+        response: &SampledResponse,
+        period: Interval,
+        added_ripple: Interval,
+    ) -> Result<Self, IndexError> {
+        let h = match stable(controller) {
+            Ok(h) => h,
+            Err(error) => return Err(error),
+        };
+        let out_of_range = IndexError::Undecided(UndecidedReason::OutOfRange);
+        let velocity = match lagging(&h, response, period) {
+            Ok(velocity) => velocity,
+            Err(error) => return Err(error),
+        };
+        if let Err(error) = residues_at_real_points(&velocity) {
+            return Err(error);
+        }
+        let (kernel, shift) = kernel_of(&velocity);
+        let (n, d) = (&velocity.numerator, &velocity.denominator);
+        let Some(real) = Series::real_part(kernel, shift, n, d) else { return Err(out_of_range) };
+        let Some(zeros) = zeros_multiplied(&h) else { return Err(out_of_range) };
+        let gain = h.scale.mul(period);
+        let squared = Series::squared_magnitude(&zeros).scaled(gain.mul(gain));
+        let lag = Series::squared_magnitude(&response.lag).scaled(added_ripple);
+        let Some(ripple) = response.ripple.plus(&lag).times(&squared) else {
+            return Err(out_of_range);
+        };
+        let (left, right) = (d.at_unit_root(UnitRoot::Minus), d.at_unit_root(UnitRoot::Plus));
+        Ok(Self {
+            real,
+            scale: velocity.scale,
+            ripple,
+            r: Series::squared_magnitude(d),
+            ends: [left.mul(left), right.mul(right)],
+        })
+    }
+
+    /// Encloses the largest `-Re(H g) + D abs(H)^2 / (4 delta)`: below `delta` if and only if the port
+    /// is passive.
+    ///
+    /// # Errors
+    /// Where a pole is too near the circle for a bound.
+    #[inline(never)]
+    pub const fn index_for(
+        &self,
+        delta: Interval,
+        closeness: &Precision,
+    ) -> Result<RealPart, IndexError> {
+        let quarter = Interval::ONE.div(delta.double().double());
+        let p = self.real.scaled(self.scale.half()).minus(&self.ripple.scaled(quarter));
+        let Minimum { value, at } = minimum(&p, &self.r, self.ends, closeness);
+        if value.is_finite() {
+            Ok(RealPart { minimum: value.neg(), cos_theta: at })
+        } else {
+            Err(IndexError::Undecided(UndecidedReason::PoleNearCircle))
+        }
+    }
+
+    /// The passivity that is needed at one `c`: the larger root in `delta` of equation 38 with equality.
+    const fn needed_at(&self, c: f64) -> Interval {
+        let c = Interval::exact(c);
+        let r = self.r.at(c);
+        let half = self.real.at(c).mul(self.scale).half().div(r).half();
+        let ripple = self.ripple.at(c).div(r);
+        let ripple = Interval::new(ripple.lo().max(0.0), ripple.hi().max(0.0));
+        let quarter = ripple.half().half();
+        half.mul(half).add(quarter).sqrt().sub(half)
+    }
+
+    /// Encloses the least passivity with which the port is passive, in N m s/rad: the largest of
+    /// `needed_at` over the circle. `start` is a positive guess.
+    ///
+    /// What is needed at the place where the index for one `delta` is largest is a better `delta`; the
+    /// last of these, and a little more, is proved to be enough.
+    ///
+    /// # Errors
+    /// Where a pole is too near the circle for a bound.
+    #[inline(never)]
+    pub const fn needed(&self, start: f64) -> Result<Interval, IndexError> {
+        let (mut delta, mut enough, mut slack) = (start, f64::INFINITY, 0.25 * PORT_TOLERANCE);
+        let mut least = self.needed_at(1.0).lo().max(self.needed_at(-1.0).lo()).max(0.0);
+        let mut round = 0;
+        while round < ROUNDS && enough > least + PORT_TOLERANCE * least {
+            let found = match self.index_for(Interval::exact(delta), &Precision::TIGHT) {
+                Ok(found) => found,
+                Err(error) => return Err(error),
+            };
+            if found.minimum.hi() <= delta {
+                enough = enough.min(delta);
+            }
+            let seen = self.needed_at(found.cos_theta.midpoint()).lo();
+            if seen > least {
+                least = seen;
+            } else if found.minimum.hi() > delta {
+                // Rounding hides a closer one.
+                slack *= 4.0;
+            }
+            delta = (least + slack * least).max(f64::MIN_POSITIVE);
+            round += 1;
+        }
+        Ok(Interval::new(least, enough))
+    }
+}
+
+/// Rounds of the search for the passivity that is needed; it converges as Newton's method does.
+const ROUNDS: u32 = 40;
+/// Width of its result relative to its magnitude.
+const PORT_TOLERANCE: f64 = 2e-10;
+
+/// The controller without exact common factors, where its poles are all inside of the circle.
+#[inline(never)]
+const fn stable(controller: &Transfer) -> Result<Transfer, IndexError> {
+    match reduce(controller, false) {
+        Ok(Reduced { at_one: false, at_minus_one: false, pair: None, .. }) => {
+            Ok(cancelled_exactly(controller))
+        }
+        Ok(_) => Err(IndexError::Undecided(UndecidedReason::PoleNearCircle)),
+        Err(error) => Err(error),
+    }
+}
+
+/// `H g` from velocity, with its poles told apart.
+#[inline(never)]
+const fn lagging(
+    h: &Transfer,
+    response: &SampledResponse,
+    period: Interval,
+) -> Result<Reduced, IndexError> {
+    let out_of_range = IndexError::Undecided(UndecidedReason::OutOfRange);
+    let Some(numerator) = h.numerator.times(&response.bracket) else { return Err(out_of_range) };
+    let Some(denominator) = h.denominator.times(&response.lag) else { return Err(out_of_range) };
+    let delayed = Transfer { shift: h.shift - response.whole - 2, numerator, denominator, ..*h };
+    reduce(&delayed.from_velocity(period), false)
+}
+
+#[cfg(test)]
+mod tests;
