@@ -3,7 +3,7 @@
 use firmware::certificate::PassivityProblem;
 use firmware::environment::Wall;
 use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::{Coupling, Latency, Scene, Timing};
+use firmware::scene::{Coupling, Scene, Timing};
 
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
@@ -51,7 +51,7 @@ pub fn at_period(scene: &Scene, period: f64) -> Scene {
     let worst_period = scene.timing.worst_period.map(|worst| worst * ratio);
     let timed = Scene { timing: Timing { period, worst_period }, ..*scene };
     match scene.coupling {
-        Coupling::Rigid => timed,
+        Coupling::Rigid | Coupling::Matched => timed,
         Coupling::Spring { .. } => {
             let stiffness = standard_coupling(&timed);
             Scene { coupling: Coupling::Spring { stiffness }, ..timed }
@@ -159,7 +159,7 @@ impl Curves {
             Limit::RoundUp3(stiffness) => (stiffness, self.used * stiffness),
             Limit::Any => match timed.coupling {
                 Coupling::Spring { stiffness } => (stiffness, RIGID * stiffness),
-                Coupling::Rigid => return None,
+                Coupling::Rigid | Coupling::Matched => return None,
             },
         };
         let ripple = error_gain(&with_wall(&timed, used, None)).ok();

@@ -178,6 +178,7 @@ fn numbers(report: &VerdictReport, scene: &Scene) -> Markup {
     let hertz = significant(1.0 / period, 6);
     let coupling = match scene.coupling {
         Coupling::Rigid => "rigid".to_owned(),
+        Coupling::Matched => "matched to the latency".to_owned(),
         Coupling::Spring { stiffness } => format!("{} N m/rad", significant(stiffness, 6)),
     };
     let damping = |value: f64| format!("{} N m s/rad", significant(value, 6));

@@ -68,7 +68,7 @@ impl Device {
 
 impl<E> Scene<E> {
     /// The rest of the scene, for the environment.
-    pub(crate) const fn context(&self) -> LawContext {
+    pub const fn context(&self) -> LawContext {
         LawContext {
             period: self.timing.period,
             damping: self.device.damping,

@@ -11,7 +11,7 @@ pub struct Text<const N: usize> {
 }
 
 /// A sentence about a scene.
-pub type Sentence = Text<640>;
+pub type Sentence = Text<800>;
 
 impl<const N: usize> Text<N> {
     /// Bytes that fit.

@@ -84,6 +84,7 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
     let period = q(scene.timing.period);
     let stiffness = match scene.coupling {
         Coupling::Rigid => None,
+        Coupling::Matched => unreachable!("not drawn"),
         Coupling::Spring { stiffness } => Some(q(stiffness)),
     };
     let compliance = stiffness.as_ref().map(|k| not_below(&(Q::one() / k), format));

@@ -85,6 +85,7 @@ impl Frame {
                 period: q(period),
                 delta: q(delta),
                 coupling: match coupling {
+                    Coupling::Matched => unreachable!("not drawn"),
                     Coupling::Rigid => None,
                     Coupling::Spring { stiffness } => Some(q(stiffness)),
                 },
@@ -202,6 +203,7 @@ pub fn free_fraction(cancelled: f64, frame: &Frame, delay: usize) -> (Poly, Poly
     let (be, t) = (q(cancelled), q(frame.period));
     let compliance = match frame.coupling {
         Coupling::Rigid => Q::zero(),
+        Coupling::Matched => unreachable!("not drawn"),
         Coupling::Spring { stiffness } => Q::one() / q(stiffness),
     };
     let step = Poly::integers(&[-1, 1]).scaled(&be);

@@ -227,7 +227,7 @@ fn last_that_certifies(value: f64, unit: &str) -> String {
 /// A design's changes of a scene besides the sought number, as sentences.
 fn changed(file: &SceneFile, designed: &SceneFile) -> Vec<String> {
     let stiffness = |file: &SceneFile| match file.scene.coupling {
-        Coupling::Rigid => None,
+        Coupling::Rigid | Coupling::Matched => None,
         Coupling::Spring { stiffness } => Some(stiffness),
     };
     let words = |stiffness: Option<f64>| {

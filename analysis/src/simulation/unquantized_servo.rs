@@ -3,7 +3,8 @@
 //! Nothing here is certified: what a scene would do is asked before it is safe.
 
 use firmware::coupling::Solver;
-use firmware::environment::{Discretize, EnvironmentLaw, Law, LawContext};
+use firmware::environment::{DataLaw, Discretize, Law};
+use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::servo::BuildError;
 use firmware::torque::{LimitReason, Limiter};
@@ -11,7 +12,7 @@ use firmware::torque::{LimitReason, Limiter};
 /// Environment and coupling of a scene, initially at rest at zero.
 #[derive(Clone, Debug)]
 pub struct UnquantizedServo {
-    law: EnvironmentLaw<f64>,
+    law: DataLaw<f64>,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
 }
@@ -23,13 +24,9 @@ impl UnquantizedServo {
     /// Where coupling and environment have no unique solution, or the environment needs samples
     /// from the future.
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
-        let setting = LawContext {
-            period: scene.timing.period,
-            damping: scene.device.damping,
-            coupling: scene.coupling,
-        };
-        let law = scene.environment.law(&setting)?;
-        let solver = Solver::new(scene.coupling, law.slopes())?;
+        let context = scene.context();
+        let law = Discretize::<f64>::law(&scene.environment, &context)?;
+        let solver = Solver::new(context.compliance(Format::F64)?, law.slopes())?;
         // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
         Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })
@@ -39,9 +36,11 @@ impl UnquantizedServo {
     /// coupling is solved, and the reason if it was limited; `otherwise` if not. The motor applies
     /// `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
+        let x = x - self.law.lasting_deflection();
         let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);
         self.law.update(self.solver.environment_position(x, torque));
+        self.law.remember(torque);
         (torque, limit)
     }
 }

@@ -39,7 +39,7 @@ impl Borders {
         Ok(Self {
             tick: experiment.tick(integration)?,
             compliance: match scene.coupling {
-                Coupling::Rigid => 0.0,
+                Coupling::Rigid | Coupling::Matched => 0.0,
                 Coupling::Spring { stiffness } => 1.0 / stiffness,
             },
             environments: [environment(0.0)?, environment(unit)?],

@@ -186,7 +186,13 @@ fn torques<const DELAY: usize>(
     positions: &[f64],
     level: f64,
 ) -> Vec<f64> {
-    let context = LawContext { period: 0.001, damping: 0.022, coupling: Coupling::Rigid };
+    let context = LawContext {
+        period: 0.001,
+        damping: 0.022,
+        passivity: 0.022,
+        coupling: Coupling::Rigid,
+        latency: Latency::NONE,
+    };
     let mut law = <ProgressiveSpring<DELAY> as Discretize<f64>>::law(&spring, &context).unwrap();
     let tick = |x: &f64| {
         let Response::Held(torque) = law.evaluate(*x) else { panic!("it is late") };

@@ -228,7 +228,7 @@ impl<E: Copy> Certified<Scene<E>> {
     where
         E: SupportsTiming<M>,
     {
-        match timed::agree::<M>(&self.data, &self.assessment) {
+        match timed::agree(M::TIMING, &self.data, &self.assessment) {
             Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
             Err(error) => Err(error),
         }

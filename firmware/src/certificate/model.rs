@@ -100,10 +100,16 @@ impl Missed {
 
 impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
-        Self::of_late(scene, scene.environment.is_late(), format)
+        let mut out = Self::of_late(scene, scene.environment.is_late(), format);
+        if let (Some(stiffness), None) = (out.coupling, &out.latency) {
+            let written = Interval::ONE.div(stiffness);
+            out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
+        }
+        out
     }
 
-    /// The same where it is known whether the environment [is late](Environment::is_late).
+    /// The same where it is known whether the environment [is late](Environment::is_late), for the paper's
+    /// rule, which does not ask whether the coupling is the standard one.
     pub const fn of_late(scene: &Scene, is_late: bool, format: Format) -> Self {
         let period = Interval::decimal(scene.timing.period);
         let delta = Interval::decimal(match scene.device.passivity {
@@ -137,7 +143,6 @@ impl LoopIntervals {
             }
         };
         let compliance = rounded(written, format, Rounding::Outward);
-        let is_standard = written.sub(standard(period, delta)).contains(0.0);
         let mut out = Self {
             period,
             delta,
@@ -145,7 +150,7 @@ impl LoopIntervals {
             cancelled,
             coupling,
             compliance,
-            is_standard,
+            is_standard: false,
             format,
             misses_updates: matches!(
                 scene.timing.worst_period,
@@ -165,7 +170,6 @@ impl LoopIntervals {
     const fn add_latency(&mut self, scene: &Scene) {
         let latency = scene.latency;
         let mut lagging = Lagging { latency, matched: None, limit: None };
-        self.is_standard = false;
         if self.misses_updates {
             // No proof covers both.
         } else if self.is_matched {
@@ -186,6 +190,22 @@ impl LoopIntervals {
     /// The coefficient that a servo makes of a value.
     const fn coefficient(&self, value: Interval) -> Interval {
         rounded(value, self.format, Rounding::Nearest)
+    }
+
+    /// The whole controller of an environment behind the coupling.
+    #[inline(never)]
+    pub const fn behind_coupling(&self, environment: &Transfer) -> Result<Transfer, Unbuildable> {
+        let Some(lagging) = &self.latency else { return environment.behind(self.compliance) };
+        match &lagging.matched {
+            Some(matched) => match matched.transfer() {
+                Some((numerator, denominator)) => {
+                    environment.behind_rational(&numerator, &denominator)
+                }
+                None => Err(Unbuildable::OutOfRange),
+            },
+            None if self.is_matched => Err(Unbuildable::OutOfRange),
+            None => environment.behind(self.compliance),
+        }
     }
 
     /// `K_vc T / 2`, the damping that the coupling stands for; `None`: rigid.
@@ -616,11 +636,11 @@ impl LoopTransfers {
             Ok(found) => found,
             Err(error) => return Err(error),
         };
-        let controller = match environment.behind(n.compliance) {
+        let controller = match n.behind_coupling(&environment) {
             Ok(controller) => controller,
             Err(error) => return Err(error),
         };
-        let equivalent = if n.is_standard {
+        let equivalent = if n.is_standard || n.is_matched {
             environment
         } else {
             match environment.behind(n.excess_compliance()) {

@@ -226,17 +226,7 @@ impl PassivityProblem {
             return Err(IndexError::Undecided(UndecidedReason::MissedWithLatency));
         }
         let Some(deviation) = Deviation::of(&lagging, &self.numbers) else { return Err(UNKNOWN) };
-        let environment = cancelled(&self.environment);
-        let controller = match &lagging.matched {
-            Some(matched) => {
-                let Some((numerator, denominator)) = matched.transfer() else {
-                    return Err(UNKNOWN);
-                };
-                environment.behind_rational(&numerator, &denominator)
-            }
-            None if self.numbers.is_matched => return Err(UNKNOWN),
-            None => environment.behind(self.numbers.compliance),
-        };
+        let controller = self.numbers.behind_coupling(&cancelled(&self.environment));
         match controller {
             Ok(controller) => Ok((controller, lagging, deviation)),
             Err(_) => Err(UNKNOWN),

@@ -337,6 +337,9 @@ mod tests {
             (Parameter::CouplingStiffness, exactly),
             (Parameter::Period, RANGE),
             (Parameter::Passivity, least),
+            (Parameter::OutputDelay, RANGE),
+            (Parameter::ActuatorLag, RANGE),
+            (Parameter::SensorLag, RANGE),
         ];
         let all = all.map(|(parameter, (lowest, highest))| Remedy { parameter, lowest, highest });
         let remedies = Remedies::of(all);
@@ -353,7 +356,7 @@ mod tests {
         let doubt = UndecidedReason::ResidueSign;
         let (index, limit) = (Some(long), Some(long));
         let undecided = Rejection::Undecided { doubt, index, limit, remedies };
-        let last = "device passivity >= 1.23e-22 N m s/rad";
+        let last = "1.23e-22 <= sensor lag <= 1.24e-22 s";
         let behind_standard = Some((LONG, all[0]));
         let pole = Rejection::UnstablePole {
             reflection: long,

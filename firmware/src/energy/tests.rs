@@ -99,7 +99,9 @@ proptest! {
         let setting = LawContext {
             period: PERIOD,
             damping: 0.022,
+            passivity: 0.022,
             coupling: Coupling::Spring { stiffness: 44.0 },
+            latency: Latency::NONE,
         };
         let mut law = Discretize::<f64>::law(&DelayedSpring::<1> { stiffness }, &setting).unwrap();
         let mut injector = Injector::<f64>::new(damping, PERIOD).unwrap();

@@ -57,7 +57,7 @@ impl LawContext {
     ///
     /// # Errors
     /// Where there is no such coupling.
-    pub(crate) fn compliance(&self, format: Format) -> Result<Option<f64>, BuildError> {
+    pub fn compliance(&self, format: Format) -> Result<Option<f64>, BuildError> {
         Ok(match self.coupling {
             Coupling::Rigid => None,
             Coupling::Spring { stiffness } => Some(1.0 / stiffness),

@@ -394,7 +394,13 @@ mod tests {
     }
 
     fn setting() -> LawContext {
-        LawContext { period: 1e-3, damping: 0.022, coupling: Coupling::Rigid }
+        LawContext {
+            period: 1e-3,
+            damping: 0.022,
+            passivity: 0.022,
+            coupling: Coupling::Rigid,
+            latency: Latency::NONE,
+        }
     }
 
     #[test]

@@ -43,6 +43,11 @@ impl Description {
         match self.timing {
             OutputTiming::Latched => self.by_mode::<Latched>(changes),
             OutputTiming::Simultaneous => self.by_mode::<Simultaneous>(changes),
+            timing @ OutputTiming::AtPhase(_) => {
+                let certified = tuning::apply(&self.scene, changes)?.certify_in(self.format)?;
+                certified.assessment().renders_at(certified.as_data(), timing)?;
+                Ok(())
+            }
         }
     }
 

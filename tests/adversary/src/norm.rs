@@ -92,6 +92,7 @@ impl Errors {
         let period = scene.timing.period;
         let compliance = match scene.coupling {
             Coupling::Rigid => 0.0,
+            Coupling::Matched => unreachable!("not drawn"),
             Coupling::Spring { stiffness } => 1.0 / stiffness,
         };
         // A state follows by the share `rate` of what is left, and no closer than rounding allows.

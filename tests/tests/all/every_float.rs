@@ -110,6 +110,7 @@ fn is_finite(scene: &Scene) -> bool {
         && polynomials;
     let stiffness = match scene.coupling {
         Coupling::Rigid => 1.0,
+        Coupling::Matched => unreachable!("not drawn"),
         Coupling::Spring { stiffness } => stiffness,
     };
     let device = &scene.device;

@@ -163,6 +163,7 @@ fn exact(scene: &Scene) -> Exact {
         delta: q(scene.device.passivity.unwrap_or(scene.device.damping)),
         coupling: match scene.coupling {
             Coupling::Rigid => None,
+            Coupling::Matched => unreachable!("not drawn"),
             Coupling::Spring { stiffness } => Some(q(stiffness)),
         },
     }

@@ -103,7 +103,7 @@ pub fn run(
         scene: query.name,
         rate: arguments.rate,
         coupling_stiffness: match query.problem.scene.coupling {
-            Coupling::Rigid => None,
+            Coupling::Rigid | Coupling::Matched => None,
             Coupling::Spring { stiffness } => Some(stiffness),
         },
         encoder_hum: advice.encoder_hum,

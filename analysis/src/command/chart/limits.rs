@@ -75,6 +75,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     bar.finish_and_clear();
     let coupling = match file.scene.coupling {
         Coupling::Rigid => "rigid coupling",
+        Coupling::Matched => "behind the matched coupling",
         Coupling::Spring { .. } => "behind the standard coupling 2 delta/T",
     };
     let note = format!(

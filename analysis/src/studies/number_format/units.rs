@@ -36,7 +36,7 @@ impl Units {
             },
             timing: scene.timing,
             coupling: match scene.coupling {
-                Coupling::Rigid => Coupling::Rigid,
+                coupling @ (Coupling::Rigid | Coupling::Matched) => coupling,
                 Coupling::Spring { stiffness: k } => Coupling::Spring { stiffness: k * stiffness },
             },
             environment: self.environment(scene.environment),

@@ -13,7 +13,7 @@ use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;
 use crate::environment::{Environment, EnvironmentModel};
 use crate::number::Format;
-use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, Simultaneous};
+use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::step::Step;
@@ -207,7 +207,7 @@ impl Assessment {
 
     /// [`TimingChecked::margin_with`] of that scene.
     pub const fn margin_injecting(&self, scene: &Scene, injected: f64) -> Option<f64> {
-        match agree::<Simultaneous>(scene, self) {
+        match agree(OutputTiming::Simultaneous, scene, self) {
             Ok(limited) => Some(limited.margin(injected)),
             Err(_) => None,
         }
@@ -219,7 +219,15 @@ impl Assessment {
     /// # Errors
     /// Why it does not.
     pub const fn renders_in<M: OutputMode>(&self, scene: &Scene) -> Result<(), TimingError> {
-        match agree::<M>(scene, self) {
+        self.renders_at(scene, M::TIMING)
+    }
+
+    /// The same of a mode as data.
+    ///
+    /// # Errors
+    /// Why it does not.
+    pub const fn renders_at(&self, scene: &Scene, timing: OutputTiming) -> Result<(), TimingError> {
+        match agree(timing, scene, self) {
             Ok(_) => Ok(()),
             Err(error) => Err(error),
         }
@@ -247,7 +255,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if first_invalid_number(scene).is_some() {
         return Err(Step::Certificate);
     }
-    if !is_at_its_phase::<M>(scene) {
+    if !is_at_its_phase(M::TIMING, scene) {
         return Err(Step::Certificate);
     }
     let n = &LoopIntervals::of_late(scene, is_late, format);
@@ -263,24 +271,25 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
         return Err(Step::Certificate);
     };
     match Limited::of_solved::<E>(scene, n, bound, solved) {
-        Some(limited) if stands_counts_read_late::<M>(&limited, scene, n) => Ok(limited),
+        Some(limited) if stands_counts_read_late(M::TIMING, &limited, scene, n) => Ok(limited),
         _ => Err(Step::Certificate),
     }
 }
 
 /// Whether a scene with this assessment agrees with a mode; if so, the scene with its torque limited.
-pub(super) const fn agree<M: OutputMode>(
+pub(super) const fn agree(
+    timing: OutputTiming,
     scene: &Scene,
     assessment: &Assessment,
 ) -> Result<Limited, TimingError> {
-    if matches!(M::TIMING, OutputTiming::Latched) && !scene.environment.is_late() {
+    if matches!(timing, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
     }
-    if !is_at_its_phase::<M>(scene) {
-        let board = board_delay::<M>();
+    if !is_at_its_phase(timing, scene) {
+        let board = board_delay(timing);
         return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
     }
-    let is_on_a_board = !matches!(M::TIMING, OutputTiming::Simultaneous);
+    let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
     let jitter = scene.latency.output_jitter;
     if is_on_a_board && !scene.latency.is_none() && jitter < READ_WITHIN {
         return Err(TimingError::Jitter { jitter });
@@ -303,7 +312,7 @@ pub(super) const fn agree<M: OutputMode>(
             },
         });
     };
-    if stands_counts_read_late::<M>(&limited, scene, n) {
+    if stands_counts_read_late(timing, &limited, scene, n) {
         return Ok(limited);
     }
     Err(TimingError::ReadLate {
@@ -315,10 +324,10 @@ pub(super) const fn agree<M: OutputMode>(
 
 /// Whether the board's torques come when the scene says, to a part in a billion, which the jitter that
 /// a board needs is far above. A simulation puts them out as the scene says.
-const fn is_at_its_phase<M: OutputMode>(scene: &Scene) -> bool {
+const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
     let delay = scene.latency.output_delay;
-    let board = board_delay::<M>();
-    match M::TIMING {
+    let board = board_delay(timing);
+    match timing {
         OutputTiming::Simultaneous => true,
         OutputTiming::Latched => delay.is_zero(),
         OutputTiming::AtPhase(_) => delay.is_exact() && (delay.least - board).abs() <= 1e-9 * board,
@@ -327,8 +336,8 @@ const fn is_at_its_phase<M: OutputMode>(scene: &Scene) -> bool {
 
 /// Time in s from a count to the torque that the servo computes from it, beside an environment's whole
 /// samples.
-const fn board_delay<M: OutputMode>() -> f64 {
-    match M::TIMING {
+const fn board_delay(timing: OutputTiming) -> f64 {
+    match timing {
         OutputTiming::AtPhase(nanoseconds) => nanoseconds as f64 / 1e9,
         OutputTiming::Latched | OutputTiming::Simultaneous => 0.0,
     }
@@ -336,15 +345,16 @@ const fn board_delay<M: OutputMode>() -> f64 {
 
 /// Whether a scene stands counts that are read up to [`READ_WITHIN`] after the beginning of a period,
 /// as they are where torques are latched.
-const fn stands_counts_read_late<M: OutputMode>(
+const fn stands_counts_read_late(
+    timing: OutputTiming,
     limited: &Limited,
     scene: &Scene,
     n: &LoopIntervals,
 ) -> bool {
-    if !matches!(M::TIMING, OutputTiming::Simultaneous) && n.latency.is_some() {
+    if !matches!(timing, OutputTiming::Simultaneous) && n.latency.is_some() {
         return scene.latency.output_jitter >= READ_WITHIN;
     }
-    match M::TIMING {
+    match timing {
         // Only behind the coupling that was made for it.
         OutputTiming::AtPhase(_) => false,
         OutputTiming::Latched => {

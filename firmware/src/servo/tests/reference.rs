@@ -87,6 +87,7 @@ impl Reference {
         let compliance = match scene.coupling {
             Coupling::Rigid => 0.0,
             Coupling::Spring { stiffness } => 1.0 / stiffness,
+            Coupling::Matched => unreachable!("not drawn"),
         };
         let wall = |wall: Wall| {
             let filter = (0..length)
