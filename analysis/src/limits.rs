@@ -172,7 +172,7 @@ mod tests {
     use firmware::environment::Environment;
 
     use super::*;
-    use firmware::scene::Device;
+    use firmware::scene::{Device, Latency};
 
     fn wall(damping: f64, delay: usize, coupling: Coupling) -> Scene {
         Scene {
