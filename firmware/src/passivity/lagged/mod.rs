@@ -297,7 +297,8 @@ impl Port {
             delta = (least + slack * least).max(f64::MIN_POSITIVE);
             round += 1;
         }
-        Ok(Interval::new(least, enough))
+        // Doubles do not tell the place where it is largest from its neighbours.
+        Ok(Interval::new(least - 1e-12 * least, enough))
     }
 }
 
