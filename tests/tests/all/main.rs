@@ -16,6 +16,7 @@ mod foreign;
 mod interval;
 mod live;
 mod margin;
+mod matched;
 mod misses;
 mod own_environment;
 mod random;
