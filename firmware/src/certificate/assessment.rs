@@ -123,10 +123,18 @@ const fn judge(
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
-    let coupled = posed.coupled(Some(alone), &Precision::TIGHT);
-    if n.latency.is_some() && matches!(extent, Extent::BothRules) {
-        (out.alpha_coupled, out.alpha_port) = posed.coupled_and_at_port();
-    }
+    let coupled = if n.latency.is_some() && matches!(extent, Extent::BothRules) {
+        out.alpha_coupled = posed.coupled_without_latency();
+        match posed.over_cells(&Precision::TIGHT, true) {
+            Ok((found, needed)) => {
+                out.alpha_port = Some(needed);
+                Ok(found)
+            }
+            Err(error) => Err(error),
+        }
+    } else {
+        posed.coupled(Some(alone), &Precision::TIGHT)
+    };
     if let Ok(found) = coupled {
         if n.latency.is_none() {
             out.alpha_coupled = Some(found.minimum);
@@ -171,9 +179,13 @@ const fn exact_outcome(
             Answer::Fail if blames_coupling => Err(coupling_rejection(n, out)),
             Answer::Fail => Err(Rejection::Shortage {
                 // What the device lacks where torques lag, rather than what fails for this one.
-                alpha: match posed.port_needed() {
-                    Ok(needed) if n.latency.is_some() => needed,
-                    _ => found.minimum,
+                alpha: match out.alpha_port {
+                    Some(needed) => needed,
+                    None if n.latency.is_some() => match posed.port_needed() {
+                        Ok(needed) => needed,
+                        Err(_) => found.minimum,
+                    },
+                    None => found.minimum,
                 },
                 delta: limit,
                 cos_theta: found.cos_theta,

@@ -6,7 +6,7 @@ use crate::latency::TimeRange;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::{LagIntervals, Port};
+use crate::passivity::lagged::{LagIntervals, Port, SampledResponse};
 use crate::passivity::poles::{IndexError, UndecidedReason, cancelled};
 use crate::passivity::transfer::Transfer;
 
@@ -108,6 +108,12 @@ pub(super) const fn port_limit(lagging: &Lagging, n: &LoopIntervals) -> Interval
     }
 }
 
+const fn larger(a: (RealPart, Interval), b: (RealPart, Interval)) -> (RealPart, Interval) {
+    let place = if a.0.minimum.hi() > b.0.minimum.hi() { a.0.cos_theta } else { b.0.cos_theta };
+    let index = RealPart { minimum: a.0.minimum.max(b.0.minimum), cos_theta: place };
+    (index, a.1.max(b.1))
+}
+
 const UNKNOWN: IndexError = IndexError::Undecided(UndecidedReason::OutOfRange);
 
 impl PassivityProblem {
@@ -115,103 +121,92 @@ impl PassivityProblem {
     /// [`port_limit`].
     #[inline(never)]
     pub(super) const fn port_index(&self, closeness: &Precision) -> Result<RealPart, IndexError> {
-        let (h, lagging, deviation) = match self.at_the_port() {
-            Ok(found) => found,
-            Err(error) => return Err(error),
-        };
-        let mut found: Option<RealPart> = None;
-        let mut index = 0;
-        while index < Cells::of(&lagging).count() {
-            let cell = Cells::of(&lagging).cell(index, self.numbers.period);
-            let mut piece = 0;
-            while piece < cell.pieces() {
-                let one = match self.port(&h, &cell, piece, deviation.ripple) {
-                    Ok(port) => port.index_for(deviation.divisor, closeness),
-                    Err(error) => Err(error),
-                };
-                found = match (one, found) {
-                    (Err(error), _) => return Err(error),
-                    (Ok(one), None) => Some(one),
-                    (Ok(one), Some(before)) => Some(RealPart {
-                        minimum: one.minimum.max(before.minimum),
-                        cos_theta: if one.minimum.hi() > before.minimum.hi() {
-                            one.cos_theta
-                        } else {
-                            before.cos_theta
-                        },
-                    }),
-                };
-                piece += 1;
-            }
-            index += 1;
-        }
-        match found {
-            Some(found) => Ok(found),
-            None => Err(UNKNOWN),
+        match self.over_cells(closeness, false) {
+            Ok((found, _)) => Ok(found),
+            Err(error) => Err(error),
         }
     }
 
     /// Index at the port with delay, lag and sensor, in N m s/rad: the least passivity of a device that
-    /// would be enough. A delay that deviates from tick to tick is not counted.
+    /// would be enough. A delay that deviates from tick to tick counts with its ripple.
     #[inline(never)]
     pub(super) const fn port_needed(&self) -> Result<Interval, IndexError> {
-        let (h, lagging, _) = match self.at_the_port() {
+        match self.over_cells(&Precision::TIGHT, true) {
+            Ok((_, needed)) => Ok(needed),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The largest of both over all times in their ranges; the second only where it is asked for.
+    pub(super) const fn over_cells(
+        &self,
+        closeness: &Precision,
+        and_needed: bool,
+    ) -> Result<(RealPart, Interval), IndexError> {
+        let (h, lagging, deviation) = match self.at_the_port() {
             Ok(found) => found,
             Err(error) => return Err(error),
         };
-        let mut found: Option<Interval> = None;
+        let cells = Cells::of(&lagging);
+        let mut all: Option<(RealPart, Interval)> = None;
         let mut index = 0;
-        while index < Cells::of(&lagging).count() {
-            let cell = Cells::of(&lagging).cell(index, self.numbers.period);
+        while index < cells.count() {
+            let cell = cells.cell(index, self.numbers.period);
             let mut piece = 0;
             while piece < cell.pieces() {
-                let one = match self.port(&h, &cell, piece, Interval::ZERO) {
-                    Ok(port) => port.needed(self.numbers.delta.midpoint()),
-                    Err(error) => Err(error),
-                };
-                found = match (one, found) {
+                let Some(response) = cell.response(piece) else { return Err(UNKNOWN) };
+                all = match (self.piece(&h, &response, &deviation, closeness, and_needed), all) {
                     (Err(error), _) => return Err(error),
                     (Ok(one), None) => Some(one),
-                    (Ok(one), Some(before)) => Some(one.max(before)),
+                    (Ok(one), Some(before)) => Some(larger(one, before)),
                 };
                 piece += 1;
             }
             index += 1;
         }
-        match found {
-            Some(found) => Ok(found),
+        match all {
+            Some(all) => Ok(all),
             None => Err(UNKNOWN),
         }
     }
 
-    /// The index of `E'` without latency, where the coupling has no memory, and that at the port.
+    // In a frame of its own, which the caller would otherwise have beside its cells.
     #[inline(never)]
-    pub(super) const fn coupled_and_at_port(&self) -> (Option<Interval>, Option<Interval>) {
-        let coupled = if self.numbers.is_matched {
-            None
-        } else {
-            match self.behind(self.numbers.excess_compliance(), &Precision::TIGHT) {
-                Ok(found) => Some(found.minimum),
-                Err(_) => None,
-            }
-        };
-        match self.port_needed() {
-            Ok(needed) => (coupled, Some(needed)),
-            Err(_) => (coupled, None),
-        }
-    }
-
-    #[inline(never)]
-    const fn port(
+    const fn piece(
         &self,
         h: &Transfer,
-        cell: &LagIntervals,
-        piece: usize,
-        ripple: Interval,
-    ) -> Result<Port, IndexError> {
-        match cell.response(piece) {
-            Some(response) => Port::new(h, &response, self.numbers.period, ripple),
-            None => Err(UNKNOWN),
+        response: &SampledResponse,
+        deviation: &Deviation,
+        closeness: &Precision,
+        and_needed: bool,
+    ) -> Result<(RealPart, Interval), IndexError> {
+        let port = match Port::new(h, response, self.numbers.period, deviation.ripple) {
+            Ok(port) => port,
+            Err(error) => return Err(error),
+        };
+        let found = match port.index_for(deviation.divisor, closeness) {
+            Ok(found) => found,
+            Err(error) => return Err(error),
+        };
+        if !and_needed {
+            return Ok((found, Interval::ENTIRE));
+        }
+        let delta = deviation.divisor.midpoint();
+        match port.needed(delta, found) {
+            Ok(needed) => Ok((found, needed)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The index of `E'` without latency, where the coupling has no memory.
+    #[inline(never)]
+    pub(super) const fn coupled_without_latency(&self) -> Option<Interval> {
+        if self.numbers.is_matched {
+            return None;
+        }
+        match self.behind(self.numbers.excess_compliance(), &Precision::TIGHT) {
+            Ok(found) => Some(found.minimum),
+            Err(_) => None,
         }
     }
 

@@ -220,10 +220,12 @@ impl Port {
         let Some(zeros) = zeros_multiplied(&h) else { return Err(out_of_range) };
         let gain = h.scale.mul(period);
         let squared = Series::squared_magnitude(&zeros).scaled(gain.mul(gain));
-        let lag = Series::squared_magnitude(&response.lag).scaled(added_ripple);
-        let Some(ripple) = response.ripple.plus(&lag).times(&squared) else {
-            return Err(out_of_range);
-        };
+        let mut ripple = response.ripple;
+        if !added_ripple.is_zero() {
+            let lag = Series::squared_magnitude(&response.lag).scaled(added_ripple);
+            ripple = ripple.plus(&lag);
+        }
+        let Some(ripple) = ripple.times(&squared) else { return Err(out_of_range) };
         let (left, right) = (d.at_unit_root(UnitRoot::Minus), d.at_unit_root(UnitRoot::Plus));
         Ok(Self {
             real,
@@ -267,43 +269,45 @@ impl Port {
     }
 
     /// Encloses the least passivity with which the port is passive, in N m s/rad: the largest of
-    /// `needed_at` over the circle. `start` is a positive guess.
+    /// `needed_at` over the circle. `found` is [`Port::index_for`] of any `delta`.
     ///
-    /// What is needed at the place where the index for one `delta` is largest is a better `delta`; the
-    /// last of these, and a little more, is proved to be enough.
+    /// The index falls as `delta` grows, so that the larger of a `delta` and of its index is enough. What
+    /// is needed at the place of that index is a better `delta`, as in Newton's method.
     ///
     /// # Errors
     /// Where a pole is too near the circle for a bound.
     #[inline(never)]
-    pub const fn needed(&self, start: f64) -> Result<Interval, IndexError> {
-        let (mut delta, mut enough, mut slack) = (start, f64::INFINITY, 0.25 * PORT_TOLERANCE);
+    pub const fn needed(&self, delta: f64, found: RealPart) -> Result<Interval, IndexError> {
+        let (mut delta, mut found) = (delta, found);
+        let mut enough = f64::INFINITY;
         let mut least = self.needed_at(1.0).lo().max(self.needed_at(-1.0).lo()).max(0.0);
         let mut round = 0;
-        while round < ROUNDS && enough > least + PORT_TOLERANCE * least {
-            let found = match self.index_for(Interval::exact(delta), &Precision::TIGHT) {
+        loop {
+            let (more, less) = (least, enough);
+            enough = enough.min(found.minimum.hi().max(delta));
+            least = least.max(self.needed_at(found.cos_theta.midpoint()).lo());
+            round += 1;
+            let is_stuck = round > 1 && least == more && enough == less;
+            if is_stuck || round == ROUNDS || enough <= least + PORT_TOLERANCE * least {
+                break;
+            }
+            delta = least.max(f64::MIN_POSITIVE);
+            found = match self.index_for(Interval::exact(delta), &Precision::within(CLOSE)) {
                 Ok(found) => found,
                 Err(error) => return Err(error),
             };
-            if found.minimum.hi() <= delta {
-                enough = enough.min(delta);
-            }
-            let seen = self.needed_at(found.cos_theta.midpoint()).lo();
-            if seen > least {
-                least = seen;
-            } else if found.minimum.hi() > delta {
-                // Rounding hides a closer one.
-                slack *= 4.0;
-            }
-            delta = (least + slack * least).max(f64::MIN_POSITIVE);
-            round += 1;
         }
-        // Doubles do not tell the place where it is largest from its neighbours.
-        Ok(Interval::new(least - 1e-12 * least, enough))
+        // Room for values that others computed of slightly different decimals: no verdict follows it.
+        Ok(Interval::new(least - ROOM * least, enough + ROOM * enough))
     }
 }
 
-/// Rounds of the search for the passivity that is needed; it converges as Newton's method does.
-const ROUNDS: u32 = 40;
+/// Rounds of the search for the passivity that is needed: poles near the circle leave it wider.
+const ROUNDS: u32 = 6;
+/// What it is wider than its enclosure on either side, relative to its magnitude.
+const ROOM: f64 = 1e-12;
+/// Width of the enclosures that it follows, relative to their magnitude.
+const CLOSE: f64 = 2e-11;
 /// Width of its result relative to its magnitude.
 const PORT_TOLERANCE: f64 = 2e-10;
 
