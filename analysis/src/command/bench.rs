@@ -36,6 +36,8 @@ pub struct Arguments {
 
 /// Most time in microseconds that a verdict may take on one core.
 const VERDICT_BUDGET: f64 = 20.0;
+/// The same where a torque lags.
+const LAGGING_BUDGET: f64 = 15.0;
 /// Published times in microseconds for one verdict by other means.
 const OTHERS: [(&str, f64, &str); 3] = [
     ("slicot", 390.0, "a SLICOT-based test"),
@@ -111,6 +113,7 @@ fn on_host() -> Vec<Figure> {
     };
     let mut figures = vec![figure("budget", VERDICT_BUDGET, "budget, one core")];
     figures.extend(OTHERS.map(|(name, against, source)| figure(name, against, source)));
+    figures.extend(lagging());
     let (step, by_hand) = bench::steps::step_times();
     let figure = |name: &str, against, source| {
         Figure::new(format!("exact simulation, a step: {name}"), step, "ns", Some(against), source)
@@ -120,18 +123,39 @@ fn on_host() -> Vec<Figure> {
     figures.extend(STEPS_ELSEWHERE.map(|(name, against, source)| figure(name, against, source)));
     figures.extend(maps());
     let spinner = progress::spinner("compiling certificates");
-    match compile_time() {
-        Ok(time) => figures.push(Figure::new(
-            "certificate, added to compilation",
-            time,
-            "ms",
-            Some(COMPILE_BUDGET),
-            "budget",
-        )),
-        Err(error) => eprintln!("the compile time of a certificate was not measured: {error}"),
+    for (name, latency) in [("", bench::AT_ONCE), (" with delay and lag", bench::LAGGING)] {
+        let name = format!("certificate{name}, added to compilation");
+        match compile_time(latency) {
+            Ok(time) => {
+                figures.push(Figure::new(name, time, "ms", Some(COMPILE_BUDGET), "budget"));
+            }
+            Err(error) => eprintln!("{name}: not measured: {error}"),
+        }
     }
     spinner.finish_and_clear();
     figures
+}
+
+/// What a torque that lags costs a verdict, and what the verdict about it is worth.
+fn lagging() -> [Figure; 2] {
+    let time = bench::middle_verdict_time(&bench::lagging_scenes());
+    let (lagging, whole_samples) = bench::lagging_springs();
+    [
+        Figure::new(
+            "verdict with delay and lag, degrees 0 to 8, median",
+            time,
+            "us",
+            Some(LAGGING_BUDGET),
+            "budget, one core",
+        ),
+        Figure::new(
+            "certified spring at 1 kHz, 5 us, current loop of 3 kHz",
+            lagging,
+            "N m/rad",
+            Some(whole_samples),
+            "latched, lag as a whole sample",
+        ),
+    ]
 }
 
 /// Walls a second of a map: behind the standard coupling, and behind one that makes `E'` differ
@@ -158,7 +182,7 @@ fn maps() -> Vec<Figure> {
 }
 
 /// Builds the library once and measures what a certified constant adds to a program that uses it.
-fn compile_time() -> io::Result<f64> {
+fn compile_time(latency: &str) -> io::Result<f64> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(&cargo)
@@ -170,7 +194,7 @@ fn compile_time() -> io::Result<f64> {
         .ok_or_else(|| io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()))?;
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let dependencies = library.parent().map(|folder| folder.join("deps")).unwrap_or_default();
-    bench::compile_time(Path::new(&rustc), &library, &dependencies)
+    bench::compile_time(Path::new(&rustc), &library, &dependencies, latency)
 }
 
 /// The path of the built library in cargo's messages.

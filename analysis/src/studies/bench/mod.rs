@@ -10,8 +10,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::stability_map::{Family, Map, MapError};
-use firmware::certificate::assess;
-use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::certificate::{PassivityProblem, assess};
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
@@ -123,6 +123,56 @@ pub fn verdict_time(scenes: &[Scene]) -> f64 {
     median((0..ROUNDS).map(|_| round()).collect())
 }
 
+/// The same scenes where a torque comes 10 us after its count, through a current loop of 3 kHz.
+pub fn lagging_scenes() -> Vec<Scene> {
+    let latency = Latency::delayed(1e-5).with_actuator_lag(lag_of(3e3));
+    scenes().into_iter().map(|scene| Scene { latency, ..scene }).collect()
+}
+
+/// Time constant in s of a first-order loop of this bandwidth in Hz.
+pub fn lag_of(bandwidth: f64) -> f64 {
+    1.0 / (std::f64::consts::TAU * bandwidth)
+}
+
+/// Microseconds of the scene in the middle: what a verdict costs grows with its degree, and many times
+/// as much where poles are next to the circle.
+pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
+    let time = |scene: &Scene| {
+        let round = || {
+            let start = Instant::now();
+            black_box(assess(black_box(scene)));
+            start.elapsed().as_secs_f64() * 1e6
+        };
+        round();
+        median((0..ROUNDS).map(|_| round()).collect())
+    };
+    median(scenes.iter().map(time).collect())
+}
+
+/// Largest certified stiffness in N m/rad of an undelayed spring without coupling, at 1 kHz, for a device
+/// of 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same
+/// where torques are latched by the next count and the lag is charged as a whole sample.
+pub fn lagging_springs() -> (f64, f64) {
+    let spring = |latency, delay| {
+        let scene = |stiffness| Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Rigid,
+            environment: Environment::DelayedSpring(Wall::spring(stiffness, delay)),
+            latency,
+            torque_limit: None,
+        };
+        let passes = |k| PassivityProblem::of(&scene(k)).is_ok_and(|posed| posed.is_certified());
+        let (mut certified, mut refused) = (0.0, 100.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (certified + refused);
+            *if passes(middle) { &mut certified } else { &mut refused } = middle;
+        }
+        certified
+    };
+    (spring(Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3)), 0), spring(Latency::NONE, 2))
+}
+
 /// The middle of some values; 0 of none.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -133,15 +183,22 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 /// program with `COPIES` certified scenes and the same program without, divided by their number.
 /// The two are compiled in turn, so that other load of the machine meets both.
 ///
+/// `latency` is the part of the scenes in which they differ: [`AT_ONCE`] or [`LAGGING`].
+///
 /// `library` is the built firmware library, `dependencies` the folder of what it depends on.
 ///
 /// # Errors
 /// Where the compiler cannot be run, or refuses the program.
-pub fn compile_time(rustc: &Path, library: &Path, dependencies: &Path) -> std::io::Result<f64> {
+pub fn compile_time(
+    rustc: &Path,
+    library: &Path,
+    dependencies: &Path,
+    latency: &str,
+) -> std::io::Result<f64> {
     let folder = tempfile::tempdir()?;
     let time = |copies: usize| -> std::io::Result<f64> {
         let source = folder.path().join(format!("scene_{copies}.rs"));
-        std::fs::write(&source, program(copies))?;
+        std::fs::write(&source, program(copies, latency))?;
         let start = Instant::now();
         let output = Command::new(rustc)
             .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "-o"])
@@ -162,27 +219,40 @@ pub fn compile_time(rustc: &Path, library: &Path, dependencies: &Path) -> std::i
     Ok(median(differences.collect::<std::io::Result<Vec<_>>>()?))
 }
 
+/// One-sided walls without latency whose torque is limited.
+pub const AT_ONCE: &str = "type Wall = OneSided<DamperWall<1>>;
+const fn wall(wall: DamperWall<1>) -> Wall { OneSided { face: 0.0, wall } }
+const LATENCY: Latency = Latency::NONE;
+const LIMIT: Option<f64> = Some(1.0);
+";
+/// Linear walls behind a delay and a lag.
+pub const LAGGING: &str = "type Wall = DamperWall<1>;
+const fn wall(wall: DamperWall<1>) -> Wall { wall }
+const LATENCY: Latency = Latency::delayed(1e-5).with_actuator_lag(53e-6);
+const LIMIT: Option<f64> = None;
+";
+
 /// Certificates in the program that is compiled.
 const COPIES: usize = 8;
 /// Compilations of each program; the median of their differences counts.
 const COMPILATIONS: usize = 15;
 
-fn program(copies: usize) -> String {
+fn program(copies: usize, latency: &str) -> String {
     let mut text = String::from(
         "use firmware::{certificate::Certified, environment::*, scene::*};
-type Wall = OneSided<DamperWall<1>>;
 pub const fn scene(stiffness: f64) -> Scene<Wall> {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
         coupling: Coupling::Spring { stiffness: 44.0 },
-        environment: OneSided { face: 0.0, wall: DamperWall { stiffness, damping: 0.01 } },
-        latency: Latency::NONE,
-        torque_limit: Some(1.0),
+        environment: wall(DamperWall { stiffness, damping: 0.01 }),
+        latency: LATENCY,
+        torque_limit: LIMIT,
     }
 }
 ",
     );
+    text += latency;
     for copy in 0..copies {
         text += &format!(
             "pub const C{copy}: Certified<Scene<Wall>> = scene({:?}).certified();\n",
