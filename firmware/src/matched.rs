@@ -1,7 +1,7 @@
 //! The coupling that absorbs latency (theory, section 13.3).
 //!
 //! A coupling `V` behind which any passive environment, nonlinear or not, is passive with a torque that
-//! lags: `V = (T z / (z - 1) - g) / (2 delta)`, with `g` the sampled response of hold, delay and lags.
+//! lags: `V = (T z / (z - 1) - g) / (2 delta)` (equation 40), with `g` the sampled response of hold, delay and lags.
 //! Where nothing lags it is the standard coupling `T / (2 delta)`. A delay of `(n + e) T` adds a spring
 //! in series for each tick and part of a tick that a torque takes,
 //!
@@ -262,8 +262,8 @@ const fn unknown(t: Interval, latency: &Latency) -> Option<Interval> {
 /// `h T`, and the compliance that this takes of the coupling.
 ///
 /// For any `s > 0` the work of the pulses by which such a torque differs is at most
-/// `(s / 2) integral v^2 + (h T / (2 s)) sum (F_k - F_(k-1))^2`, and so is that of a count read late. The
-/// first comes off `delta`, the second off a spring: `s = 2 delta sqrt(h)` shares it about equally.
+/// `(s / 2) integral v^2 + (h T / (2 s)) sum (F_k - F_(k-1))^2`, and so is that of a count read late
+/// (equation 42). The first comes off `delta`, the second off a spring: `s = 2 delta sqrt(h)` shares it about equally.
 const fn after_jitter(
     t: Interval,
     delta: Interval,
@@ -297,7 +297,7 @@ const fn rounded(standard: Interval, trail: (Interval, Interval), format: Format
 /// `Q = (1 - 1/z) (excess - sum e_m z^-m) / T` has `Re Q >= (1 - c) (excess - error) / T`, since
 /// `abs(cos(m x) - cos((m + 1) x)) <= (2 m + 1) (1 - cos x)`, and `abs(Q)^2 <= 2 (1 - c) (excess +
 /// error / 3)^2 / T^2`: that is its output strict passivity `gamma`, and condition 18 is
-/// `alpha < delta gamma / (delta + gamma)`.
+/// `alpha < delta gamma / (delta + gamma)` (equation 41).
 pub const fn limit(
     t: Interval,
     delta: Interval,

@@ -268,8 +268,8 @@ impl Port {
         half.mul(half).add(quarter).sqrt().sub(half)
     }
 
-    /// Encloses the least passivity with which the port is passive, in N m s/rad: the largest of
-    /// `needed_at` over the circle. `found` is [`Port::index_for`] of any `delta`.
+    /// Encloses the least passivity with which the port is passive, in N m s/rad (equation 39): the largest
+    /// of `needed_at` over the circle. `found` is [`Port::index_for`] of any `delta`.
     ///
     /// The index falls as `delta` grows, so that the larger of a `delta` and of its index is enough. What
     /// is needed at the place of that index is a better `delta`, as in Newton's method.
