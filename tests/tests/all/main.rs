@@ -14,6 +14,7 @@ mod exact;
 mod failures;
 mod foreign;
 mod interval;
+mod lagging;
 mod live;
 mod margin;
 mod matched;
