@@ -37,6 +37,7 @@ pub mod scope;
 pub mod batch;
 pub mod closed_form;
 pub mod design;
+pub mod latency_limits;
 pub mod limits;
 pub mod mu_analysis;
 pub mod open_loop;

@@ -12,6 +12,7 @@ pub mod growth;
 pub mod hatch;
 pub mod identify;
 mod labels;
+pub mod latency;
 pub mod limits;
 pub mod map;
 pub mod nyquist;

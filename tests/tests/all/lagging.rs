@@ -6,10 +6,13 @@ use std::f64::consts::PI;
 use firmware::certificate::{PassivityProblem, assess};
 use firmware::environment::{Environment, Wall};
 use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
-use nalgebra::{DMatrix, Schur};
+use nalgebra::DMatrix;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::hands::Hand;
+
+/// Squarings of a loop's matrix: powers up to a thousand million ticks.
+const SQUARINGS: u32 = 30;
 
 /// A wall in the units of the loop: period and passivity are 1.
 #[derive(Clone, Copy, Debug)]
@@ -177,10 +180,19 @@ impl Loop {
         closed
     }
 
-    fn radius(&self, hand: &Hand) -> Option<f64> {
-        let schur = Schur::try_new(self.closed(hand), 1e-14, 10_000)?;
-        let eigenvalues = schur.complex_eigenvalues();
-        Some(eigenvalues.iter().fold(0.0, |most, value| value.norm().max(most)))
+    /// Spectral radius: the growth of the loop's powers, each the square of the one before. No iteration
+    /// that need not converge, as one for eigenvalues.
+    fn radius(&self, hand: &Hand) -> f64 {
+        let mut power = self.closed(hand);
+        let (mut growth, mut share) = (0.0, 1.0);
+        for _ in 0..SQUARINGS {
+            let norm = power.norm();
+            power /= norm;
+            growth += share * norm.ln();
+            power = &power * &power;
+            share *= 0.5;
+        }
+        growth.exp()
     }
 }
 
@@ -237,11 +249,11 @@ fn search(seed: u64, loops: usize, hands: usize) -> Found {
             };
             found.hands += 1;
             // Heavy masses on the ground by nothing drift at exactly 1.
-            if certified.radius(&hand).is_none_or(|radius| radius > 1.0 + 1e-7) {
-                println!("{certified:?} {hand:?} {:?}", certified.radius(&hand));
+            if !(certified.radius(&hand) <= 1.0 + 1e-7) {
+                println!("{certified:?} {hand:?} {}", certified.radius(&hand));
                 found.unstable += 1;
             }
-            is_shown |= refused.radius(&hand).is_some_and(|radius| radius > 1.0 + 1e-7);
+            is_shown |= refused.radius(&hand) > 1.0 + 1e-7;
         }
         found.shown += usize::from(is_shown);
     }

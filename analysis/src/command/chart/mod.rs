@@ -3,6 +3,7 @@
 pub mod bode;
 pub mod failures;
 pub mod identify;
+pub mod latency;
 pub mod limits;
 pub mod map;
 pub mod nyquist;
@@ -44,6 +45,8 @@ pub enum Single {
     Map(map::Arguments),
     /// Draw the largest certified stiffness over the sample rate, with the encoder's torque ripple
     Limits(limits::Arguments),
+    /// Draw the largest spring behind current loops over the servo's rate, certified and assumed
+    Latency(latency::Arguments),
     /// Draw angle, velocity and torque of a simulation or a recorded run, shaded where limited
     Trace(trace::Arguments),
     /// Draw the measured responses of a device in the disk of its passivity, with the fitted device
@@ -59,6 +62,7 @@ impl Single {
             Self::Bode(arguments) => &arguments.output,
             Self::Map(arguments) => &arguments.output,
             Self::Limits(arguments) => &arguments.output,
+            Self::Latency(arguments) => &arguments.output,
             Self::Trace(arguments) => &arguments.output,
             Self::Identify(arguments) => &arguments.output,
             Self::Failures(arguments) => &arguments.output,
@@ -78,6 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Single::Bode(arguments) => bode::draw(arguments)?,
         Single::Map(arguments) => map::draw(arguments)?,
         Single::Limits(arguments) => limits::draw(arguments)?,
+        Single::Latency(arguments) => latency::draw(arguments)?,
         Single::Trace(arguments) => return trace::run(arguments, &files),
         Single::Identify(arguments) => identify::draw(arguments)?,
         Single::Failures(_) => failures::draw()?,
