@@ -24,11 +24,11 @@ pub struct Arguments {
           default_value = "500..50000", allow_hyphen_values = true)]
     pub rates: Range<f64>,
     /// Bandwidths of the current loop in Hz, a panel each
-    #[arg(long, value_name = "HZ,..", value_parser = positive, value_delimiter = ',',
+    #[arg(long, value_name = "HZ,..", value_parser = positive, allow_hyphen_values = true, value_delimiter = ',',
           default_value = "500,1000,2000,3000")]
     pub loops: Vec<f64>,
     /// Time in s from a count to its torque, where that is at a fixed phase
-    #[arg(long, value_name = "S", value_parser = positive, default_value = "1e-5")]
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true, default_value = "1e-5")]
     pub phase: f64,
     #[command(flatten)]
     #[allow(missing_docs)]
