@@ -14,6 +14,7 @@ mod exact;
 mod failures;
 mod foreign;
 mod interval;
+mod latency;
 mod live;
 mod margin;
 mod misses;

@@ -1,0 +1,70 @@
+//! The published cases of scenes whose torque lags: verdicts, and indices at the port to 24 digits.
+
+use analysis::file::{self, Format};
+use analysis::verdict::{Verdict, VerdictReport, judge};
+use serde_json::{Value, json};
+use tests::exact::{Q, of_decimal, of_f64};
+
+/// Width of an index relative to its magnitude.
+const TOLERANCE: f64 = 1e-9;
+
+/// The case as a scene file has it.
+fn scene_file(case: &Value) -> Value {
+    let mut scene = json!({
+        "name": case["id"],
+        "device": {
+            "inertia": 2.2e-5,
+            "damping": case["b"],
+            "actuator_lag": case["actuator_lag"],
+            "sensor_lag": case["sensor_lag"],
+        },
+        "servo": { "period": case["T"], "output_delay": case["output_delay"] },
+        "environment": case["environment"],
+    });
+    if case["K"].is_number() {
+        scene["coupling"] = json!({ "stiffness": case["K"] });
+    }
+    scene
+}
+
+fn judged(case: &Value) -> VerdictReport {
+    let text = scene_file(case).to_string();
+    let read = file::parse("lag.json", Format::Json, &text);
+    let read = read.unwrap_or_else(|error| panic!("{error}"));
+    judge(&read.name, &read.scene)
+}
+
+/// What is wrong with the answer to a case; empty where nothing is.
+fn complaints(case: &Value) -> Vec<String> {
+    let found = judged(case);
+    let mut wrong = Vec::new();
+    let wanted = if case["accept"] == true { Verdict::Certified } else { Verdict::Rejected };
+    if found.verdict != wanted {
+        wrong
+            .push(format!("{}: {} and not {wanted}: {}", case["id"], found.verdict, found.message));
+    }
+    if case["schur"] == true {
+        let alpha: Q = of_decimal(case["alpha_port"].as_str().expect("digits")).expect("a decimal");
+        match found.alpha_port.map(|port| (port.lo, port.hi)) {
+            Some((Some(lo), Some(hi))) => {
+                let end = |x| of_f64(x).expect("the ends are finite");
+                let encloses = end(lo) <= alpha && alpha <= end(hi);
+                if !encloses || hi - lo > TOLERANCE * hi.abs() {
+                    let wanted = &case["alpha_port"];
+                    wrong.push(format!("{}: {wanted} in {lo:e} to {hi:e}", case["id"]));
+                }
+            }
+            other => wrong.push(format!("{}: index {other:?}", case["id"])),
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_published_case_has_its_verdict_and_its_index() {
+    let published: Value = serde_json::from_str(include_str!("../../data/lag.json")).expect("JSON");
+    let cases = published["cases"].as_array().expect("cases");
+    assert_eq!(cases.len(), 60);
+    let wrong: Vec<String> = cases.iter().flat_map(complaints).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
