@@ -297,12 +297,15 @@ impl Port {
             delta = (least + slack * least).max(f64::MIN_POSITIVE);
             round += 1;
         }
-        Ok(Interval::new(least, enough))
+        // Room below for maxima that others have found by small steps in the angle.
+        Ok(Interval::new(least - ROOM_BELOW * least, enough))
     }
 }
 
 /// Rounds of the search for the passivity that is needed; it converges as Newton's method does.
 const ROUNDS: u32 = 40;
+/// What the lower end leaves to the largest value that was found, relative to it.
+const ROOM_BELOW: f64 = 1e-12;
 /// Width of its result relative to its magnitude.
 const PORT_TOLERANCE: f64 = 2e-10;
 
