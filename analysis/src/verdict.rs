@@ -160,6 +160,8 @@ pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
 /// is known of the machine.
 pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> VerdictReport {
     let (assessment, rejection) = match certify_in(scene, format) {
+        // The verdict leaves the index at the port out.
+        Ok(_) if has_port_index(scene) => (assess_in(scene, format), None),
         Ok(assessment) => (assessment, None),
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
     };

@@ -289,7 +289,7 @@ fn write_time(f: &mut fmt::Formatter<'_>, time: TimeRange) -> fmt::Result {
     if time.is_exact() {
         return write!(f, "{} s", ShortF64(time.most));
     }
-    write!(f, "{} to {} s, always the same", ShortF64(time.least), ShortF64(time.most))
+    write!(f, "a constant {} to {} s", ShortF64(time.least), ShortF64(time.most))
 }
 
 const MOST: usize = 11;
