@@ -61,6 +61,30 @@ fn complaints(case: &Value) -> Vec<String> {
     wrong
 }
 
+/// Where nothing lags the matched coupling is the standard one.
+#[test]
+fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {
+    let wall = |coupling: Value, stiffness: f64| {
+        let scene = json!({
+            "name": "wall",
+            "device": { "inertia": 2.2e-5, "damping": 0.022 },
+            "servo": { "period": 0.001 },
+            "coupling": coupling,
+            "environment": {
+                "type": "damper-wall", "stiffness": stiffness, "damping": 0.01, "delay": 1,
+            },
+        });
+        let read = file::parse("wall.json", Format::Json, &scene.to_string());
+        judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene)
+    };
+    for (stiffness, verdict) in [(23.99, Verdict::Certified), (24.01, Verdict::Rejected)] {
+        let matched = wall(json!({ "type": "matched" }), stiffness);
+        let standard = wall(json!({ "stiffness": 44.0 }), stiffness);
+        assert_eq!((matched.verdict, standard.verdict), (verdict, verdict), "{}", matched.message);
+        assert!(matched.alpha_port.is_some() && standard.alpha_port.is_none());
+    }
+}
+
 #[test]
 fn every_published_case_has_its_verdict_and_its_index() {
     let published: Value = serde_json::from_str(include_str!("../../data/lag.json")).expect("JSON");
