@@ -61,6 +61,34 @@ fn complaints(case: &Value) -> Vec<String> {
     wrong
 }
 
+/// A range of lags that begins with none has an index above those of all lags in it.
+#[test]
+fn a_range_that_begins_at_zero_holds_all_of_its_lags() {
+    let with = |lag: Value, delay: Value| {
+        let scene = json!({
+            "name": "wall",
+            "device": { "inertia": 2.2e-5, "damping": 0.022, "actuator_lag": lag },
+            "servo": { "period": 0.001, "output_delay": delay },
+            "environment": { "type": "damper-wall", "stiffness": 8, "damping": 0.002, "delay": 1 },
+        });
+        let read = file::parse("wall.json", Format::Json, &scene.to_string());
+        judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene)
+    };
+    let index = |report: &VerdictReport| {
+        let port = report.alpha_port.expect("it lags");
+        (port.lo.expect("an index"), port.hi.expect("an index"))
+    };
+    for delay in [0.0, 2.5e-4] {
+        let range = with(json!([0, 1.2e-4]), json!([delay, 3e-4]));
+        assert_eq!(range.verdict, Verdict::Certified, "{}", range.message);
+        for lag in [1e-9, 1e-6, 1e-5, 6e-5, 1.2e-4] {
+            let one = with(json!(lag), json!(3e-4));
+            assert!(index(&one).0 <= index(&range).1, "{lag}");
+            assert!(index(&range).1 < 1.3 * index(&with(json!(1.2e-4), json!(3e-4))).1);
+        }
+    }
+}
+
 /// Where nothing lags the matched coupling is the standard one.
 #[test]
 fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {

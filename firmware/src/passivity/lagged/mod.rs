@@ -56,8 +56,7 @@ impl Decay {
         if tau.is_zero() {
             return Self::NONE;
         }
-        let rest = Interval::ONE.sub(part).div(tau).exp_of_negative();
-        Self { tau, tick: Interval::ONE.div(tau).exp_of_negative(), rest }
+        Self { tau, tick: left(Interval::ONE, tau), rest: left(Interval::ONE.sub(part), tau) }
     }
 
     /// `(1 - rest) z + (rest - tick)`
@@ -74,6 +73,16 @@ impl Decay {
     const fn spread(&self) -> Interval {
         self.tau.half().mul(Interval::ONE.sub(self.tick.mul(self.tick)))
     }
+}
+
+/// What a lag leaves after some time; nothing where its range begins at 0 and the time is positive.
+const fn left(time: Interval, tau: Interval) -> Interval {
+    let ratio = if tau.is_positive() {
+        time.div(tau)
+    } else {
+        Interval::new(time.div(Interval::exact(tau.hi())).lo(), f64::INFINITY)
+    };
+    ratio.exp_of_negative()
 }
 
 impl LagIntervals {
@@ -109,6 +118,18 @@ impl LagIntervals {
 }
 
 impl SampledResponse {
+    /// `z^-whole g`, from torque to position, at this period in s.
+    pub const fn transfer(&self, period: Interval) -> Transfer {
+        let response = Transfer::new(self.bracket, self.lag);
+        Transfer { scale: period, shift: -1 - self.whole, ones: -1, ..response }
+    }
+
+    /// `D / T^2` at `c = cos(theta)`.
+    pub const fn ripple_at(&self, c: f64) -> Interval {
+        let c = Interval::exact(c);
+        self.ripple.at(c).div(Series::squared_magnitude(&self.lag).at(c))
+    }
+
     const fn of(
         whole: i32,
         part: Interval,
