@@ -89,6 +89,32 @@ fn a_range_that_begins_at_zero_holds_all_of_its_lags() {
     }
 }
 
+/// Amplifier and sensor of the same time constant, exactly and perhaps.
+#[test]
+fn equal_lags_are_decided_like_those_beside_them() {
+    let with = |actuator: Value, sensor: Value| {
+        let scene = json!({
+            "name": "wall",
+            "device": {
+                "inertia": 2.2e-5, "damping": 0.022, "actuator_lag": actuator, "sensor_lag": sensor,
+            },
+            "servo": { "period": 0.001, "output_delay": 1e-4 },
+            "environment": { "type": "damper-wall", "stiffness": 8, "damping": 0.002, "delay": 1 },
+        });
+        let read = file::parse("wall.json", Format::Json, &scene.to_string());
+        let judged = judge("wall", &read.unwrap_or_else(|error| panic!("{error}")).scene);
+        assert_eq!(judged.verdict, Verdict::Certified, "{}", judged.message);
+        let port = judged.alpha_port.expect("it lags");
+        (port.lo.expect("an index"), port.hi.expect("an index"))
+    };
+    let equal = with(json!(2e-4), json!(2e-4));
+    assert!(equal.1 - equal.0 <= TOLERANCE * equal.1, "{equal:?}");
+    let [below, above] = [1.998e-4, 2.002e-4].map(|lag| with(json!(2e-4), json!(lag)));
+    assert!(below.1 < equal.0 && equal.1 < above.0, "{below:?} {equal:?} {above:?}");
+    let range = with(json!([1.5e-4, 2e-4]), json!([1.4e-4, 2e-4]));
+    assert!(equal.0 <= range.1 && range.1 < 1.2 * equal.1, "{range:?} {equal:?}");
+}
+
 /// Where nothing lags the matched coupling is the standard one.
 #[test]
 fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {

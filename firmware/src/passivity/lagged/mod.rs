@@ -47,16 +47,24 @@ struct Decay {
     tau: Interval,
     tick: Interval,
     rest: Interval,
+    /// The rest of the tick.
+    over: Interval,
 }
 
 impl Decay {
-    const NONE: Self = Self { tau: Interval::ZERO, tick: Interval::ZERO, rest: Interval::ZERO };
+    const NONE: Self = Self {
+        tau: Interval::ZERO,
+        tick: Interval::ZERO,
+        rest: Interval::ZERO,
+        over: Interval::ZERO,
+    };
 
     const fn of(tau: Interval, part: Interval) -> Self {
         if tau.is_zero() {
             return Self::NONE;
         }
-        Self { tau, tick: left(Interval::ONE, tau), rest: left(Interval::ONE.sub(part), tau) }
+        let over = Interval::ONE.sub(part);
+        Self { tau, tick: left(Interval::ONE, tau), rest: left(over, tau), over }
     }
 
     /// `(1 - rest) z + (rest - tick)`
@@ -101,7 +109,7 @@ impl LagIntervals {
 
     /// The response with a delay in one of the pieces.
     ///
-    /// `None` where two lags are too much alike for their difference to be told from zero.
+    /// `None` where a lag may be zero and the other as well, neither for certain.
     pub const fn response(&self, piece: usize) -> Option<SampledResponse> {
         let whole = self.first_whole() + piece as i32;
         let part = self.delay.sub(Interval::exact(whole as f64));
@@ -175,7 +183,7 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     };
     let apart = first.tau.sub(second.tau);
     if apart.contains(0.0) {
-        return None;
+        return alike(&first, &second);
     }
     let weights =
         [first.tau.mul(first.tau).div(apart), second.tau.mul(second.tau).div(apart.neg())];
@@ -185,6 +193,33 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     match first.pole().times(&second.pole()) {
         Some(lag) => Some((lag, one.plus(&other))),
         None => None,
+    }
+}
+
+/// The same of two lags that may be equal: with the derivatives by the time constant, somewhere between
+/// the two, in place of the differences.
+///
+/// With `u = tau^2 (1 - rest)`, `v = tau^2 (rest - tick)` and differences `[]` over that of the time
+/// constants, the numerator is `[u] z^2 + ([v] - tick_2 [u] + u_2 [tick]) z - (tick_2 [v] - v_2 [tick])`.
+const fn alike(first: &Decay, second: &Decay) -> Option<(Polynomial, Polynomial)> {
+    let tau =
+        Interval::new(first.tau.lo().min(second.tau.lo()), first.tau.hi().max(second.tau.hi()));
+    let over = first.over;
+    let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
+    let twice = tau.double();
+    let du = twice.mul(Interval::ONE.sub(rest)).sub(over.mul(rest));
+    let dv = twice.mul(rest.sub(tick)).add(over.mul(rest)).sub(tick);
+    let dtick = tick.div(tau.mul(tau));
+    let square = second.tau.mul(second.tau);
+    let u = square.mul(Interval::ONE.sub(second.rest));
+    let v = square.mul(second.rest.sub(second.tick));
+    let linear = dv.sub(second.tick.mul(du)).add(u.mul(dtick));
+    let constant = v.mul(dtick).sub(second.tick.mul(dv));
+    match first.pole().times(&second.pole()) {
+        Some(lag) if dtick.is_finite() => {
+            Some((lag, Polynomial::ascending(&[constant, linear, du])))
+        }
+        _ => None,
     }
 }
 
