@@ -297,6 +297,7 @@ fn limit_name(scene: &Scene, assessment: &Assessment, limit: Option<f64>) -> &'s
         Coupling::Spring { stiffness } if near(0.5 * stiffness * scene.timing.period) => {
             "-K T/2 of the coupling"
         }
+        _ if scene.latency.output_jitter > 0.0 => "-limit, output delay varies",
         _ => "-limit, updates missed",
     }
 }
