@@ -2,6 +2,9 @@
 
 use firmware::certificate::PassivityProblem;
 use firmware::environment::Wall;
+use firmware::matched::MatchedCoupling;
+use firmware::number::Format;
+use firmware::passivity::polynomial::{Polynomial, UnitRoot};
 use firmware::passivity::transfer::Unbuildable;
 use firmware::scene::{Coupling, Scene, Timing};
 
@@ -45,12 +48,14 @@ pub fn with_wall(scene: &Scene, stiffness: f64, delay: Option<usize>) -> Scene {
 }
 
 /// The scene at another period in s. A worst period keeps its ratio to it, and a coupling spring
-/// becomes the standard one, `2 delta / T`, which is what a period allows.
+/// becomes the standard one, `2 delta / T`, which is what a period allows. Delays and lags stay what
+/// they are: they are those of the hardware.
 pub fn at_period(scene: &Scene, period: f64) -> Scene {
     let ratio = period / scene.timing.period;
     let worst_period = scene.timing.worst_period.map(|worst| worst * ratio);
     let timed = Scene { timing: Timing { period, worst_period }, ..*scene };
     match scene.coupling {
+        // The matched one is that of any period.
         Coupling::Rigid | Coupling::Matched => timed,
         Coupling::Spring { .. } => {
             let stiffness = standard_coupling(&timed);
@@ -66,6 +71,22 @@ pub fn standard_coupling(scene: &Scene) -> f64 {
     let worst = scene.timing.worst_period.unwrap_or(period);
     let delta = scene.device.passivity.unwrap_or(scene.device.damping);
     (2.0 * delta / worst) * (1.0 - 1e-12)
+}
+
+/// The stiffness in N m/rad that the coupling has at rest; `None`: it is rigid, or there is none. That of
+/// a matched coupling is about `2 delta / (T + d + tau)`, with all of its delays and lags.
+fn coupling_stiffness(scene: &Scene) -> Option<f64> {
+    match scene.coupling {
+        Coupling::Rigid => None,
+        Coupling::Spring { stiffness } => Some(stiffness),
+        Coupling::Matched => {
+            let (period, delta) = (scene.timing.period, scene.device.passivity());
+            let matched = MatchedCoupling::of(period, delta, &scene.latency, Format::F64)?;
+            let (numerator, denominator) = matched.transfer()?;
+            let at_rest = |p: &Polynomial| p.at_unit_root(UnitRoot::Plus).midpoint();
+            Some(at_rest(&denominator) / at_rest(&numerator))
+        }
+    }
 }
 
 /// The largest stiffness of the scene's wall that is certified, everything else as it is.
@@ -157,10 +178,10 @@ impl Curves {
         let (stiffness, used) = match largest_stiffness(&timed) {
             Limit::Nothing => return None,
             Limit::RoundUp3(stiffness) => (stiffness, self.used * stiffness),
-            Limit::Any => match timed.coupling {
-                Coupling::Spring { stiffness } => (stiffness, RIGID * stiffness),
-                Coupling::Rigid | Coupling::Matched => return None,
-            },
+            Limit::Any => {
+                let stiffness = coupling_stiffness(&timed)?;
+                (stiffness, RIGID * stiffness)
+            }
         };
         let ripple = error_gain(&with_wall(&timed, used, None)).ok();
         Some(Point { rate, stiffness, ripple: ripple.map(|gain| gain * half_a_count) })
@@ -225,6 +246,17 @@ mod tests {
         // (2 delta / T) r / (1 - r)
         let spring = with_wall(&wall(0.0, 1, STANDARD), 0.7 * 44.0, None);
         near(error_gain(&spring).unwrap(), 44.0 * 0.7 / 0.3, 1e-9);
+    }
+
+    #[test]
+    fn behind_a_matched_coupling_any_prompt_wall_is_felt_as_that_coupling() {
+        let latency = Latency::delayed(3e-4).with_actuator_lag(1.6e-4);
+        let lagging = Scene { latency, ..wall(0.0, 0, Coupling::Matched) };
+        assert_eq!(largest_stiffness(&lagging), Limit::Any);
+        let curves = Curves { rates: 1e3..1e4, points: 2, counts_per_turn: 65536.0, used: 0.7 };
+        let [slow, fast] = curves.of(&lagging, 0)[..] else { panic!() };
+        near(slow.stiffness, 2.0 * 0.022 / (1e-3 + 4.6e-4), 1e-9);
+        near(fast.stiffness, 2.0 * 0.022 / (1e-4 + 4.6e-4), 1e-9);
     }
 
     #[test]

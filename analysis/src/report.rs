@@ -1,7 +1,7 @@
 //! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
 
 use firmware::parameter::Parameter;
-use firmware::scene::{Coupling, Scene};
+use firmware::scene::{Coupling, Latency, Scene, TimeRange};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart::Picture;
@@ -145,6 +145,7 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
         rows.push(number("Zeros at z = 1", rational.unit_zeros as f64, ""));
     }
     rows.extend(environment.get(Parameter::Delay).map(|samples| delayed(samples as usize)));
+    rows.extend(latency(&file.scene.latency));
     if !file.chain.is_rigid() {
         rows.push(("Device", format!("a chain of {} masses", file.chain.masses().len())));
     }
@@ -155,6 +156,23 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     rows.extend(file.encoder_step.map(|angle| number("Encoder's step", angle, "rad")));
     rows.extend(file.full_scale.map(|torque| number("Torque at full scale", torque, "N m")));
     rows
+}
+
+/// Times between count and torque that the scene has.
+fn latency(latency: &Latency) -> Vec<(&'static str, String)> {
+    let jitter = TimeRange::exactly(latency.output_jitter);
+    let times = [
+        ("Delay of the output", latency.output_delay),
+        ("Deviation from that delay, at most", jitter),
+        ("Lag of the amplifier", latency.actuator_lag),
+        ("Lag of the encoder's filter", latency.sensor_lag),
+    ];
+    let text = |time: TimeRange| {
+        let [least, most] = [time.least, time.most].map(|end| significant(end, 6));
+        if time.is_exact() { format!("{most} s") } else { format!("{least} to {most} s") }
+    };
+    let present = times.into_iter().filter(|(_, time)| !time.is_zero());
+    present.map(|(name, time)| (name, text(time))).collect()
 }
 
 fn delayed(samples: usize) -> (&'static str, String) {
@@ -191,6 +209,7 @@ fn numbers(report: &VerdictReport, scene: &Scene) -> Markup {
         ("Index of the environment, alpha", enclosure(report.alpha)),
         ("Index with the coupling, alpha", enclosure(report.alpha_coupled)),
     ];
+    rows.extend(report.alpha_port.map(|port| ("Index at the port, with latency", enclosure(port))));
     rows.extend(report.margin.map(|margin| ("Margin", damping(margin))));
     rows.extend(report.theta.map(|theta| {
         let degrees = significant(theta.to_degrees(), 4);

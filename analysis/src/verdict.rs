@@ -8,7 +8,7 @@ use firmware::certificate::{
 };
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
-use firmware::scene::Scene;
+use firmware::scene::{Coupling, Scene};
 use firmware::servo::Latched;
 use serde::Serialize;
 
@@ -112,6 +112,10 @@ pub struct VerdictReport {
     pub alpha: Enclosure,
     /// Index of `E'` (theory, section 4.1).
     pub alpha_coupled: Enclosure,
+    /// Index at the device's port with delay, lag and sensor (theory, section 13): only of a scene that
+    /// has them, or a matched coupling.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alpha_port: Option<Enclosure>,
     /// The bound that decided in place of the linear index: one-sided and limited scenes only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bound: Option<Enclosure>,
@@ -156,6 +160,8 @@ pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
 /// is known of the machine.
 pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> VerdictReport {
     let (assessment, rejection) = match certify_in(scene, format) {
+        // The verdict leaves the index at the port out.
+        Ok(_) if has_port_index(scene) => (assess_in(scene, format), None),
         Ok(assessment) => (assessment, None),
         Err(rejection) => (assess_in(scene, format), Some(rejection)),
     };
@@ -181,6 +187,7 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
         reason: rejection.as_ref().map_or("ok", |rejection| rejection.reason()),
         alpha: enclosure(assessment.alpha),
         alpha_coupled: enclosure(assessment.alpha_coupled),
+        alpha_port: has_port_index(scene).then(|| enclosure(assessment.alpha_port)),
         bound: assessment.bound.map(|bound| enclosure(Some(bound))),
         delta,
         margin,
@@ -201,6 +208,11 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
             .flat_map(|found| found.iter().map(|remedy| remedy.to_string()))
             .collect(),
     }
+}
+
+/// Whether the index at the port is another one than that of `E'`.
+fn has_port_index(scene: &Scene) -> bool {
+    !scene.latency.is_none() || scene.coupling == Coupling::Matched
 }
 
 fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
@@ -231,6 +243,11 @@ fn enclosure(interval: Option<Interval>) -> Enclosure {
 /// certificate has enclosed. None where the real part is the same all around.
 fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
     let cosine = assessment.cos_theta?;
+    if assessment.rule == Rule::Exact && has_port_index(scene) {
+        // What is smallest there depends on delta; the enclosure of its place is narrow.
+        let is_known = cosine.lo() > -1.0 || cosine.hi() < 1.0;
+        return is_known.then(|| cosine.midpoint().clamp(-1.0, 1.0).acos());
+    }
     let transfers = LoopTransfers::in_format(scene, assessment.format).ok()?;
     let judged = match assessment.rule {
         Rule::Exact => transfers.equivalent,

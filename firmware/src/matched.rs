@@ -110,7 +110,8 @@ impl MatchedCoupling {
         };
         let error = exact.rounding(standard, &taps).add(standard.mul(unknown));
         let least = standard.add(given_up).add(error.mul(Interval::exact(EXCESS)));
-        let compliance = format.coefficient(least.hi(), Rounding::Outward);
+        // Above the standard coupling also where nothing lags, by a last bit.
+        let compliance = format.coefficient(least.hi().next_up(), Rounding::Outward);
         let excess = Interval::exact(compliance).sub(standard).sub(given_up);
         let Some(limit) = limit(t, delta, excess, error) else { return None };
         Some(Self { compliance, limit, ..exact })

@@ -59,6 +59,9 @@ pub fn text(report: &VerdictReport) -> String {
         ("alpha", enclosure(report.alpha)),
         ("alpha, coupled", enclosure(report.alpha_coupled)),
     ];
+    if let Some(port) = report.alpha_port {
+        rows.push(("alpha, at the port", enclosure(port)));
+    }
     if let Some(bound) = report.bound {
         rows.push(("alpha, bound", enclosure(bound)));
     }

@@ -25,7 +25,8 @@ pub struct Arguments {
           allow_negative_numbers = true)]
     pub safety: f64,
     /// Keep the coupling of the scene instead of the standard coupling, 2 delta / T.
-    /// `design device` always takes the standard coupling
+    /// `design device` always takes the standard coupling. Where torques lag, and where the coupling is
+    /// matched, it is kept without this option
     #[arg(long, global = true)]
     pub keep_coupling: bool,
     /// Write the certified scenes into this folder instead of standard output

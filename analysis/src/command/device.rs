@@ -95,7 +95,7 @@ fn word(reached: Reached) -> &'static str {
 fn message(chain: &Chain, found: &Result<ExcessPassivity, NoPassivity>) -> String {
     let found = match found {
         Ok(found) => found,
-        Err(reason) => return format!("no passivity: {reason}"),
+        Err(reason) => return format!("no passivity: {reason}{}", without_lag(chain)),
     };
     let delta = significant(found.value, 12);
     let place = match found.reached {
@@ -114,6 +114,18 @@ fn message(chain: &Chain, found: &Result<ExcessPassivity, NoPassivity>) -> Strin
             "delta = {delta} N m s/rad, reached {place}; {own} of it is the damping of the \
              motor's mass"
         ),
+    }
+}
+
+/// What a certificate takes of a device whose amplifier lags.
+fn without_lag(chain: &Chain) -> String {
+    match chain.clone().without_lag().excess_passivity() {
+        Ok(found) if chain.actuator_lag() > 0.0 => format!(
+            "; without it delta is {} N m s/rad, which a certificate takes, with the lag as a part of \
+             the controller",
+            significant(found.value, 12)
+        ),
+        _ => String::new(),
     }
 }
 

@@ -245,10 +245,10 @@ fn unused(file: &SceneFile, is_replay: bool) -> Vec<String> {
         if file.hand.is_some() {
             notes.push("[human] is not used: the counts are those of the recording".to_owned());
         }
-    } else if !file.chain.is_rigid() || file.chain.actuator_lag() > 0.0 {
+    } else if !file.chain.is_rigid() || !file.scene.latency.is_none() {
         let rigid = "the device runs as one rigid body, with all of its inertia and damping";
         notes.push(format!(
-            "{rigid}; `haptic simulate` includes its masses and its amplifier's lag"
+            "{rigid}, without delay and lags; `haptic simulate` includes its masses and these"
         ));
     }
     if file.simulation.is_some() {

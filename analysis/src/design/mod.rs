@@ -37,7 +37,8 @@ impl Default for Terms {
 /// The coupling of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// The standard one, `2 delta / T` with the longest period.
+    /// The standard one, `2 delta / T` with the longest period. Where torques lag there is no standard
+    /// spring, and the scene's is kept, and so is a matched coupling.
     Standard,
     /// Whatever the scene has.
     Kept,
@@ -63,7 +64,8 @@ pub fn prepared(scene: &Scene, terms: &Terms) -> Scene {
     if terms.safety != 1.0 {
         scene.device.passivity = Some(delta);
     }
-    if terms.coupling == Choice::Standard {
+    let has_standard = scene.latency.is_none() && scene.coupling != Coupling::Matched;
+    if terms.coupling == Choice::Standard && has_standard {
         let longest = scene.timing.worst_period.unwrap_or(scene.timing.period);
         scene.coupling = Coupling::Spring { stiffness: 2.0 * delta / longest };
     }
@@ -85,9 +87,14 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
         let longest = (0..=MAX_DELAY).rev().map(|delay| delay as f64).find(|&d| passes(&at(d)));
         return longest.map_or(Answer::Nothing, |delay| Answer::Limit(delay, at(delay)));
     }
+    let longest = quantity.longest(scene.timing.period);
+    if let Some(longest) = longest.filter(|&longest| passes(&at(longest))) {
+        return Answer::Limit(longest, at(longest));
+    }
     let damping = scene.device.damping.max(f64::MIN_POSITIVE);
     let start = match quantity {
         Quantity::Stiffness => damping / scene.timing.period,
+        Quantity::ActuatorLag | Quantity::OutputDelay => scene.timing.period,
         _ => damping,
     };
     match edge(|value| passes(&at(value)), start, 2.0) {

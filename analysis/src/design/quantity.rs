@@ -1,12 +1,13 @@
-//! The numbers of an environment that a design takes as far as they go.
+//! The numbers of a scene that a design takes as far as they go.
 
+use firmware::latency::{LONGEST_DELAY, LONGEST_LAG};
 use firmware::parameter::Parameter;
 use firmware::scene::Scene;
 
 /// Unit of a delay.
 pub const SAMPLES: &str = "samples";
 
-/// A number of the environment that a design can take as far as it goes.
+/// A number of a scene that a design can take as far as it goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Quantity {
     /// Stiffness in N m/rad.
@@ -17,6 +18,10 @@ pub enum Quantity {
     Delay,
     /// Cancellation: the damping in N m s/rad that free mode takes away.
     Cancellation,
+    /// Time constant in s of the amplifier: that of the slowest current loop.
+    ActuatorLag,
+    /// Time in s from a count to its torque: the longest latency.
+    OutputDelay,
 }
 
 impl Quantity {
@@ -27,6 +32,8 @@ impl Quantity {
             Self::Damping => ("damping", "N m s/rad"),
             Self::Delay => ("delay", SAMPLES),
             Self::Cancellation => ("cancellation", "N m s/rad"),
+            Self::ActuatorLag => Parameter::ActuatorLag.name_and_unit(),
+            Self::OutputDelay => Parameter::OutputDelay.name_and_unit(),
         }
     }
 
@@ -37,6 +44,23 @@ impl Quantity {
             Self::Damping => scene.with(Parameter::Damping, value),
             Self::Delay => scene.with(Parameter::Delay, value),
             Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
+            Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
+            Self::OutputDelay => {
+                let mut delayed = scene.with(Parameter::OutputDelay, value)?;
+                // No torque comes before its count.
+                delayed.latency.output_jitter = delayed.latency.output_jitter.min(value);
+                Some(delayed)
+            }
+        }
+    }
+
+    /// The largest that a scene of this period in s may have, whatever its certificate says; `None` where
+    /// there is no such bound.
+    pub(super) fn longest(self, period: f64) -> Option<f64> {
+        match self {
+            Self::ActuatorLag => Some(LONGEST_LAG * period),
+            Self::OutputDelay => Some(LONGEST_DELAY * period),
+            _ => None,
         }
     }
 }

@@ -47,6 +47,46 @@ fn near(is: f64, should: f64) {
     assert!((is / should - 1.0).abs() < 1e-9, "{is} instead of {should}");
 }
 
+fn delayed_spring(stiffness: f64) -> Scene {
+    let coupling = Coupling::Spring { stiffness: 1e12 };
+    Scene { coupling, ..scene(Environment::DelayedSpring(Wall::spring(stiffness, 1))) }
+}
+
+/// Of a spring behind `n + eps` samples, nearly rigid: with `e = 1 + 2 n + 2 eps + 2 tau / T`,
+/// `K T / delta < (sqrt(e^2 + 4 D) - e) / D`.
+#[test]
+fn the_longest_latency_and_the_slowest_current_loop_are_those_of_the_closed_form() {
+    let kept = Terms { coupling: Choice::Kept, ..Terms::default() };
+    let bound = |e: f64, d: f64| 22.0 * ((e * e + 4.0 * d).sqrt() - e) / d;
+    let (eps, ratio) = (0.3, 0.4_f64);
+    let stiffness = bound(3.0 + 2.0 * eps, eps * (1.0 - eps));
+    let (delay, found) = limit(largest(&delayed_spring(stiffness), Quantity::OutputDelay, &kept));
+    assert!((delay / (eps * 1e-3) - 1.0).abs() < 1e-6, "{delay}");
+    assert!(passes(&found) && read(&file(found)) == found);
+    let half = 0.5 / ratio;
+    let stiffness = bound(3.0 + 2.0 * ratio, ratio * ratio * (half / half.tanh() - 1.0));
+    let (lag, found) = limit(largest(&delayed_spring(stiffness), Quantity::ActuatorLag, &kept));
+    assert!((lag / (ratio * 1e-3) - 1.0).abs() < 1e-6, "{lag}");
+    assert!(passes(&found) && read(&file(found)) == found);
+}
+
+#[test]
+fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
+    let kept = Terms { coupling: Choice::Kept, ..Terms::default() };
+    let soft = delayed_spring(1e-6);
+    assert_eq!(limit(largest(&soft, Quantity::OutputDelay, &kept)).0, 0.008);
+    assert_eq!(limit(largest(&soft, Quantity::ActuatorLag, &kept)).0, 0.1);
+    let stiff = delayed_spring(23.0);
+    assert!(matches!(largest(&stiff, Quantity::OutputDelay, &kept), Answer::Nothing));
+    let mut matched = scene(wall(10.0, 0.0, 0));
+    matched.coupling = Coupling::Matched;
+    let (_, found) = limit(largest(&matched, Quantity::Delay, &Terms::default()));
+    assert_eq!(found.coupling, Coupling::Matched);
+    let mut lagging = delayed_spring(1.0);
+    lagging.latency = Latency::delayed(1e-5);
+    assert_eq!(prepared(&lagging, &Terms::default()).coupling, lagging.coupling);
+}
+
 /// `K T / 2 + B < b` (theory, section 5).
 #[test]
 fn papers_wall_in_all_directions() {

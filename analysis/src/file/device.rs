@@ -1,6 +1,6 @@
-//! The table of a device: a rigid body, or a chain of masses, perhaps behind an amplifier that lags.
+//! The table of a device: a rigid body, or a chain of masses, and the lags at its two ends.
 
-use firmware::scene::Device;
+use firmware::scene::{Device, TimeRange};
 
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key};
@@ -19,9 +19,22 @@ pub enum Purpose {
     Simulate,
 }
 
-/// Reads `[device]`: the chain, the rigid body that stands for it in a certificate, and the dry
-/// friction of the motor's mass.
-pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<(Chain, Device, Option<f64>)> {
+/// What `[device]` says.
+pub struct DeviceTable {
+    /// The chain, without the lag of its amplifier.
+    pub chain: Chain,
+    /// The rigid body that stands for it in a certificate.
+    pub device: Device,
+    /// Dry friction of the motor's mass in N m.
+    pub friction: Option<f64>,
+    /// Time constant of the amplifier.
+    pub actuator_lag: Option<Found<TimeRange>>,
+    /// Time constant of the filter behind the encoder.
+    pub sensor_lag: Option<Found<TimeRange>>,
+}
+
+/// Reads `[device]`.
+pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let friction = section.optional(&key::DEVICE_FRICTION);
     let masses = section.tables(&key::MASS);
     let is_rigid = matches!(masses, Ok(None));
@@ -36,28 +49,19 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<(Chain, Device
     };
     let declared = section.found(&key::PASSIVITY);
     let encoder = section.text(&key::ENCODER);
-    let lag = section.found(&key::ACTUATOR_LAG);
+    let [actuator_lag, sensor_lag] =
+        [&key::ACTUATOR_LAG, &key::SENSOR_LAG].map(|key| section.time(key));
     section.finish();
     let (friction, chain, declared) = (friction?, chain?, declared?);
-    let (encoder, lag) = (encoder?, lag?);
+    let (encoder, actuator_lag, sensor_lag) = (encoder?, actuator_lag?, sensor_lag?);
     let chain = placed(&section, chain, encoder.as_ref())?;
-    let chain = match &lag {
-        None => chain,
-        Some(Found { value, span }) => {
-            let lagging = chain.with_actuator_lag(*value);
-            lagging.map_err(|error| {
-                section.conflict(&key::ACTUATOR_LAG, span.clone(), error.to_string())
-            })?
-        }
-    };
-    let place = match (&lag, &encoder) {
-        (_, Some(found)) if !chain.is_collocated() => (&key::ENCODER, found.span.clone()),
-        (Some(found), _) => (&key::ACTUATOR_LAG, found.span.clone()),
+    let place = match &encoder {
+        Some(found) if !chain.is_collocated() => (&key::ENCODER, found.span.clone()),
         _ => (&key::DEVICE, section.span()),
     };
     let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok((chain, device, friction))
+    Ok(DeviceTable { chain, device, friction, actuator_lag, sensor_lag })
 }
 
 fn rigid(section: &mut Section<'_>) -> Read<Chain> {

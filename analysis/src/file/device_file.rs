@@ -1,11 +1,14 @@
 //! A file of a device, or the device of a scene's file.
 
-use super::device::{Purpose, device};
+use firmware::scene::TimeRange;
+
+use super::device::{DeviceTable, Purpose, device};
 use super::faults::{Faults, Read};
 use super::key::{self, Key};
+use super::problem::{Fault, Problem};
 use super::scene;
-use super::section::Section;
-use super::tree::Node;
+use super::section::{Found, Section};
+use super::tree::{Node, Span};
 use crate::chain::Chain;
 
 /// A file that describes a device.
@@ -13,7 +16,7 @@ use crate::chain::Chain;
 pub struct DeviceFile {
     /// What the person calls it, or the scene that it is part of.
     pub name: Option<String>,
-    /// The device.
+    /// The device, behind its amplifier; of a lag that is known to lie in a range, the middle.
     pub chain: Chain,
 }
 
@@ -25,11 +28,27 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
     let mut top = Section::new(source, "a device's file", &ROOT, root.clone())?;
     if [key::SERVO, key::ENVIRONMENT].iter().any(|key| top.has(key)) {
         let scene = scene::read(source, root, Purpose::Simulate)?;
-        return Ok(DeviceFile { name: Some(scene.name), chain: scene.chain });
+        let lag = scene.scene.latency.actuator_lag;
+        let chain = lagging(source.1, scene.chain, lag, 0..0)?;
+        return Ok(DeviceFile { name: Some(scene.name), chain });
     }
     let name = top.text(&key::NAME);
     let table = top.needed_table(&key::DEVICE);
     top.finish();
-    let (chain, ..) = table.and_then(|table| device(table, Purpose::Simulate))?;
+    let DeviceTable { chain, actuator_lag, .. } =
+        table.and_then(|table| device(table, Purpose::Simulate))?;
+    let chain = match actuator_lag {
+        Some(Found { value, span }) => lagging(source.1, chain, value, span)?,
+        None => chain,
+    };
     Ok(DeviceFile { name: name?.map(|found| found.value), chain })
+}
+
+/// The chain behind its amplifier. No lag that was read is refused.
+fn lagging(faults: &Faults, chain: Chain, lag: TimeRange, span: Span) -> Read<Chain> {
+    chain.with_actuator_lag(lag.middle()).map_err(|error| {
+        let (key, value) = (key::ACTUATOR_LAG.path, lag.middle().to_string());
+        let problem = Problem::Conflict { key, value, reason: error.to_string() };
+        faults.report(Fault { span, problem })
+    })
 }

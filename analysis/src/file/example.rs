@@ -6,9 +6,14 @@ use super::kind::{self, Kind};
 /// The example of a device that is a chain of masses.
 pub const CHAIN: &str = "chain";
 
-/// Optional keys that an example sets, so that the device moves and a hand holds it.
-const SET: &[&Key] =
-    &[&key::TORQUE_PULSES, &key::HUMAN_INERTIA, &key::HUMAN_DAMPING, &key::HUMAN_STIFFNESS];
+/// Optional keys that an example sets, so that there is a spring, the device moves and a hand holds it.
+const SET: &[&Key] = &[
+    &key::COUPLING_STIFFNESS,
+    &key::TORQUE_PULSES,
+    &key::HUMAN_INERTIA,
+    &key::HUMAN_DAMPING,
+    &key::HUMAN_STIFFNESS,
+];
 
 /// Columns of a comment.
 const WIDTH: usize = 96;
@@ -53,7 +58,7 @@ fn environment(lines: &mut Vec<String>, kind: &Kind) {
 /// `[device]`: a rigid body, or a motor and a handle on a shaft.
 fn device(lines: &mut Vec<String>, keys: impl Iterator<Item = &'static Key>, is_chain: bool) {
     let of_a_body = [&key::INERTIA, &key::DEVICE_DAMPING];
-    let of_a_chain = [&key::ENCODER, &key::ACTUATOR_LAG];
+    let of_a_chain = [&key::ENCODER];
     for key in keys.filter(|key| ![&key::MASS, &key::LINK].contains(key)) {
         let belongs = if is_chain { !of_a_body.contains(&key) } else { !of_a_chain.contains(&key) };
         // A chain's passivity is not the example's.

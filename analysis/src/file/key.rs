@@ -35,6 +35,8 @@ pub enum Form {
     Table,
     /// Tables in a row.
     Tables,
+    /// A time, or the two ends of the range that it is known to lie in.
+    Time,
 }
 
 impl Bound {
@@ -155,6 +157,10 @@ const fn whole(least: u32, most: u32) -> Bound {
     Bound::Number(Range::Whole(least, most))
 }
 
+const TIME: Bound = Bound::Other(
+    Form::Time,
+    "a finite number, 0 s or more, or a list of two, [least, most], where only the range is known",
+);
 const TABLE: Bound = Bound::Other(Form::Table, "a table");
 const POLYNOMIAL: Bound = Bound::Other(
     Form::Numbers,
@@ -208,10 +214,13 @@ keys! {
     /// no passivity, and nothing certifies.
     ENCODER = other("device.encoder", "", Bound::Other(Form::OneOf(&["motor", "hand"]), "\"motor\" or \"hand\"")),
         Optional("\"motor\""), "\"motor\"";
-    /// Time constant of the amplifier's first-order lag. A device with one has no passivity, and
-    /// nothing certifies; `simulate`, `stability` and `device` take it.
-    ACTUATOR_LAG = other("device.actuator_lag", "s", NOT_NEGATIVE),
-        Default(0.0), "0.0";
+    /// Time constant of the amplifier, a first-order lag of at most 100 periods. It counts as the
+    /// controller's: the device's passivity is that without it. Simulations take the middle of a range.
+    ACTUATOR_LAG = Key { bound: TIME, ..of(Parameter::ActuatorLag) },
+        Default(0.0), "[5.0e-5, 8.0e-5]";
+    /// Time constant of a first-order filter between encoder and servo, in the same way.
+    SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) },
+        Default(0.0), "2.0e-5";
 
     /// When the servo runs.
     SERVO = other("servo", "", TABLE),
@@ -222,13 +231,25 @@ keys! {
     /// Longest tolerated time between two updates, not less than the period.
     WORST_PERIOD = Key { bound: POSITIVE, ..of(Parameter::WorstPeriod) },
         Optional("the period: no update may be missed"), "0.001";
+    /// Time from a count to its torque, at most 8 periods, in addition to `environment.delay`.
+    OUTPUT_DELAY = Key { bound: TIME, ..of(Parameter::OutputDelay) },
+        Default(0.0), "[4.0e-6, 6.0e-6]";
+    /// Largest deviation from that delay, to either side, which may differ from tick to tick. Not more
+    /// than the delay. Simulations leave it out.
+    OUTPUT_JITTER = of(Parameter::OutputJitter),
+        Default(0.0), "0.0";
 
-    /// The virtual spring between device and environment.
+    /// What connects device and environment.
     COUPLING = other("coupling", "", TABLE),
         Optional("the connection is rigid"), "";
-    /// Its stiffness. The paper's is twice the passivity over the period.
+    /// A spring, or the coupling that absorbs delays and lags: its numbers follow from period,
+    /// passivity, delay and lags, and behind it a passive environment stays passive.
+    COUPLING_TYPE = other("coupling.type", "", Bound::Other(Form::OneOf(&["spring", "matched"]), "\"spring\" or \"matched\"")),
+        Optional("\"spring\""), "\"spring\"";
+    /// Stiffness of the spring. The paper's is twice the passivity over the period. A matched coupling
+    /// takes none.
     COUPLING_STIFFNESS = of(Parameter::CouplingStiffness),
-        Needed, "44.0";
+        Optional("an error with a spring"), "44.0";
 
     /// What the hand shall feel.
     ENVIRONMENT = other("environment", "", TABLE),
@@ -321,7 +342,8 @@ keys! {
     /// Dry friction in the simulation, where it is not that of the device.
     FRICTION = other("simulation.friction", "N m", NOT_NEGATIVE),
         Optional("`device.friction`, or none"), "0.002";
-    /// Time from a sample to its torque, less than the period.
+    /// Time from a sample to its torque that is only simulated, less than the period, in addition to
+    /// `servo.output_delay`.
     LATENCY = other("simulation.latency", "s", NOT_NEGATIVE),
         Default(0.0), "0.0002";
     /// Ticks in which the servo does not run: every so many, or by chance.

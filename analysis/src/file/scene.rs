@@ -2,9 +2,10 @@
 
 use firmware::certificate::Resolution;
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational};
-use firmware::scene::{Coupling, Latency, Scene, Timing};
+use firmware::latency::{LONGEST_DELAY, LONGEST_LAG};
+use firmware::scene::{Coupling, Latency, Scene, TimeRange, Timing};
 
-use super::device::{self, Purpose};
+use super::device::{self, DeviceTable, Purpose};
 use super::faults::{Faults, Read, all};
 use super::key::{self, Key};
 use super::kind::Kind;
@@ -22,7 +23,7 @@ pub struct SceneFile {
     /// The scene itself; nothing about it is certified yet. Its device is the rigid body that
     /// stands for the chain: all inertia, all damping to the ground, and the chain's passivity.
     pub scene: Scene,
-    /// The device as the file describes it, for simulation.
+    /// The device as the file describes it, for simulation; the lags at its two ends are the scene's.
     pub chain: Chain,
     /// What a simulation starts from.
     pub simulation: Option<Simulation>,
@@ -54,21 +55,23 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         [&key::COUPLING, &key::SIMULATION, &key::HUMAN, &key::LIMITS].map(|key| top.table(key));
     top.finish();
     let device = device.and_then(|table| device::device(table, purpose));
-    let timing = servo.and_then(timing_of);
+    let servo = servo.and_then(servo_of);
     let coupling = coupling.and_then(|table| table.map_or(Ok(Coupling::Rigid), coupling_of));
     let environment = environment.and_then(environment_of);
     // Of a servo that could not be read, any latency is short enough.
-    let period = timing.map_or(f64::INFINITY, |timing| timing.period);
-    let rubs = device.as_ref().map_or(0.0, |(.., friction)| friction.unwrap_or(0.0));
+    let period = servo.as_ref().map_or(f64::INFINITY, |servo| servo.timing.period);
+    let rubs = device.as_ref().map_or(0.0, |table| table.friction.unwrap_or(0.0));
     let simulation = simulation
         .and_then(|table| table.map(|it| simulation::simulation(it, period, rubs)).transpose());
     let hand = human.and_then(|table| table.map(simulation::hand).transpose());
     let limits = limits.and_then(|table| table.map_or(Ok([None; 3]), limits_of));
-    let (name, (chain, device, friction)) = (name?.value, device?);
+    let (name, table) = (name?.value, device?);
     let [torque_limit, encoder_step, full_scale] = limits?;
-    let (timing, coupling, environment) = (timing?, coupling?, environment?);
-    let scene =
-        Scene { device, timing, coupling, environment, latency: Latency::NONE, torque_limit };
+    let (servo, coupling, environment) = (servo?, coupling?, environment?);
+    let latency = latency_of(&top, &servo, &table)?;
+    let DeviceTable { chain, device, friction, .. } = table;
+    let timing = servo.timing;
+    let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
     let (simulation, hand) = (simulation?, hand?);
     Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction })
 }
@@ -76,24 +79,94 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
 /// The file as a whole: it has no name, and must be a table.
 const ROOT: Key = Key::root("a table of `name`, [device], [servo] and [environment]");
 
-fn timing_of(mut section: Section<'_>) -> Read<Timing> {
+/// What `[servo]` says.
+struct Servo {
+    timing: Timing,
+    output_delay: Option<Found<TimeRange>>,
+    output_jitter: Option<Found<f64>>,
+}
+
+fn servo_of(mut section: Section<'_>) -> Read<Servo> {
     let period = section.number(&key::PERIOD);
     let worst = section.found(&key::WORST_PERIOD);
+    let output_delay = section.time(&key::OUTPUT_DELAY);
+    let output_jitter = section.found(&key::OUTPUT_JITTER);
     section.finish();
     let (period, worst) = (period?, worst?);
+    let (output_delay, output_jitter) = (output_delay?, output_jitter?);
     if let Some(Found { value, span }) = &worst
         && *value < period
     {
         let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
         return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
     }
-    Ok(Timing { period, worst_period: worst.map(|found| found.value) })
+    let timing = Timing { period, worst_period: worst.map(|found| found.value) };
+    Ok(Servo { timing, output_delay, output_jitter })
 }
 
+/// The times between count and torque, each of which has a bound that other keys give.
+fn latency_of(top: &Section<'_>, servo: &Servo, device: &DeviceTable) -> Read<Latency> {
+    let period = servo.timing.period;
+    let within = |key: &'static Key, found: &Option<Found<TimeRange>>, longest: f64| {
+        let Some(Found { value, span }) = found else { return Ok(TimeRange::ZERO) };
+        if value.most <= longest * period {
+            return Ok(*value);
+        }
+        let name = key::PERIOD.path;
+        let reason =
+            format!("is more than {longest} times `{name}` = {period} s, the most that it may be");
+        Err(top.conflict(key, span.clone(), reason))
+    };
+    let output_delay = within(&key::OUTPUT_DELAY, &servo.output_delay, LONGEST_DELAY);
+    let actuator_lag = within(&key::ACTUATOR_LAG, &device.actuator_lag, LONGEST_LAG);
+    let sensor_lag = within(&key::SENSOR_LAG, &device.sensor_lag, LONGEST_LAG);
+    let output_jitter = jitter_of(top, servo);
+    Ok(Latency {
+        output_delay: output_delay?,
+        output_jitter: output_jitter?,
+        actuator_lag: actuator_lag?,
+        sensor_lag: sensor_lag?,
+    })
+}
+
+fn jitter_of(top: &Section<'_>, servo: &Servo) -> Read<f64> {
+    let Some(Found { value, span }) = &servo.output_jitter else { return Ok(0.0) };
+    let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
+    if *value <= least {
+        return Ok(*value);
+    }
+    let reason = format!(
+        "is more than the least `{}` = {least} s: no torque comes before its count",
+        key::OUTPUT_DELAY.path
+    );
+    Err(top.conflict(&key::OUTPUT_JITTER, span.clone(), reason))
+}
+
+/// The `coupling.type` that takes no stiffness.
+pub const MATCHED: &str = "matched";
+
 fn coupling_of(mut section: Section<'_>) -> Read<Coupling> {
-    let stiffness = section.number(&key::COUPLING_STIFFNESS);
+    let name = section.text(&key::COUPLING_TYPE);
+    let stiffness = section.found(&key::COUPLING_STIFFNESS);
+    let coupling = match (name, stiffness) {
+        (Err(reported), _) | (_, Err(reported)) => Err(reported),
+        (Ok(Some(name)), Ok(stiffness)) if name.value == MATCHED => match stiffness {
+            None => Ok(Coupling::Matched),
+            Some(found) => {
+                let other = key::COUPLING_TYPE.path;
+                let reason =
+                    format!("stands beside `{other}` = \"{MATCHED}\", which takes no stiffness");
+                Err(section.conflict(&key::COUPLING_STIFFNESS, found.span, reason))
+            }
+        },
+        (Ok(Some(name)), _) if name.value != "spring" => {
+            Err(section.out_of_bounds(&key::COUPLING_TYPE, key::COUPLING_TYPE.path, &name.span))
+        }
+        (_, Ok(Some(stiffness))) => Ok(Coupling::Spring { stiffness: stiffness.value }),
+        (_, Ok(None)) => Err(section.missing(&key::COUPLING_STIFFNESS)),
+    };
     section.finish();
-    Ok(Coupling::Spring { stiffness: stiffness? })
+    coupling
 }
 
 fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {

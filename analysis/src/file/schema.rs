@@ -21,6 +21,23 @@ fn table(path: &str) -> Value {
     match path {
         "environment" => json!({ "oneOf": kind::ALL.iter().map(of_kind).collect::<Vec<_>>() }),
         // Inertia and damping are those of a rigid body, and a chain's masses have their own.
+        "coupling" => {
+            let mut schema = object(keys, |_| false);
+            let matched = json!({ "const": super::scene::MATCHED });
+            let spring = json!({
+                "required": [key::COUPLING_STIFFNESS.name()],
+                "properties": { key::COUPLING_TYPE.name(): { "not": matched } },
+            });
+            let matched = json!({
+                "required": [key::COUPLING_TYPE.name()],
+                "properties": {
+                    key::COUPLING_TYPE.name(): matched,
+                    key::COUPLING_STIFFNESS.name(): false,
+                },
+            });
+            schema["oneOf"] = json!([spring, matched]);
+            schema
+        }
         "device" => {
             let mut schema = object(keys, |_| false);
             let body = [key::INERTIA.name(), key::DEVICE_DAMPING.name()];
@@ -71,6 +88,13 @@ fn property(key: &Key) -> Value {
             Form::OneOf(words) => json!({ "enum": words }),
             Form::Boolean => json!({ "type": "boolean" }),
             Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+            Form::Time => {
+                let time = json!({ "type": "number", "minimum": 0 });
+                let range = json!({
+                    "type": "array", "items": time, "minItems": 2, "maxItems": 2
+                });
+                json!({ "anyOf": [time, range] })
+            }
             Form::Table => table(key.path),
             Form::Tables => json!({ "type": "array", "minItems": 1, "items": table(key.path) }),
         },

@@ -1,6 +1,9 @@
 //! Reads a table key by key; a key that is never read is unknown. Reading continues after an error, so
 //! that a user who corrects a file sees all errors at once.
 
+use firmware::parameter::Range;
+use firmware::scene::TimeRange;
+
 use super::faults::{Faults, Read, Reported, all};
 use super::key::{Key, Presence};
 use super::problem::{Fault, Problem, excerpt};
@@ -128,6 +131,38 @@ impl<'t> Section<'t> {
         match key.presence {
             Presence::Optional(_) => self.optional(key),
             _ => self.number(key).map(Some),
+        }
+    }
+
+    /// The time of that key in s, or the range that it lies in, with its place, if it is there.
+    pub fn time(&mut self, key: &Key) -> Read<Option<Found<TimeRange>>> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let span = node.span.clone();
+        let value = match &node.value {
+            Value::List(ends) => match &ends[..] {
+                [least, most] => {
+                    let ends = [("[0]", least), ("[1]", most)];
+                    let [least, most] = ends.map(|(place, end)| {
+                        self.seconds(key, &format!("{}{place}", key.path), end)
+                    });
+                    TimeRange::between(least?, most?)
+                }
+                _ => return Err(self.out_of_bounds(key, key.path, &span)),
+            },
+            _ => TimeRange::exactly(self.seconds(key, key.path, &node)?),
+        };
+        if value.least > value.most {
+            let reason = "is a range that ends before it begins: write [least, most]".to_owned();
+            return Err(self.conflict(key, span, reason));
+        }
+        Ok(Some(Found { value, span }))
+    }
+
+    fn seconds(&self, key: &Key, path: &str, node: &Node) -> Read<f64> {
+        match node.value {
+            Value::Number(value) if Range::NotNegative.admits(value) => Ok(value),
+            Value::Number(_) => Err(self.out_of_bounds(key, path, &node.span)),
+            ref other => Err(self.wrong_kind(key, &node.span, other)),
         }
     }
 

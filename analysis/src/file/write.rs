@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use firmware::environment::{Coefficients, Environment};
 use firmware::parameter::{Parameter, Range};
-use firmware::scene::{Coupling, Device};
+use firmware::scene::{Coupling, Scene, TimeRange};
 
 use super::key::{self, Bound, Key, Presence};
 use super::kind::Kind;
@@ -18,11 +18,19 @@ pub fn toml(file: &SceneFile) -> String {
     let SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction } =
         file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
-    device(&mut lines, chain, &scene.device, *friction);
+    device(&mut lines, chain, scene, *friction);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
     number(&mut lines, "worst_period", scene.timing.worst_period);
-    if let Coupling::Spring { stiffness } = scene.coupling {
-        lines.push(format!("[coupling]\nstiffness = {stiffness:?}"));
+    time(&mut lines, "output_delay", scene.latency.output_delay);
+    time(&mut lines, "output_jitter", TimeRange::exactly(scene.latency.output_jitter));
+    match scene.coupling {
+        Coupling::Rigid => {}
+        Coupling::Spring { stiffness } => {
+            lines.push(format!("[coupling]\nstiffness = {stiffness:?}"));
+        }
+        Coupling::Matched => {
+            lines.push(format!("[coupling]\ntype = {}", quoted(super::scene::MATCHED)));
+        }
     }
     lines.push("[environment]".to_owned());
     environment(&mut lines, &scene.environment);
@@ -51,10 +59,20 @@ fn number(lines: &mut Vec<String>, key: &str, value: Option<f64>) {
     lines.extend(value.map(|value| format!("{key} = {value:?}")));
 }
 
+/// A time or its range, unless it is the 0 that counts where it is left out.
+fn time(lines: &mut Vec<String>, key: &str, TimeRange { least, most }: TimeRange) {
+    // By their bits: -0.0 is another number than 0.0.
+    match (least.to_bits(), most.to_bits()) {
+        (0, 0) => {}
+        (a, b) if a == b => lines.push(format!("{key} = {least:?}")),
+        _ => lines.push(format!("{key} = [{least:?}, {most:?}]")),
+    }
+}
+
 /// Writes the passivity only if it was declared and differs from the chain's own.
-fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Option<f64>) {
+fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Option<f64>) {
     let own = chain.as_rigid().ok().and_then(|own| own.passivity);
-    let declared = device.passivity.filter(|passivity| !passivity.is_nan());
+    let declared = scene.device.passivity.filter(|passivity| !passivity.is_nan());
     let passivity = declared.filter(|&declared| Some(declared) != own);
     if let [mass] = chain.masses() {
         lines.push(format!("inertia = {:?}\ndamping = {:?}", mass.inertia, mass.damping));
@@ -64,7 +82,8 @@ fn device(lines: &mut Vec<String>, chain: &Chain, device: &Device, friction: Opt
     if chain.encoder() == EncoderPlace::Hand {
         lines.push(format!("encoder = {}", quoted(EncoderPlace::Hand.word())));
     }
-    number(lines, "actuator_lag", Some(chain.actuator_lag()).filter(|&lag| lag > 0.0));
+    time(lines, "actuator_lag", scene.latency.actuator_lag);
+    time(lines, "sensor_lag", scene.latency.sensor_lag);
     if chain.masses().len() > 1 {
         let damped = |table: &str, key: &str, value: f64, damping: f64| {
             format!("[[device.{table}]]\n{key} = {value:?}\ndamping = {damping:?}")
@@ -194,8 +213,34 @@ mod tests {
         }
         let [first, second] =
             again(&text(&chain("encoder = \"hand\"\nactuator_lag = 1e-4\n"), SPRING));
+        assert_eq!(first.scene.latency.actuator_lag, TimeRange::exactly(1e-4));
         // Its passivity is not a number, which equals nothing.
         assert_eq!((&first.chain, toml(&first)), (&second.chain, toml(&second)));
+    }
+
+    #[test]
+    fn latency_and_a_matched_coupling_are_kept_to_the_last_bit() {
+        for (device, servo, coupling) in [
+            ("actuator_lag = [1e-5, 1.0000000000000002e-5]\n", "", ""),
+            ("sensor_lag = 3e-5\n", "output_delay = [0, 5e-6]\n", "type = \"matched\"\n"),
+            (
+                "",
+                "output_delay = 0.0081\noutput_jitter = 1e-6\n",
+                "type = \"spring\"\nstiffness = 4\n",
+            ),
+            ("actuator_lag = -0.0\n", "output_delay = [1e-6, 1e-6]\noutput_jitter = 1e-6\n", ""),
+        ] {
+            let coupling =
+                if coupling.is_empty() { "" } else { &format!("[coupling]\n{coupling}") };
+            let period = "period = 0.00125\n";
+            let read = text(&format!("{RIGID}{device}"), &format!("{SPRING}{coupling}"))
+                .replace("period = 0.001\nworst_period = 0.003\n", &format!("{period}{servo}"));
+            let [first, second] = again(&read);
+            assert_eq!(first, second);
+            let bits = |file: &SceneFile| file.scene.latency.actuator_lag.least.to_bits();
+            assert_eq!(bits(&first), bits(&second));
+            assert!(!first.scene.latency.is_none() || device.contains("-0.0"), "{first:?}");
+        }
     }
 
     #[test]

@@ -3,15 +3,15 @@
 
 use firmware::certificate::LoopTransfers;
 use firmware::passivity::transfer::Unbuildable;
-use firmware::scene::Scene;
+use firmware::scene::{Coupling, Scene};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::discrete_plant::DiscretePlant;
-use super::plant::POSITION;
 use crate::response::Response;
 
-/// The transfer functions of environment and controller. The passivity that the scene declares has
-/// no part in them, and a scene that has none is simulated like any other.
+/// The transfer functions of environment and controller. Only a matched coupling depends on the
+/// passivity that the scene declares; with another one a scene that has none is simulated like any
+/// other.
 ///
 /// # Errors
 /// Where the environment is not causal, the loop of coupling and environment has no solution, or
@@ -22,14 +22,17 @@ pub fn transfers(scene: &Scene) -> Result<LoopTransfers, Unbuildable> {
     /// has more passivity than damping.
     const ANY: f64 = -1e200;
     let mut scene = *scene;
-    scene.device.passivity = Some(ANY);
+    // The matched coupling is made of the passivity, and nothing stands behind another one there.
+    if scene.coupling != Coupling::Matched {
+        scene.device.passivity = Some(ANY);
+    }
     LoopTransfers::of(&scene)
 }
 
 /// `z(k+1) = matrix z(k) + inputs`, with the coupling torque `F = torque z`.
 ///
-/// The state `z` is that of the plant, the motor torque of the tick before where there is latency,
-/// and that of the controller `C = E / (1 + V E)` (direct form II, transposed).
+/// The state `z` is that of the plant, the motor torques of ticks before that are still to act, and that
+/// of the controller `C = E / (1 + V E)` (direct form II, transposed).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
     /// State transition over a tick.
@@ -50,31 +53,26 @@ impl ClosedLoop {
         let controller = Response::new(transfers(scene)?.controller);
         let filter = controller.filter().ok_or(Unbuildable::OutOfRange)?;
         let (numerator, denominator) = (filter.numerator(), filter.denominator());
-        let (n, late, degree) =
-            (tick.transition.nrows(), usize::from(tick.is_late()), denominator.len() - 1);
-        let first = n + late;
+        let (transition, motor) = tick.with_pending();
+        let (first, degree) = (motor.nrows(), denominator.len() - 1);
         let size = first + degree;
         let mut torque = RowDVector::zeros(size);
-        torque[POSITION] = numerator[0];
+        torque[tick.measured] = numerator[0];
         if degree > 0 {
             torque[first] = 1.0;
         }
         let mut matrix = DMatrix::zeros(size, size);
-        matrix.view_mut((0, 0), (n, n)).copy_from(&tick.transition);
-        matrix.view_mut((0, 0), (n, size)).ger(-1.0, &tick.motor, &torque.transpose(), 1.0);
-        if late == 1 {
-            matrix.view_mut((0, n), (n, 1)).copy_from(&tick.previous);
-            matrix.row_mut(n).copy_from(&-&torque);
-        }
+        matrix.view_mut((0, 0), (first, first)).copy_from(&transition);
+        matrix.view_mut((0, 0), (first, size)).ger(-1.0, &motor, &torque.transpose(), 1.0);
         for i in 1..=degree {
             let row = first + i - 1;
             matrix.row_mut(row).copy_from(&(&torque * -denominator[i]));
-            matrix[(row, POSITION)] += numerator[i];
+            matrix[(row, tick.measured)] += numerator[i];
             if i < degree {
                 matrix[(row, row + 1)] += 1.0;
             }
         }
-        Ok(Self { matrix, torque, plant: n })
+        Ok(Self { matrix, torque, plant: tick.transition.nrows() })
     }
 
     /// A vector of the plant's states as one of the whole loop's.

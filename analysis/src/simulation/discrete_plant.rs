@@ -15,14 +15,27 @@ pub struct Discretization {
     pub substeps: u32,
     /// Period of the servo in s.
     pub period: f64,
-    /// Time in s from the sample to the torque that follows from it, less than the period.
+    /// Whole ticks from the sample to the torque that follows from it.
+    pub whole: usize,
+    /// Time in s that it takes besides, less than the period.
     pub latency: f64,
 }
 
 impl Discretization {
     /// The exact method without latency, over a period in s.
     pub fn exact(period: f64) -> Self {
-        Self { method: Method::Exact, substeps: 1, period, latency: 0.0 }
+        Self { method: Method::Exact, substeps: 1, period, whole: 0, latency: 0.0 }
+    }
+
+    /// The same with this time in s from the sample to its torque.
+    pub fn delayed(self, delay: f64) -> Self {
+        // What is left of a whole tick by rounding alone is no part of a tick.
+        const ROUNDING: f64 = 1e-12;
+        let ticks = delay / self.period;
+        let whole = (ticks + ROUNDING).floor();
+        let part = (delay - whole * self.period).max(0.0);
+        let latency = if ticks - whole > ROUNDING { part } else { 0.0 };
+        Self { whole: whole as usize, latency, ..self }
     }
 
     /// The two parts of a tick, before and after the new torque: length in s and steps.
@@ -33,15 +46,20 @@ impl Discretization {
     }
 }
 
-/// `x(k+1) = transition x(k) + previous u(k-1) + motor u(k) + hand w(k) + sine (s, c)(k)`.
+/// `x(k+1) = transition x(k) + previous u(k-n-1) + motor u(k-n) + hand w(k) + sine (s, c)(k)`, with
+/// `n = whole`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscretePlant {
     /// From the state at the tick's start.
     pub transition: DMatrix<f64>,
-    /// From the motor torque of the tick before, which lasts for the latency; zero without one.
+    /// From the motor torque before the next one, which lasts for the latency; zero without one.
     pub previous: DVector<f64>,
-    /// From the motor torque that this tick's sample leads to.
+    /// From the motor torque that the sample of `whole` ticks ago leads to.
     pub motor: DVector<f64>,
+    /// Whole ticks from a sample to its torque.
+    pub whole: usize,
+    /// The state that the servo reads.
+    pub measured: usize,
     /// From the hand's torque held over the tick.
     pub hand: DVector<f64>,
     /// From the hand's sine torque at the tick's start and from its cosine.
@@ -73,6 +91,8 @@ impl DiscretePlant {
             transition: &late * part(&before),
             previous: &late * column(&before, motor),
             motor: column(&after, motor),
+            whole: discretization.whole,
+            measured: plant.measured(),
             hand: &late * column(&before, hand) + column(&after, hand),
             sine: [oscillator(0), oscillator(1)],
         }
@@ -104,9 +124,37 @@ impl DiscretePlant {
         &self.transition * state + &self.motor * motor + &self.hand * hand
     }
 
-    /// Whether the tick depends on the torque of the one before.
+    /// Whether a torque begins within a tick.
     pub fn is_late(&self) -> bool {
         self.previous.iter().any(|&effect| effect != 0.0)
+    }
+
+    /// Torques of ticks before that are still to act.
+    pub fn pending(&self) -> usize {
+        self.whole + usize::from(self.is_late())
+    }
+
+    /// Transition of the plant's states with the torques behind them that are still to act, the newest
+    /// first, and what the torque of this tick's sample adds to the two.
+    pub fn with_pending(&self) -> (DMatrix<f64>, DVector<f64>) {
+        let (n, pending) = (self.transition.nrows(), self.pending());
+        let size = n + pending;
+        let mut transition = self.transition.clone().resize(size, size, 0.0);
+        let mut motor = DVector::zeros(size);
+        for (age, effect) in [(self.whole, &self.motor), (self.whole + 1, &self.previous)] {
+            if age == 0 {
+                motor.rows_mut(0, n).copy_from(effect);
+            } else if age <= pending {
+                transition.view_mut((0, n + age - 1), (n, 1)).copy_from(effect);
+            }
+        }
+        if pending > 0 {
+            motor[n] = 1.0;
+        }
+        for row in n + 1..size {
+            transition[(row, row - 1)] = 1.0;
+        }
+        (transition, motor)
     }
 }
 
@@ -118,8 +166,7 @@ mod tests {
     #[test]
     fn latency_splits_the_tick_and_nothing_else() {
         let plant = Plant::rigid(Device { inertia: 2e-4, damping: 0.02, passivity: None });
-        let discretization =
-            |latency| Discretization { method: Method::Exact, substeps: 1, period: 1e-3, latency };
+        let discretization = |delay| Discretization::exact(1e-3).delayed(delay);
         let [prompt, late] =
             [0.0, 4e-4].map(|latency| DiscretePlant::new(&plant, &discretization(latency), 900.0));
         assert!(!prompt.is_late() && late.is_late());

@@ -18,7 +18,7 @@ use crate::missed::Missed;
 pub struct Experiment {
     /// The scene; its device is where the canceller's damping comes from.
     pub scene: Scene,
-    /// The machine, with the hand that holds it and its amplifier's lag.
+    /// The machine, with the hand that holds it; the lags at its two ends are the scene's.
     pub plant: Plant,
     /// How the device moves at sample 0.
     pub start: Motion,
@@ -30,7 +30,7 @@ pub struct Experiment {
     pub encoder_step: Option<f64>,
     /// Coulomb friction of the motor's mass in N m.
     pub friction: f64,
-    /// Time in s from a sample to its torque, less than the period.
+    /// Time in s from a sample to its torque besides the scene's delay, less than the period.
     pub latency: f64,
     /// Ticks in which the servo does not run.
     pub missed: Missed,
@@ -106,13 +106,18 @@ impl Experiment {
         centred && unlimited && self.friction == 0.0 && self.missed == Missed::None
     }
 
+    /// The machine with the scene's lags at its two ends.
+    pub fn machine(&self) -> Plant {
+        self.plant.clone().with_lags(&self.scene.latency)
+    }
+
     /// The plant over a tick.
     ///
     /// # Errors
     /// Where the machine is too fast for its motion over a period to be computed.
     pub fn tick(&self, integration: Integration) -> Result<DiscretePlant, SimulationError> {
         DiscretePlant::checked(
-            &self.plant,
+            &self.machine(),
             &self.discretization(integration),
             self.hand_torque.omega(),
         )
@@ -120,12 +125,12 @@ impl Experiment {
 
     /// How the plant is taken through a tick.
     pub fn discretization(&self, integration: Integration) -> Discretization {
-        Discretization {
+        let over_a_tick = Discretization {
             method: integration.method,
             substeps: integration.substeps.max(1),
-            period: self.scene.timing.period,
-            latency: self.latency,
-        }
+            ..Discretization::exact(self.scene.timing.period)
+        };
+        over_a_tick.delayed(self.scene.latency.output_delay.middle() + self.latency)
     }
 }
 

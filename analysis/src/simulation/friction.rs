@@ -172,13 +172,11 @@ impl FrictionPlant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::method::Method;
     use firmware::scene::Device;
 
     fn friction_plant(friction: f64, velocity: f64) -> FrictionPlant {
         let plant = Plant::rigid(Device { inertia: 0.5, damping: 0.0, passivity: None });
-        let discretization =
-            Discretization { method: Method::Exact, substeps: 1, period: 0.25, latency: 0.0 };
+        let discretization = Discretization::exact(0.25);
         FrictionPlant::new(&plant, friction, &discretization, 0.0, &plant.state_at(0.0, velocity))
     }
 

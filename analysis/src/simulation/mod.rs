@@ -2,7 +2,8 @@
 //!
 //! In tick `k` the servo reads the angle at `t = k T`, computes the coupling torque `F(k)`, and the
 //! motor applies `-F(k)` until the next tick. Position, velocity and `F` are recorded at that
-//! instant, before the torque acts. Environment and hidden states start at rest at zero. A scene
+//! instant, before the torque acts. With a delay of the output it acts that much later, also by more
+//! than a tick; amplifier and encoder may lag. Environment and hidden states start at rest at zero. A scene
 //! need not be certified to be simulated; that it need not is the use of a simulation.
 //!
 //! ```
@@ -100,7 +101,7 @@ impl Simulator {
 
 fn linear(experiment: &Experiment, tick: &DiscretePlant) -> Option<Box<dyn Linear>> {
     let closed = ClosedLoop::new(tick, &experiment.scene).ok()?;
-    let start = experiment.plant.state_at(experiment.start.position, experiment.start.velocity);
+    let start = experiment.machine().state_at(experiment.start.position, experiment.start.velocity);
     kernel::kernel(&closed, tick, experiment.scene.timing.period, &start)
 }
 

@@ -1,5 +1,7 @@
 //! The sampled loop with its non-linear elements: limits, wall face, quantisation, friction.
 
+use std::collections::VecDeque;
+
 use firmware::torque::LimitReason;
 use nalgebra::DVector;
 
@@ -30,9 +32,19 @@ pub struct NonlinearLoop {
 trait Ticks: Iterator<Item = bool> + std::fmt::Debug {}
 impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
 
+/// The plant with the torques that are still to act on it.
+#[derive(Debug)]
+pub(crate) struct Machine {
+    body: Body,
+    measured: usize,
+    whole: usize,
+    /// Motor torques in N m of the ticks before, the newest first.
+    torques: VecDeque<f64>,
+}
+
 /// The plant, with Coulomb friction or without.
 #[derive(Debug)]
-pub(crate) enum Machine {
+enum Body {
     /// Without.
     Smooth(Box<Smooth>),
     /// With.
@@ -41,7 +53,7 @@ pub(crate) enum Machine {
 
 /// A plant whose ticks are all one matrix.
 #[derive(Debug)]
-pub(crate) struct Smooth {
+struct Smooth {
     tick: DiscretePlant,
     period: f64,
     state: DVector<f64>,
@@ -76,15 +88,15 @@ impl NonlinearLoop {
         for (((position, velocity), torque), status) in samples {
             let state = self.machine.state();
             (*position, *velocity) = (state[POSITION], state[VELOCITY]);
-            let before = self.torque;
-            *status = self.run_servo(*position);
+            let measured = self.machine.measured();
+            *status = self.run_servo(measured);
             *torque = self.torque;
-            self.machine.tick(self.k, hand_torque, [-before, -self.torque]);
+            self.machine.tick(self.k, hand_torque, -self.torque);
             self.k += 1;
         }
     }
 
-    /// The servo's part in a tick that starts with the device at `position` rad.
+    /// The servo's part in a tick that starts with the encoder at `position` rad.
     fn run_servo(&mut self, position: f64) -> TickStatus {
         if self.missed.next().unwrap_or(false) {
             return TickStatus::Missed;
@@ -115,32 +127,45 @@ fn ticks(missed: Missed) -> Box<dyn Ticks> {
 impl Machine {
     /// The plant of an experiment at its start.
     pub(crate) fn new(experiment: &Experiment, integration: Integration) -> Self {
-        let (plant, discretization) = (&experiment.plant, experiment.discretization(integration));
+        let (plant, discretization) =
+            (&experiment.machine(), experiment.discretization(integration));
         let omega = experiment.hand_torque.omega();
         let state = plant.state_at(experiment.start.position, experiment.start.velocity);
-        if experiment.friction > 0.0 {
+        let body = if experiment.friction > 0.0 {
             let friction_plant =
                 FrictionPlant::new(plant, experiment.friction, &discretization, omega, &state);
-            return Self::FrictionPlant(Box::new(friction_plant));
-        }
-        let tick = DiscretePlant::new(plant, &discretization, omega);
-        let next = state.clone();
-        Self::Smooth(Box::new(Smooth { tick, period: discretization.period, state, next }))
+            Body::FrictionPlant(Box::new(friction_plant))
+        } else {
+            let tick = DiscretePlant::new(plant, &discretization, omega);
+            let next = state.clone();
+            Body::Smooth(Box::new(Smooth { tick, period: discretization.period, state, next }))
+        };
+        let whole = discretization.whole;
+        let torques = VecDeque::from(vec![0.0; whole + 1]);
+        Self { body, measured: plant.measured(), whole, torques }
     }
 
     /// Its states.
     pub(crate) fn state(&self) -> &DVector<f64> {
-        match self {
-            Self::Smooth(smooth) => &smooth.state,
-            Self::FrictionPlant(friction_plant) => friction_plant.state(),
+        match &self.body {
+            Body::Smooth(smooth) => &smooth.state,
+            Body::FrictionPlant(friction_plant) => friction_plant.state(),
         }
     }
 
-    /// One tick with the motor torques before and after the latency, in N m.
-    pub(crate) fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, torques: [f64; 2]) {
-        match self {
-            Self::Smooth(smooth) => smooth.tick(k, hand_torque, torques),
-            Self::FrictionPlant(friction_plant) => friction_plant.tick(k, hand_torque, torques),
+    /// The angle in rad that the servo reads.
+    pub(crate) fn measured(&self) -> f64 {
+        self.state()[self.measured]
+    }
+
+    /// One tick of whose sample follows this motor torque in N m.
+    pub(crate) fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, torque: f64) {
+        self.torques.push_front(torque);
+        let torques = [self.whole + 1, self.whole].map(|age| self.torques[age]);
+        self.torques.pop_back();
+        match &mut self.body {
+            Body::Smooth(smooth) => smooth.tick(k, hand_torque, torques),
+            Body::FrictionPlant(friction_plant) => friction_plant.tick(k, hand_torque, torques),
         }
     }
 }

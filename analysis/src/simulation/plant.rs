@@ -1,16 +1,16 @@
 //! The machine as a linear system in continuous time: masses in a row, a hand at the last of them,
-//! and an amplifier that may lag.
+//! and an amplifier and a sensor that may lag.
 //!
 //! ```text
 //! m_i v_i' = (forces of the two links and of the ground) + (motor torque on i = 1)
 //!            + (hand's torque on the last i) - (friction on i = 1)
 //! ```
 //!
-//! States: `x_1, v_1, x_2, v_2, ..`, then the torque of the amplifier where it lags. The mass with
-//! the encoder comes first: that is the motor's, or has changed places with it. All torques are
-//! positive in the direction of the angle.
+//! States: `x_1, v_1, x_2, v_2, ..`, then the torque of the amplifier and the angle behind the
+//! encoder's filter, where these lag. The mass with the encoder comes first: that is the motor's, or
+//! has changed places with it. All torques are positive in the direction of the angle.
 
-use firmware::scene::Device;
+use firmware::scene::{Device, Latency};
 use nalgebra::{DMatrix, DVector};
 
 use crate::chain::{Chain, EncoderPlace, Link, Mass};
@@ -44,6 +44,7 @@ pub struct Plant {
     masses: Vec<Mass>,
     motor: usize,
     hand: usize,
+    measured: usize,
     rates: DMatrix<f64>,
     inputs: DMatrix<f64>,
 }
@@ -98,7 +99,7 @@ impl Plant {
         for (input, at) in [(Input::Motor, motor), (Input::Friction, motor), (Input::Hand, hand)] {
             inputs[(2 * at + 1, input as usize)] = 1.0 / placed[at].inertia;
         }
-        let mut plant = Self { masses: placed, motor, hand, rates, inputs };
+        let mut plant = Self { masses: placed, motor, hand, measured: POSITION, rates, inputs };
         for (i, link) in links.iter().enumerate().take(masses.len() - 1) {
             for (here, there) in [(i, i + 1), (i + 1, i)] {
                 plant.pull(place(here), place(there), masses[here].inertia, *link);
@@ -157,6 +158,28 @@ impl Plant {
         Self { rates, inputs, ..self }
     }
 
+    /// The same with a filter between encoder and servo, which lags by a time in s.
+    pub fn with_sensor_lag(self, lag: f64) -> Self {
+        let n = self.order();
+        let mut rates = self.rates.resize(n + 1, n + 1, 0.0);
+        let inputs = self.inputs.resize(n + 1, INPUTS, 0.0);
+        rates[(n, self.measured)] = 1.0 / lag;
+        rates[(n, n)] = -1.0 / lag;
+        Self { rates, inputs, measured: n, ..self }
+    }
+
+    /// The same with the lags of a scene at its two ends, of those that lie in a range the middle.
+    pub fn with_lags(mut self, latency: &Latency) -> Self {
+        let Latency { actuator_lag, sensor_lag, .. } = *latency;
+        if !actuator_lag.is_zero() {
+            self = self.with_actuator_lag(actuator_lag.middle());
+        }
+        if !sensor_lag.is_zero() {
+            self = self.with_sensor_lag(sensor_lag.middle());
+        }
+        self
+    }
+
     /// The same with the motor's mass held in place by its friction.
     pub fn with_motor_stuck(mut self) -> Self {
         for row in [2 * self.motor, self.motor_velocity()] {
@@ -174,6 +197,11 @@ impl Plant {
     /// Number of masses; their positions are the even states below twice this.
     pub fn masses(&self) -> usize {
         self.masses.len()
+    }
+
+    /// The state that the servo reads: the encoder's position, or what its filter makes of it.
+    pub fn measured(&self) -> usize {
+        self.measured
     }
 
     /// The state that is the velocity of the motor's mass.
@@ -197,11 +225,13 @@ impl Plant {
     }
 
     /// The state with all masses at `position` (rad) and `velocity` (rad/s): the device moves as
-    /// one, so that no link is stretched. The amplifier gives no torque, a grip that moves is at 0.
+    /// one, so that no link is stretched. The encoder's filter shows that position, the amplifier gives
+    /// no torque, a grip that moves is at 0.
     pub fn state_at(&self, position: f64, velocity: f64) -> DVector<f64> {
         DVector::from_fn(self.order(), |row, _| match (row < 2 * self.masses.len(), row % 2) {
             (true, 0) => position,
             (true, _) => velocity,
+            (false, _) if row == self.measured => position,
             (false, _) => 0.0,
         })
     }

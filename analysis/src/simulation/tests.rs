@@ -1,9 +1,10 @@
 use firmware::certificate::{Assumption, Assumptions, QuantizationBound, Resolution, assess};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::number::Format;
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use firmware::torque::LimitReason;
 
+use super::method::Method;
 use super::*;
 use crate::device::{Hand, Motion};
 use crate::missed::Missed;
@@ -254,4 +255,158 @@ fn a_scene_without_a_law_is_refused() {
     let scene = paper(Environment::Rational(rational));
     let error = simulate(&moving(&scene, 10, 0.0), Integration::default()).unwrap_err();
     assert!(error.to_string().contains("future samples"), "{error}");
+}
+
+/// What of a loop in the tests of latency differs.
+struct LateLoop {
+    latency: Latency,
+    matched: bool,
+}
+
+/// Steps of the independent integration in a tick: torques begin at one of them.
+const FINE: usize = 400;
+
+/// A spring of 30 N m/rad on a rigid device, by Runge and Kutta's rule over many parts of a tick, with the
+/// formulas of theory, section 13, and nothing of this module. Positions at the samples.
+fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
+    let (m, b, period, stiffness) = (2.2e-5, 0.022, 1e-3, 30.0);
+    let Latency { output_delay, actuator_lag, sensor_lag, .. } = case.latency;
+    let [delay, lag, filter] = [output_delay, actuator_lag, sensor_lag].map(|time| time.middle());
+    let (whole, part) = ((delay / period) as usize, delay / period - (delay / period).floor());
+    let h = period / FINE as f64;
+    // Position, velocity, torque of the amplifier, angle behind the filter.
+    let rate = |s: [f64; 4], command: f64| {
+        let torque = if lag > 0.0 { s[2] } else { command };
+        let amplifier = if lag > 0.0 { (command - s[2]) / lag } else { 0.0 };
+        let sensor = if filter > 0.0 { (s[0] - s[3]) / filter } else { 0.0 };
+        [s[1], (-b * s[1] - torque) / m, amplifier, sensor]
+    };
+    let plus = |s: [f64; 4], k: [f64; 4], by: f64| std::array::from_fn(|i| s[i] + by * k[i]);
+    let mut state = [start.position, start.velocity, 0.0, start.position];
+    let late = whole + 2;
+    let (mut torques, mut positions) = (vec![0.0; late], Vec::new());
+    for _ in 0..samples {
+        positions.push(state[0]);
+        let read = if filter > 0.0 { state[3] } else { state[0] };
+        let tap = if case.matched { period / (2.0 * b) } else { 0.0 };
+        let before = |age: usize| torques[torques.len() - age];
+        let held: f64 = (1..=whole).map(before).sum();
+        let deflection = tap * (held + part * before(whole + 1));
+        torques.push(stiffness * (read - deflection) / (1.0 + stiffness * tap));
+        for step in 0..FINE {
+            let age = if step as f64 + 0.5 < part * FINE as f64 { whole + 1 } else { whole };
+            let command = torques[torques.len() - 1 - age];
+            let k1 = rate(state, command);
+            let k2 = rate(plus(state, k1, 0.5 * h), command);
+            let k3 = rate(plus(state, k2, 0.5 * h), command);
+            let k4 = rate(plus(state, k3, h), command);
+            for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
+                state = plus(state, k, weight * h / 6.0);
+            }
+        }
+    }
+    positions
+}
+
+fn late_loops() -> [LateLoop; 5] {
+    let lag = TimeRange::exactly;
+    [
+        LateLoop { latency: Latency::delayed(2.5e-4), matched: false },
+        LateLoop { latency: Latency::delayed(2e-3), matched: false },
+        LateLoop { latency: Latency::delayed(1.3e-3).with_actuator_lag(4e-4), matched: false },
+        LateLoop {
+            latency: Latency {
+                output_delay: TimeRange::between(2e-4, 8e-4),
+                sensor_lag: lag(7e-4),
+                ..Latency::NONE.with_actuator_lag(3e-4)
+            },
+            matched: false,
+        },
+        LateLoop { latency: Latency::delayed(1.3e-3), matched: true },
+    ]
+}
+
+#[test]
+fn delays_lags_and_a_matched_coupling_move_as_many_small_steps_have_it() {
+    for case in late_loops() {
+        let mut late = paper(Environment::DelayedSpring(wall(30.0, 0.0, 0)));
+        late.latency = case.latency;
+        late.coupling = if case.matched { Coupling::Matched } else { Coupling::Rigid };
+        let experiment = moving(&late, 60, 0.01);
+        let should = integrated(&case, 60, experiment.start);
+        let motion = |experiment: &Experiment, method, substeps| {
+            simulate(experiment, Integration { method, substeps }).unwrap().position
+        };
+        let exact = motion(&experiment, Method::Exact, 1);
+        let within = |is: &[f64], bound: f64| {
+            let off = furthest(is, &should);
+            assert!(off < bound, "{off} {:?}", case.latency);
+        };
+        within(&exact, 1e-8);
+        within(&motion(&experiment, Method::Rk4, 100), 1e-6);
+        within(&motion(&experiment, Method::Tustin, 400), 1e-3);
+        within(&motion(&experiment, Method::SemiImplicit, 4000), 1e-1);
+        // As a loop that is not linear: a limit that is never reached, and hardly any friction.
+        late.torque_limit = Some(1e9);
+        let limited = moving(&late, 60, 0.01);
+        assert!(!limited.is_linear());
+        within(&motion(&limited, Method::Exact, 1), 1e-8);
+        let rubbing = Experiment { friction: 1e-12, ..limited };
+        within(&motion(&rubbing, Method::Exact, 1), 1e-6);
+    }
+}
+
+/// `(1 / T) sum hold(j w_k) Ga Gs / (j w_k (m j w_k + b))`, over the aliases.
+#[test]
+fn the_sampled_plant_is_the_sum_over_the_aliases() {
+    use crate::stability_map::plant::SampledPlant;
+    use nalgebra::Complex;
+    let (m, b, period) = (2.2e-5, 0.022, 1e-3);
+    for case in late_loops() {
+        let Latency { output_delay, actuator_lag, sensor_lag, .. } = case.latency;
+        let mut late = paper(Environment::DelayedSpring(wall(30.0, 0.0, 0)));
+        late.latency = case.latency;
+        let tick = Experiment::still(&late).tick(Integration::default()).unwrap();
+        let plant = SampledPlant::new(&tick);
+        for theta in [0.1, 1.0, 2.0, 3.1] {
+            let z = Complex::from_polar(1.0, theta);
+            let alias = |k: i32| {
+                let w = (theta + 2.0 * std::f64::consts::PI * f64::from(k)) / period;
+                let s = Complex::new(0.0, w);
+                let lag = |tau: f64| 1.0 / (1.0 + s * tau);
+                let held = (1.0 - 1.0 / z) / s * (-s * output_delay.middle()).exp();
+                held * lag(actuator_lag.middle()) * lag(sensor_lag.middle()) / (s * (s * m + b))
+            };
+            let sum: Complex<f64> = (-20_000..=20_000).map(alias).sum::<Complex<f64>>() / period;
+            let is = plant.at(z);
+            assert!((is - sum).norm() < 1e-6 * sum.norm(), "{theta} {is} {sum}");
+        }
+    }
+}
+
+/// The limit of a slow device is `b / (T/2 + all delays and lags)`, as without latency, and an
+/// eigenvalue is on the circle there, also behind a matched coupling.
+#[test]
+fn stability_ends_where_an_eigenvalue_reaches_the_circle() {
+    let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
+    for case in late_loops() {
+        let mut late = scene(device, None, Environment::DelayedSpring(wall(1.0, 0.0, 1)));
+        late.latency = case.latency;
+        if case.matched {
+            late.coupling = Coupling::Matched;
+        }
+        let experiment = Experiment::still(&late);
+        let critical = crate::stability::critical_stiffness(&experiment, Integration::default());
+        let critical = critical.unwrap().unwrap();
+        let mut border = experiment.clone();
+        border.scene.environment = Environment::DelayedSpring(wall(critical, 0.0, 1));
+        let closed = crate::stability::closed_loop(&border, Integration::default()).unwrap();
+        let radius =
+            crate::stability::radius(&crate::stability::eigenvalues(&closed.matrix).unwrap());
+        assert!((radius - 1.0).abs() < 1e-9, "{radius} {critical}");
+        let Latency { output_delay, actuator_lag, sensor_lag, .. } = case.latency;
+        let all = output_delay.middle() + actuator_lag.middle() + sensor_lag.middle();
+        let should = 0.5 / (1.5e-3 + all);
+        assert!(case.matched || (critical / should - 1.0).abs() < 0.03, "{critical} {should}");
+    }
 }

@@ -2,24 +2,48 @@
 
 use std::f64::consts::PI;
 
+use firmware::matched::MatchedCoupling;
+use firmware::number::Format;
 use firmware::parameter::Parameter;
-use firmware::scene::Coupling;
+use firmware::passivity::interval::Interval;
+use firmware::passivity::polynomial::Polynomial;
+use firmware::passivity::transfer::{Transfer, Unbuildable};
+use firmware::scene::{Coupling, Scene};
 use nalgebra::Complex;
 
 use super::eigenvalues::eigenvalues;
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
 use crate::simulation::discrete_plant::DiscretePlant;
-use crate::simulation::plant::POSITION;
 use crate::simulation::{Experiment, Integration, SimulationError};
 
 /// The stiffnesses at which some eigenvalue is on the unit circle.
 pub(super) struct Borders {
     tick: DiscretePlant,
-    compliance: f64,
+    /// `V` of the coupling.
+    compliance: Response,
     /// The environment without stiffness, and with `unit`.
     environments: [Response; 2],
     unit: f64,
+}
+
+/// `V` of a scene's coupling, in rad/(N m).
+fn compliance(scene: &Scene) -> Result<Response, Unbuildable> {
+    let constant = |value: f64| {
+        let [value, one] = [value, 1.0].map(|it| Polynomial::ascending(&[Interval::exact(it)]));
+        Response::new(Transfer::new(value, one))
+    };
+    Ok(match scene.coupling {
+        Coupling::Rigid => constant(0.0),
+        Coupling::Spring { stiffness } => constant(1.0 / stiffness),
+        Coupling::Matched => {
+            let (period, delta) = (scene.timing.period, scene.device.passivity());
+            let matched = MatchedCoupling::of(period, delta, &scene.latency, Format::F64);
+            let (numerator, denominator) =
+                matched.and_then(|matched| matched.transfer()).ok_or(Unbuildable::OutOfRange)?;
+            Response::new(Transfer::new(numerator, denominator))
+        }
+    })
 }
 
 impl Borders {
@@ -38,10 +62,7 @@ impl Borders {
         };
         Ok(Self {
             tick: experiment.tick(integration)?,
-            compliance: match scene.coupling {
-                Coupling::Rigid | Coupling::Matched => 0.0,
-                Coupling::Spring { stiffness } => 1.0 / stiffness,
-            },
+            compliance: compliance(scene)?,
             environments: [environment(0.0)?, environment(unit)?],
             unit,
         })
@@ -55,7 +76,7 @@ impl Borders {
             shifted[(i, i)] += z;
         }
         let effect = self.tick.motor.map(complex) + self.tick.previous.map(complex) / z;
-        Some(shifted.lu().solve(&effect)?[POSITION])
+        Some(shifted.lu().solve(&effect)?[self.tick.measured] * z.powi(-(self.tick.whole as i32)))
     }
 
     /// The stiffness, complex in general, with which the loop has an eigenvalue at this angle.
@@ -66,7 +87,7 @@ impl Borders {
         let (without, with) = (without.at(z), with.at(z));
         let each = (with - without) / self.unit;
         // On a pole of the plant the loop is what the environment alone makes of it.
-        let through = self.plant(z).map(|plant| one / (plant + self.compliance));
+        let through = self.plant(z).map(|plant| one / (plant + self.compliance.at(z)));
         -(through.unwrap_or_default() + without) / each
     }
 

@@ -37,13 +37,15 @@ enum Formula {
 
 impl Formula {
     /// The one for these scenes, if there is one: of a scene that may miss updates, and has no
-    /// compliance, two indices count, and a coupling that is stiffer than the standard one leaves
+    /// compliance, two indices count, for torques that lag there is no formula, and a coupling that is stiffer than the standard one leaves
     /// the paper's rule nothing.
     fn of(scene: &Scene) -> Option<Self> {
         let posed = PassivityProblem::of(scene).ok()?;
         let misses = scene.timing.worst_period.is_some_and(|worst| worst != scene.timing.period);
         match (scene.coupling, is_linear(scene)) {
-            (Coupling::Rigid, true) if !misses => Some(Self::SampleLater),
+            (Coupling::Rigid, true) if !misses && scene.latency.is_none() => {
+                Some(Self::SampleLater)
+            }
             (Coupling::Spring { .. }, true) => posed.paper_limit().map(|_| Self::Paper),
             (_, false) => posed.limit().map(|_| Self::Bound),
             _ => None,

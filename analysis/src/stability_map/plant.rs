@@ -9,7 +9,6 @@ use super::schur_cohn::all_inside;
 use crate::response::Response;
 use crate::simulation::closed_loop::transfers;
 use crate::simulation::discrete_plant::DiscretePlant;
-use crate::simulation::plant::POSITION;
 
 /// Sampled position over motor torque, highest power first.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,26 +18,19 @@ pub struct SampledPlant {
 }
 
 impl SampledPlant {
-    /// Of a plant that is taken through a tick (Faddeev and Le Verrier's recursion). Where the
-    /// torque is late, the torque of the tick before is one more state.
+    /// Of a plant that is taken through a tick (Faddeev and Le Verrier's recursion). Torques that are
+    /// late are states of their own.
     pub fn new(tick: &DiscretePlant) -> Self {
-        let n = tick.transition.nrows() + usize::from(tick.is_late());
-        let mut transition = tick.transition.clone().resize(n, n, 0.0);
-        let mut motor = tick.motor.clone().resize_vertically(n, 0.0);
-        if tick.is_late() {
-            let held = n - 1;
-            transition.view_mut((0, held), (held, 1)).copy_from(&tick.previous);
-            motor[held] = 1.0;
-        }
-        Self::of_states(&transition, &motor)
+        let (transition, motor) = tick.with_pending();
+        Self::of_states(&transition, &motor, tick.measured)
     }
 
-    fn of_states(transition: &DMatrix<f64>, motor: &DVector<f64>) -> Self {
+    fn of_states(transition: &DMatrix<f64>, motor: &DVector<f64>, measured: usize) -> Self {
         let n = transition.nrows();
         let (mut numerator, mut denominator) = (vec![0.0], vec![1.0]);
         let mut adjugate = DMatrix::identity(n, n);
         for order in 1..=n {
-            numerator.push((adjugate.row(POSITION) * motor)[0]);
+            numerator.push((adjugate.row(measured) * motor)[0]);
             let product = transition * &adjugate;
             let coefficient = -product.trace() / order as f64;
             denominator.push(coefficient);

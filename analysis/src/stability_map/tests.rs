@@ -1,4 +1,5 @@
 use firmware::certificate::Answer;
+use firmware::scene::Latency;
 
 use super::border::closed_form_border;
 use super::*;
@@ -43,6 +44,18 @@ fn stability_is_that_of_the_eigenvalues() {
         }
     }
     assert!(compared > 700, "{compared}");
+}
+
+#[test]
+fn what_is_certified_with_latency_is_stable_and_no_formula_for_prompt_torques_is_drawn() {
+    let mut file = wall(1, "");
+    file.scene.latency = Latency::delayed(3e-4).with_actuator_lag(2e-4);
+    let family = Family::of(&file).unwrap();
+    let (stiffness, damping) = family.usual_ranges();
+    let map = Map::new(&family, stiffness, damping, 20, || {});
+    assert!(map.share(Region::Exact) > 0.02 && map.share(Region::Unstable) > 0.02);
+    assert_eq!(map.share(Region::Wrong), 0.0);
+    assert!(closed_form_border(&family, &map).is_none());
 }
 
 #[test]

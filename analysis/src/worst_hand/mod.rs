@@ -5,13 +5,15 @@
 //! sampled loop grow. Where the real part is smallest is where that hand resonates, so the search
 //! starts from masses and springs that resonate near there, then climbs in all their numbers. A
 //! hand on this device cannot take away from its inertia, and so not every rejected scene has one.
+//!
+//! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried.
 
 mod impedance;
 
 use std::f64::consts::PI;
 
-use firmware::certificate::LoopTransfers;
-use firmware::scene::Scene;
+use firmware::certificate::{LoopTransfers, assess};
+use firmware::scene::{Coupling, Scene};
 use nalgebra::Complex;
 use serde::Serialize;
 
@@ -152,6 +154,11 @@ impl<'d> HandSearch<'d> {
     /// The middle of the circle where there is no such angle.
     fn angle(&self) -> f64 {
         let scene = &self.experiment.scene;
+        if !scene.latency.is_none() || scene.coupling == Coupling::Matched {
+            // The place where the certificate found the port to lack the most.
+            let place = assess(scene).cos_theta.map(|cosine| cosine.midpoint().clamp(-1.0, 1.0));
+            return place.map_or(0.5 * PI, f64::acos);
+        }
         let Ok(LoopTransfers { equivalent, .. }) = LoopTransfers::of(scene) else {
             return 0.5 * PI;
         };

@@ -2,7 +2,7 @@ use super::*;
 use crate::chain::{EncoderPlace, Link, Mass};
 use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Coupling, Device, Latency, Timing};
+use firmware::scene::{Coupling, Device, Latency, TimeRange, Timing};
 
 fn device() -> Chain {
     Chain::rigid(2.2e-5, 0.022).unwrap()
@@ -40,6 +40,47 @@ fn what_is_rejected_oscillates_in_some_hand_and_what_is_certified_in_none() {
         let rejected = search(&near(1.05), &device()).unwrap();
         assert!(rejected.oscillates || rejected.lighter.is_some(), "{rejected:?}");
     }
+}
+
+/// Delayed springs with a delay of the output, an amplifier or a sensor that lag: next to the
+/// certificate's limit.
+#[test]
+fn hands_find_the_limits_of_scenes_with_latency() {
+    let range = TimeRange::exactly;
+    for (latency, coupling) in [
+        (Latency::delayed(4e-4), Coupling::Rigid),
+        (Latency { actuator_lag: range(3e-4), ..Latency::NONE }, Coupling::Rigid),
+        (
+            Latency { sensor_lag: range(2e-4), ..Latency::delayed(1.3e-3) },
+            Coupling::Spring { stiffness: 44.0 },
+        ),
+        (Latency::delayed(3e-4).with_actuator_lag(2e-4), Coupling::Spring { stiffness: 30.0 }),
+    ] {
+        let with = |stiffness: f64| Scene { latency, ..scene(stiffness, 0.0, 1, coupling) };
+        let (mut low, mut high) = (0.0, 100.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if certify(&with(middle)).is_ok() { low = middle } else { high = middle }
+        }
+        assert!(low > 1.0, "{low}");
+        let certified = search(&with(0.97 * low), &device()).unwrap();
+        assert!(!certified.oscillates && certified.lighter.is_none(), "{certified:?}");
+        let rejected = search(&with(1.06 * low), &device()).unwrap();
+        assert!(rejected.oscillates || rejected.lighter.is_some(), "{low} {rejected:?}");
+    }
+}
+
+#[test]
+fn no_hand_shakes_what_is_certified_behind_a_matched_coupling() {
+    let latency = Latency::delayed(3e-4).with_actuator_lag(1e-4);
+    let matched = Scene { latency, ..scene(500.0, 0.0, 0, Coupling::Matched) };
+    assert!(certify(&matched).is_ok());
+    let found = search(&matched, &device()).unwrap();
+    assert!(!found.oscillates && found.lighter.is_none(), "{found:?}");
+    // The spring of the same stiffness at rest does not absorb it.
+    let stiffness = 2.0 * 0.022 / (1e-3 + 4e-4);
+    let spring = Scene { coupling: Coupling::Spring { stiffness }, ..matched };
+    assert!(certify(&spring).is_err());
 }
 
 /// The climb from a soft link must not end at a mass that nothing holds.

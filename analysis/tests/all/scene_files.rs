@@ -8,7 +8,7 @@ use analysis::simulation::{Experiment, Integration, simulate};
 use analysis::stability::judge;
 use firmware::certificate::certify;
 use firmware::environment::{Environment, Wall};
-use firmware::scene::Coupling;
+use firmware::scene::{Coupling, Latency, TimeRange};
 use proptest::prelude::*;
 
 const FULL: &str = r#"{
@@ -83,6 +83,82 @@ fn every_table_is_read() {
 }
 
 #[test]
+fn times_between_count_and_torque_are_numbers_or_ranges() {
+    let text = WALL
+        .replacen(
+            "damping = 0.022",
+            "damping = 0.022\nactuator_lag = [1e-4, 2e-4]\nsensor_lag = 3e-5",
+            1,
+        )
+        .replacen(
+            "period = 0.001",
+            "period = 0.001\noutput_delay = [4e-6, 6e-6]\noutput_jitter = 4e-6",
+            1,
+        )
+        .replacen("stiffness = 44.0", "type = \"matched\"", 1);
+    let scene = toml(&text).unwrap().scene;
+    let expected = Latency {
+        output_delay: TimeRange::between(4e-6, 6e-6),
+        output_jitter: 4e-6,
+        actuator_lag: TimeRange::between(1e-4, 2e-4),
+        sensor_lag: TimeRange::exactly(3e-5),
+    };
+    assert_eq!((scene.latency, scene.coupling), (expected, Coupling::Matched));
+    assert_eq!(toml(WALL).unwrap().scene.latency, Latency::NONE);
+}
+
+#[test]
+fn a_bad_time_is_named_with_its_line_value_and_bound() {
+    let servo = |keys: &str, place: &str, words: &[&str]| {
+        refused("period = 0.001", &format!("period = 0.001\n{keys}"), place, words);
+    };
+    let device = |keys: &str, place: &str, words: &[&str]| {
+        refused("damping = 0.022", &format!("damping = 0.022\n{keys}"), place, words);
+    };
+    let bound = "0 s or more";
+    for bad in ["-1e-6", "nan", "inf", "-inf", "1e999"] {
+        servo(&format!("output_delay = {bad}"), "7:16", &["`servo.output_delay`", bad, bound]);
+        servo(&format!("output_jitter = {bad}"), "7:17", &["`servo.output_jitter`", bad, bound]);
+        device(&format!("actuator_lag = {bad}"), "5:16", &["`device.actuator_lag`", bad, bound]);
+        device(
+            &format!("sensor_lag = [0, {bad}]"),
+            "5:18",
+            &["`device.sensor_lag[1]`", bad, bound],
+        );
+    }
+    servo("output_delay = \"5 us\"", "7:16", &["is a string", bound]);
+    servo("output_delay = [1e-6]", "7:16", &["[1e-6]", "[least, most]"]);
+    servo("output_delay = [1e-6, 2e-6, 3e-6]", "7:16", &["[least, most]"]);
+    servo("output_delay = [2e-6, 1e-6]", "7:16", &["[2e-6, 1e-6]", "ends before it begins"]);
+    servo("output_delay = 0.0081", "7:16", &["0.0081", "8 times `servo.period` = 0.001 s"]);
+    servo("output_delay = [0, 0.0081]", "7:16", &["0.0081", "8 times"]);
+    device("actuator_lag = 0.11", "5:16", &["0.11", "100 times `servo.period` = 0.001 s"]);
+    device("sensor_lag = 0.11", "5:14", &["0.11", "100 times"]);
+    let least = "more than the least `servo.output_delay` = 0.000004 s";
+    servo("output_delay = [4e-6, 9e-6]\noutput_jitter = 5e-6", "8:17", &["5e-6", least]);
+    servo("output_jitter = 5e-6", "7:17", &["`servo.output_delay` = 0 s"]);
+    assert!(
+        toml(&WALL.replacen("period = 0.001", "period = 0.001\noutput_delay = 0.008", 1)).is_ok()
+    );
+}
+
+#[test]
+fn a_matched_coupling_takes_no_stiffness_and_a_spring_needs_one() {
+    let refused = |keys: &str, words: &[&str]| {
+        let text = WALL.replacen("stiffness = 44.0", keys, 1);
+        let message = toml(&text).expect_err(&text).to_string();
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    };
+    refused("type = \"matched\"\nstiffness = 44.0", &["scene.toml:9:13", "takes no stiffness"]);
+    refused("type = \"spring\"", &["`coupling.stiffness` is missing"]);
+    refused("", &["`coupling.stiffness` is missing"]);
+    refused("type = \"damper\"", &["scene.toml:8:8", "\"spring\" or \"matched\""]);
+    refused("type = 3\nstiffness = 44.0", &["scene.toml:8:8", "`coupling.type` = 3"]);
+    let spring = WALL.replacen("stiffness = 44.0", "type = \"spring\"\nstiffness = 44.0", 1);
+    assert_eq!(toml(&spring).unwrap(), toml(WALL).unwrap());
+}
+
+#[test]
 fn without_a_coupling_the_connection_is_rigid() {
     let rigid = WALL.replace("[coupling]\nstiffness = 44.0\n", "");
     assert_eq!(toml(&rigid).unwrap().scene.coupling, Coupling::Rigid);
@@ -132,6 +208,7 @@ fn no_device_has_more_passivity_than_damping() {
         for (lag, passivity, is_read) in [
             ("", "0.022", true),
             ("", "0.02200000000000001", false),
+            ("actuator_lag = 1e-4\n", "0.022", true),
             ("actuator_lag = 1e-4\n", "0.23", false),
         ] {
             let device = format!("damping = 0.022\n{lag}passivity = {passivity}");

@@ -14,7 +14,7 @@ use crate::environment::{Environment, StatedModel};
 use crate::passivity::discrete::index;
 use crate::passivity::interval::Interval;
 use crate::passivity::transfer::Transfer;
-use crate::scene::Scene;
+use crate::scene::{Latency, Scene, TimeRange};
 use crate::text::{RoundUp3, ShortF64};
 
 /// One thing that a verdict takes for granted, or a condition of it that was checked.
@@ -29,7 +29,11 @@ pub enum Assumption {
     Hold {
         /// Time in s between two updates, where none may be missed.
         period: Option<f64>,
+        /// Whether a torque begins with its count, which [`Assumption::Latency`] says otherwise.
+        at_once: bool,
     },
+    /// Delays and lags are those of the scene.
+    Latency(Latency),
     /// Updates may be missed.
     WorstPeriod {
         /// Longest time in s between two updates.
@@ -107,6 +111,7 @@ impl Assumption {
         match self {
             Self::DevicePassivity { .. }
             | Self::Hold { .. }
+            | Self::Latency(_)
             | Self::Delay { .. }
             | Self::StatedModel { .. }
             | Self::CancelledDamping { .. }
@@ -143,16 +148,19 @@ impl fmt::Display for Assumption {
                 "in every passive hand, the device is output strictly passive from motor torque to \
                  velocity at the encoder, with delta = {delta} N m s/rad"
             ),
-            Self::Hold { period } => {
-                f.write_str(
+            Self::Hold { period, at_once } => {
+                f.write_str(if *at_once {
                     "position and torque belong to the same instant, and the torque is held until \
-                     the next",
-                )?;
+                     the next"
+                } else {
+                    "each torque is held until the next"
+                })?;
                 match period {
                     Some(period) => write!(f, ", {period} s later: no update is missed"),
                     None => Ok(()),
                 }
             }
+            Self::Latency(latency) => write_latency(f, latency),
             Self::WorstPeriod { longest, delta, .. } => write!(
                 f,
                 "no two counts are more than {longest} s apart: the servo stops otherwise; judged \
@@ -255,7 +263,36 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
     write!(f, ": {rest}")
 }
 
-const MOST: usize = 10;
+/// Each time that the scene has.
+fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
+    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag } = latency;
+    f.write_str("a torque begins ")?;
+    if output_delay.is_zero() {
+        f.write_str("with its count")?;
+    } else {
+        write_time(f, *output_delay)?;
+        f.write_str(" after its count")?;
+    }
+    if *output_jitter > 0.0 {
+        write!(f, ", in each tick at most {} s earlier or later", ShortF64(*output_jitter))?;
+    }
+    for (what, lag) in [("amplifier", actuator_lag), ("filter of the encoder", sensor_lag)] {
+        if !lag.is_zero() {
+            write!(f, "; the {what} is a first-order lag of ")?;
+            write_time(f, *lag)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_time(f: &mut fmt::Formatter<'_>, time: TimeRange) -> fmt::Result {
+    if time.is_exact() {
+        return write!(f, "{} s", ShortF64(time.most));
+    }
+    write!(f, "a constant {} to {} s", ShortF64(time.least), ShortF64(time.most))
+}
+
+const MOST: usize = 11;
 
 /// The assumptions of a scene's verdict.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -271,7 +308,9 @@ impl Assumptions {
         list.push(Some(Assumption::DevicePassivity { delta }));
         let worst = scene.timing.worst_period.filter(|&worst| worst != scene.timing.period);
         let period = worst.is_none().then_some(scene.timing.period);
-        list.push(Some(Assumption::Hold { period }));
+        let latency = scene.latency;
+        list.push(Some(Assumption::Hold { period, at_once: latency.is_none() }));
+        list.push((!latency.is_none()).then_some(Assumption::Latency(latency)));
         list.push(worst.map(|longest| Assumption::WorstPeriod {
             longest,
             delta: assessment.delta.midpoint(),
@@ -371,7 +410,8 @@ fn quantisation(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> A
 /// controller one sample later, which is the condition without a coupling (theory, section 5).
 fn friction_only(scene: &Scene, assessment: &Assessment, steps: &Resolution) -> Option<Assumption> {
     let friction = steps.friction.filter(|&friction| friction > 0.0)?;
-    if assessment.outcome.is_ok() {
+    // The energy of a cycle is not known where the torque lags.
+    if assessment.outcome.is_ok() || !scene.latency.is_none() {
         return None;
     }
     let controller = LoopTransfers::in_format(scene, assessment.format).ok()?.controller;

@@ -15,6 +15,7 @@ mod failures;
 mod foreign;
 mod interval;
 mod lagging;
+mod latency;
 mod live;
 mod margin;
 mod matched;

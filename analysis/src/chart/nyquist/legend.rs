@@ -59,6 +59,7 @@ fn curve(name: &str, scene: &NyquistScene, curve: &Curve, is_single: bool) -> Ve
     let what = match curve.role {
         Role::Judged => "",
         Role::JudgedLatched => "judged, with missed updates: ",
+        Role::JudgedAtPort => "judged, at the port with delay and lags: ",
         Role::Linear => "grey, environment, of which only the poles are judged: ",
         Role::Alone => "grey, environment without its coupling, not judged: ",
     };

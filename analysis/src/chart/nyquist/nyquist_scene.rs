@@ -6,14 +6,19 @@
 //! - A one-sided or limited scene is judged by a bound on its index, an upright line: its linear
 //!   environment only has to have an index at all.
 //!
+//! - Where torques lag, and behind a matched coupling, a linear scene is judged at the device's port
+//!   (theory, section 13): by the controller with delay and lags, less what no sample shows.
+//!
 //! Judged is the distance to the critical line, at minus the largest index that passes.
 
 use std::f64::consts::PI;
 
 use firmware::certificate::{Assessment, LoopTransfers, PassivityProblem, Rule, assess};
 use firmware::passivity::interval::Interval;
+use firmware::passivity::lagged::{LagIntervals, SampledResponse};
 use firmware::passivity::transfer::Transfer;
-use firmware::scene::{Coupling, Scene};
+use firmware::scene::{Coupling, Latency, Scene};
+use nalgebra::Complex;
 
 use crate::chart::ChartError;
 use crate::line_search::minimizing_angle;
@@ -38,6 +43,8 @@ pub enum Role {
     Judged,
     /// So is this one: torques are latched, and updates may be missed.
     JudgedLatched,
+    /// It is compared with the critical line, and has delay, amplifier and sensor in it.
+    JudgedAtPort,
     /// Its poles are judged; in place of its real part, a bound is.
     Linear,
     /// The environment without its coupling, which is not judged.
@@ -47,7 +54,7 @@ pub enum Role {
 impl Role {
     /// Whether the curve itself must keep clear of the critical line.
     pub fn is_judged(self) -> bool {
-        matches!(self, Self::Judged | Self::JudgedLatched)
+        matches!(self, Self::Judged | Self::JudgedLatched | Self::JudgedAtPort)
     }
 
     /// In one word, for tables.
@@ -55,6 +62,7 @@ impl Role {
         match self {
             Self::Judged => "judged",
             Self::JudgedLatched => "judged-latched",
+            Self::JudgedAtPort => "judged-at-port",
             Self::Linear => "linear",
             Self::Alone => "alone",
         }
@@ -100,9 +108,20 @@ impl Curve {
         alpha: Option<f64>,
     ) -> Self {
         let velocity = Response::new(transfer).from_velocity(scene.timing.period);
+        Self::through(role, &velocity, &|theta| velocity.at_angle(theta), deciding, alpha)
+    }
+
+    /// A curve through these values, with the poles on the circle and outside of it of a transfer function.
+    fn through(
+        role: Role,
+        velocity: &Response,
+        value: &dyn Fn(f64) -> Complex<f64>,
+        deciding: Option<Interval>,
+        alpha: Option<f64>,
+    ) -> Self {
         let poles = poles(velocity.transfer());
         let outside = outside(velocity.transfer());
-        let real = |theta: f64| velocity.at_angle(theta).re;
+        let real = |theta: f64| value(theta).re;
         let angle = |cosine: f64| cosine.clamp(-1.0, 1.0).acos();
         // Where the certificate has found it, and where it is found here.
         let known =
@@ -112,7 +131,7 @@ impl Curve {
         let lowest =
             lowest.min_by(|a, b| real(*a).total_cmp(&real(*b))).filter(|_| found.is_some());
         let point = |theta: f64| {
-            let value = velocity.at_angle(theta);
+            let value = value(theta);
             (value.re, value.im)
         };
         let has_index = outside == 0 && poles.iter().all(UnitCirclePole::is_passive);
@@ -187,6 +206,11 @@ impl NyquistScene {
         let cos = assessment.cos_theta;
         let curve = |role, transfer, alpha| Curve::new(role, transfer, scene, cos, alpha);
         let curves = match (assessment.rule, latched) {
+            (Rule::Exact, _) if is_judged_at_port(scene) => {
+                let alone = curve(Role::Alone, transfers.environment, alone);
+                let port = PortCurve::of(scene, transfers.controller);
+                port.into_iter().map(|port| port.curve(cos)).chain([alone]).collect()
+            }
             (Rule::Nonlinear, _) => vec![curve(Role::Linear, transfers.environment, alone)],
             (Rule::Exact, None) if transfers.equivalent == transfers.environment => {
                 vec![curve(Role::Judged, transfers.environment, alone)]
@@ -218,10 +242,10 @@ impl NyquistScene {
     pub fn clearance(&self) -> f64 {
         let Some(limit) = self.limit else { return f64::NEG_INFINITY };
         let real = |curve: &Curve| match curve.role {
-            Role::Judged | Role::JudgedLatched => curve.least_real() + limit,
+            role if role.is_judged() => curve.least_real() + limit,
             Role::Linear if curve.alpha.is_none() => f64::NEG_INFINITY,
             Role::Linear => self.bound.map_or(f64::NAN, |bound| limit - bound),
-            Role::Alone => f64::INFINITY,
+            _ => f64::INFINITY,
         };
         let all = self.curves.iter().map(real);
         all.fold(
@@ -235,6 +259,8 @@ impl NyquistScene {
     pub fn gain_margin(&self) -> Option<f64> {
         let index = |curve: &Curve| match curve.role {
             Role::Judged | Role::JudgedLatched => curve.alpha,
+            // What no sample shows grows with the square.
+            Role::JudgedAtPort => None,
             Role::Linear => curve.alpha.and(self.bound),
             Role::Alone => Some(f64::NEG_INFINITY),
         };
@@ -248,7 +274,8 @@ impl NyquistScene {
     /// far as the line, and where it goes to infinity: there any lag is too much.
     pub fn phase_margin(&self, curve: &Curve) -> Option<(f64, f64, (f64, f64))> {
         let limit = self.limit.filter(|_| curve.role.is_judged() && curve.alpha.is_some())?;
-        if !curve.poles.is_empty() || self.clearance() <= 0.0 {
+        let is_at_port = curve.role == Role::JudgedAtPort;
+        if is_at_port || !curve.poles.is_empty() || self.clearance() <= 0.0 {
             return None;
         }
         let margin = |(theta, value): (f64, (f64, f64))| {
@@ -270,7 +297,53 @@ fn limit_name(scene: &Scene, assessment: &Assessment, limit: Option<f64>) -> &'s
         Coupling::Spring { stiffness } if near(0.5 * stiffness * scene.timing.period) => {
             "-K T/2 of the coupling"
         }
+        _ if scene.latency.output_jitter > 0.0 => "-limit, output delay varies",
         _ => "-limit, updates missed",
+    }
+}
+
+fn is_judged_at_port(scene: &Scene) -> bool {
+    !scene.latency.is_none() || scene.coupling == Coupling::Matched
+}
+
+/// The controller with delay, amplifier and sensor: `H g - D abs(H)^2 / (4 delta)` of equation 38. Of times
+/// that lie in a range it has the middle, and a delay that differs from tick to tick is left out.
+struct PortCurve {
+    controller: Response,
+    response: SampledResponse,
+    path: Response,
+    period: f64,
+    delta: f64,
+}
+
+impl PortCurve {
+    /// `None` where two lags are too much alike for their difference.
+    fn of(scene: &Scene, controller: Transfer) -> Option<Self> {
+        let Latency { output_delay, actuator_lag, sensor_lag, .. } = scene.latency;
+        let period = Interval::decimal(scene.timing.period);
+        let [delay, actuator, sensor] = [output_delay, actuator_lag, sensor_lag]
+            .map(|time| Interval::decimal(time.middle()).div(period));
+        let response = LagIntervals { delay, lags: [actuator, sensor] }.response(0)?;
+        Some(Self {
+            controller: Response::new(controller),
+            path: Response::new(response.transfer(period)),
+            response,
+            period: scene.timing.period,
+            delta: scene.device.passivity(),
+        })
+    }
+
+    fn at(&self, theta: f64) -> Complex<f64> {
+        let controller = self.controller.at_angle(theta);
+        let ripple = self.response.ripple_at(theta.cos()).midpoint() * self.period.powi(2);
+        let unseen = ripple * controller.norm_sqr() / (4.0 * self.delta);
+        controller * self.path.at_angle(theta) - unseen
+    }
+
+    fn curve(&self, deciding: Option<Interval>) -> Curve {
+        // Delay and lags add no pole on the circle or outside of it.
+        let velocity = self.controller.from_velocity(self.period);
+        Curve::through(Role::JudgedAtPort, &velocity, &|theta| self.at(theta), deciding, None)
     }
 }
 

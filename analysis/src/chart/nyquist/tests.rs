@@ -1,6 +1,6 @@
 use firmware::certificate::assess;
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
-use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 
 use super::*;
 
@@ -80,6 +80,45 @@ fn random(random: &mut fastrand::Rng) -> Scene {
         scene.torque_limit = Some(1.0);
     }
     scene
+}
+
+#[test]
+fn the_drawn_side_of_the_line_is_the_verdict_where_torques_lag() {
+    let mut seed = fastrand::Rng::with_seed(8);
+    let (mut passed, mut failed) = (0, 0);
+    for _ in 0..200 {
+        let mut scene = random(&mut seed);
+        (scene.timing.worst_period, scene.torque_limit) = (None, None);
+        let time = |seed: &mut fastrand::Rng, most: f64| match seed.bool() {
+            true => TimeRange::exactly(most * seed.f64()),
+            false => TimeRange::ZERO,
+        };
+        scene.latency = Latency {
+            output_delay: time(&mut seed, 2.5e-3),
+            actuator_lag: time(&mut seed, 1e-3),
+            sensor_lag: time(&mut seed, 1e-3),
+            ..Latency::NONE
+        };
+        if seed.u8(0..4) == 0 {
+            scene.coupling = Coupling::Matched;
+        }
+        let Ok(found) = NyquistScene::of("random", &scene) else { continue };
+        let clearance = found.clearance();
+        let near = found.limit.is_some_and(|limit| clearance.abs() < 1e-4 * limit);
+        match assess(&scene).outcome {
+            _ if near => {}
+            Ok(()) => {
+                assert!(clearance > 0.0, "{clearance} {scene:?}");
+                passed += 1;
+            }
+            Err(rejection) if rejection.is_undecided() => {}
+            Err(rejection) => {
+                assert!(clearance < 0.0, "{clearance} {rejection} {scene:?}");
+                failed += 1;
+            }
+        }
+    }
+    assert!(passed > 20 && failed > 60, "{passed} {failed}");
 }
 
 #[test]

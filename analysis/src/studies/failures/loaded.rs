@@ -17,7 +17,6 @@ pub struct LoadedDevice {
     encoder: SimulatedEncoder,
     torque_per_code: f64,
     missed: Box<dyn Iterator<Item = bool>>,
-    torque: f64,
     /// Position in rad at each tick, missed or not.
     pub positions: Vec<f64>,
 }
@@ -44,7 +43,6 @@ impl LoadedDevice {
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             missed: Box::new(missed),
-            torque: 0.0,
             positions: Vec::new(),
         })
     }
@@ -56,11 +54,9 @@ impl LoadedDevice {
 
     /// Lets the motor apply `torque` in N m over a tick, and over those after it that are missed.
     pub fn apply(&mut self, torque: f64) {
-        let mut before = std::mem::replace(&mut self.torque, torque);
         loop {
             self.positions.push(self.position());
-            self.machine.tick(self.positions.len() - 1, &self.hand_torque, [before, torque]);
-            before = torque;
+            self.machine.tick(self.positions.len() - 1, &self.hand_torque, torque);
             if !self.missed.next().unwrap_or(false) {
                 return;
             }

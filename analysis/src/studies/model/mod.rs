@@ -14,9 +14,12 @@ pub use model_result::ModelResult;
 
 use std::fmt;
 
+use firmware::scene::{Scene, TimeRange};
+
 use crate::chain::Chain;
 use crate::device::Hand;
 use crate::file::SceneFile;
+use crate::simulation::Experiment;
 use crate::simulation::plant::Plant;
 
 /// What of the machine is modelled.
@@ -36,7 +39,7 @@ impl Model {
         Self {
             masses: file.chain.masses().len(),
             hand: file.hand.is_some_and(|hand| hand != Hand::default()),
-            lag: file.chain.actuator_lag() > 0.0,
+            lag: !file.scene.latency.actuator_lag.is_zero(),
         }
     }
 
@@ -56,14 +59,27 @@ impl Model {
 
     /// The device of a file in this model.
     pub fn chain(self, file: &SceneFile) -> Chain {
-        let chain = file.chain.lumped(self.masses);
-        if self.lag { chain } else { chain.without_lag() }
+        file.chain.lumped(self.masses)
+    }
+
+    /// The scene of a file on this model's machine, as far as its latency goes.
+    pub fn scene(self, file: &SceneFile) -> Scene {
+        let mut scene = file.scene;
+        if !self.lag {
+            scene.latency.actuator_lag = TimeRange::ZERO;
+        }
+        scene
     }
 
     /// The machine of a file in this model.
     pub fn plant(self, file: &SceneFile) -> Plant {
         let hand = file.hand.filter(|_| self.hand).unwrap_or_default();
         Plant::of(&self.chain(file)).with_hand(hand)
+    }
+
+    /// What the file wants to be simulated, on this model's machine.
+    pub fn experiment(self, file: &SceneFile, run: &Experiment) -> Experiment {
+        Experiment { plant: self.plant(file), scene: self.scene(file), ..run.clone() }
     }
 
     /// Its omissions from another model, in words.

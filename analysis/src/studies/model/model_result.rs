@@ -41,8 +41,7 @@ impl ModelResult {
         file: &SceneFile,
         run: &Experiment,
     ) -> Result<Self, SimulationError> {
-        let (experiment, integration) =
-            (Experiment { plant: model.plant(file), ..run.clone() }, Integration::default());
+        let (experiment, integration) = (model.experiment(file, run), Integration::default());
         let certificate = certificate(model, file);
         let stability = stability::judge(&experiment, integration)?;
         Ok(Self {
@@ -64,7 +63,7 @@ fn certificate(model: Model, file: &SceneFile) -> Option<VerdictReport> {
     if let Some(declared) = declared(file) {
         device.passivity = Some(device.passivity.unwrap_or(device.damping).min(declared));
     }
-    Some(verdict::judge(&file.name, &Scene { device, ..file.scene }))
+    Some(verdict::judge(&file.name, &Scene { device, ..model.scene(file) }))
 }
 
 /// The passivity that the file declares, if it is not that of its chain.

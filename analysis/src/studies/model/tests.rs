@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use firmware::scene::Device;
+use firmware::scene::{Device, Latency, Scene};
 
 use super::*;
 use crate::chain::{Link, Mass};
@@ -66,14 +66,15 @@ fn a_rigid_device_in_its_hand_is_enough_for_a_stiff_shaft() {
     let advice = advice(STIFF, 0.01);
     assert_eq!(advice.enough, "rigid, hand");
     assert_eq!(advice.left_out, ["a mass", "the amplifier's lag"]);
-    assert!(advice.no_certificate.is_some());
+    assert!(advice.no_certificate.is_none());
     // Against two machines that are put together by hand.
     let file = parse(STIFF);
     let run = Experiment::of(&file, Path::new("")).unwrap();
     let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 6.0 };
+    let scene = Scene { latency: Latency::NONE, ..run.scene };
     let motion = |plant: Plant| -> Trajectory {
         simulate(
-            &Experiment { plant: plant.with_hand(hand), ..run.clone() },
+            &Experiment { plant: plant.with_hand(hand), scene, ..run.clone() },
             Integration::default(),
         )
         .unwrap()
@@ -139,9 +140,9 @@ fn a_lag_changes_whether_the_loop_is_stable() {
     }
     assert_eq!(prompt.result.stability, stability::Verdict::Stable);
     assert_eq!(late.result.stability, stability::Verdict::Unstable);
-    // There is no passivity behind a lag, and so no certificate that could differ.
-    assert_eq!((late.result.delta, late.result.certificate), (None, None));
-    assert_eq!(prompt.deviation.delta, None);
+    // The lag is the controller's: the same passivity, and another certificate.
+    assert_eq!((late.result.delta, prompt.result.delta), (Some(0.5), Some(0.5)));
+    assert_eq!(late.result.certificate, Some(verdict::Verdict::Rejected));
 }
 
 #[test]

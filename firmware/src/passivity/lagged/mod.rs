@@ -47,17 +47,24 @@ struct Decay {
     tau: Interval,
     tick: Interval,
     rest: Interval,
+    /// The rest of the tick.
+    over: Interval,
 }
 
 impl Decay {
-    const NONE: Self = Self { tau: Interval::ZERO, tick: Interval::ZERO, rest: Interval::ZERO };
+    const NONE: Self = Self {
+        tau: Interval::ZERO,
+        tick: Interval::ZERO,
+        rest: Interval::ZERO,
+        over: Interval::ZERO,
+    };
 
     const fn of(tau: Interval, part: Interval) -> Self {
         if tau.is_zero() {
             return Self::NONE;
         }
-        let rest = Interval::ONE.sub(part).div(tau).exp_of_negative();
-        Self { tau, tick: Interval::ONE.div(tau).exp_of_negative(), rest }
+        let over = Interval::ONE.sub(part);
+        Self { tau, tick: left(Interval::ONE, tau), rest: left(over, tau), over }
     }
 
     /// `(1 - rest) z + (rest - tick)`
@@ -76,6 +83,16 @@ impl Decay {
     }
 }
 
+/// What a lag leaves after some time; nothing where its range begins at 0 and the time is positive.
+const fn left(time: Interval, tau: Interval) -> Interval {
+    let ratio = if tau.is_positive() {
+        time.div(tau)
+    } else {
+        Interval::new(time.div(Interval::exact(tau.hi())).lo(), f64::INFINITY)
+    };
+    ratio.exp_of_negative()
+}
+
 impl LagIntervals {
     /// Pieces of the delay's range, each within a sample: at least one.
     pub const fn pieces(&self) -> usize {
@@ -92,7 +109,7 @@ impl LagIntervals {
 
     /// The response with a delay in one of the pieces.
     ///
-    /// `None` where two lags are too much alike for their difference to be told from zero.
+    /// `None` where a lag may be zero and the other as well, neither for certain.
     pub const fn response(&self, piece: usize) -> Option<SampledResponse> {
         let whole = self.first_whole() + piece as i32;
         let part = self.delay.sub(Interval::exact(whole as f64));
@@ -109,6 +126,18 @@ impl LagIntervals {
 }
 
 impl SampledResponse {
+    /// `z^-whole g`, from torque to position, at this period in s.
+    pub const fn transfer(&self, period: Interval) -> Transfer {
+        let response = Transfer::new(self.bracket, self.lag);
+        Transfer { scale: period, shift: -1 - self.whole, ones: -1, ..response }
+    }
+
+    /// `D / T^2` at `c = cos(theta)`.
+    pub const fn ripple_at(&self, c: f64) -> Interval {
+        let c = Interval::exact(c);
+        self.ripple.at(c).div(Series::squared_magnitude(&self.lag).at(c))
+    }
+
     const fn of(
         whole: i32,
         part: Interval,
@@ -154,7 +183,7 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     };
     let apart = first.tau.sub(second.tau);
     if apart.contains(0.0) {
-        return None;
+        return alike(&first, &second);
     }
     let weights =
         [first.tau.mul(first.tau).div(apart), second.tau.mul(second.tau).div(apart.neg())];
@@ -164,6 +193,33 @@ const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polyno
     match first.pole().times(&second.pole()) {
         Some(lag) => Some((lag, one.plus(&other))),
         None => None,
+    }
+}
+
+/// The same of two lags that may be equal: with the derivatives by the time constant, somewhere between
+/// the two, in place of the differences.
+///
+/// With `u = tau^2 (1 - rest)`, `v = tau^2 (rest - tick)` and differences `[]` over that of the time
+/// constants, the numerator is `[u] z^2 + ([v] - tick_2 [u] + u_2 [tick]) z - (tick_2 [v] - v_2 [tick])`.
+const fn alike(first: &Decay, second: &Decay) -> Option<(Polynomial, Polynomial)> {
+    let tau =
+        Interval::new(first.tau.lo().min(second.tau.lo()), first.tau.hi().max(second.tau.hi()));
+    let over = first.over;
+    let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
+    let twice = tau.double();
+    let du = twice.mul(Interval::ONE.sub(rest)).sub(over.mul(rest));
+    let dv = twice.mul(rest.sub(tick)).add(over.mul(rest)).sub(tick);
+    let dtick = tick.div(tau.mul(tau));
+    let square = second.tau.mul(second.tau);
+    let u = square.mul(Interval::ONE.sub(second.rest));
+    let v = square.mul(second.rest.sub(second.tick));
+    let linear = dv.sub(second.tick.mul(du)).add(u.mul(dtick));
+    let constant = v.mul(dtick).sub(second.tick.mul(dv));
+    match first.pole().times(&second.pole()) {
+        Some(lag) if dtick.is_finite() => {
+            Some((lag, Polynomial::ascending(&[constant, linear, du])))
+        }
+        _ => None,
     }
 }
 

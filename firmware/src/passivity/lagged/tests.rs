@@ -45,6 +45,8 @@ fn closed_forms_are_the_sums_over_aliases() {
         (0.0, [0.0, 1.5]),
         (0.4, [0.3, 0.8]),
         (1.25, [2.0, 0.1]),
+        (0.4, [0.5, 0.5]),
+        (0.0, [1.3, 1.3]),
     ] {
         let lag = LagIntervals { delay: exact(delay), lags: [exact(lags[0]), exact(lags[1])] };
         let response = lag.response(0).unwrap();
