@@ -4,7 +4,7 @@
 //! host's device simulation gives a count and takes a code around each tick ([`lockstep`]), and what
 //! a tick sees of that are words of memory in the place of registers ([`lines`]). Count and code
 //! belong to the same instant, since the simulation waits for the code; a program whose torques come at
-//! a phase of their own has the time up to there for its tick, and the simulation delays them.
+//! a phase of their own has the time up to there for its tick, of which the simulation takes no notice.
 //!
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
