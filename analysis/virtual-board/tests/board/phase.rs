@@ -128,7 +128,7 @@ fn a_code_that_is_late_is_a_fault_and_never_at_the_motor() {
             let Fault::LateTick { late, allowed } = fault else { panic!("{fault:?}") };
             let divider = bench.machine.board().clock.timer_divider();
             let phase = phase(chip) / divider;
-            assert!((phase - 1..=phase).contains(&allowed.into()), "{}: {fault:?}", chip.name);
+            assert!((phase - 1..=phase).contains(&u64::from(allowed)), "{}: {fault:?}", chip.name);
             assert!(late > allowed, "{}: {fault:?}", chip.name);
         }
     });
