@@ -4,11 +4,11 @@ use analysis::program::undelayed_wall;
 use firmware::fault::Fault;
 use firmware::servo_loop::State;
 use firmware::wire::message::{FaultCode, Outcome};
+use unicorn_engine::RegisterARM;
 use virtual_board::board::Event;
 use virtual_board::chip::Chip;
 
 use crate::bench::{Bench, MID_SCALE, on_both};
-use crate::stub::{Masks, hold_up};
 
 /// The program whose torques have one.
 const NAME: &str = "undelayed_wall";
@@ -141,10 +141,13 @@ fn a_count_that_is_read_late_is_a_fault_though_its_code_is_in_time() {
     on_both(|chip| {
         let mut bench = pushing(chip);
         let (_, before) = codes(&bench);
-        let (masked, behind) = (1000, 3 * chip.core / 1_000_000);
+        let (ahead, behind) = (500, 3 * chip.core / 1_000_000);
         bench.run_to_update();
-        bench.run_for(bench.period() - masked + behind);
-        let began = hold_up(&mut bench, masked, Masks::All);
+        bench.run_for(bench.period() - ahead);
+        let began = bench.machine.board().now;
+        bench.machine.core_mut().set_register(RegisterARM::PRIMASK, 1);
+        bench.run_for(ahead + behind);
+        bench.machine.core_mut().set_register(RegisterARM::PRIMASK, 0);
         let fault = check_stopped(&mut bench, chip, before, began);
         let Fault::LateTick { late, allowed } = fault else { panic!("{fault:?}") };
         let divider = bench.machine.board().clock.timer_divider();
