@@ -14,6 +14,8 @@ pub mod free_mode;
 pub mod identify;
 #[path = "../../firmware/src/bin/supervised_spring.rs"]
 pub mod supervised_spring;
+#[path = "../../firmware/src/bin/undelayed_wall.rs"]
+pub mod undelayed_wall;
 
 use std::io;
 use std::sync::OnceLock;
@@ -115,9 +117,9 @@ impl Program {
         Self::every().chain(MORE.get()).find(|program| program.name == name)
     }
 
-    /// All programs of this build, also the one that needs a host.
+    /// All programs of this build, also the one that needs a host, and the one whose torques are not latched.
     pub fn every() -> impl Iterator<Item = &'static Self> {
-        ALL.iter().chain([&SUPERVISED])
+        ALL.iter().chain([&SUPERVISED, &UNDELAYED])
     }
 }
 
@@ -130,10 +132,13 @@ pub fn add(program: Program) {
     let _ = MORE.set(program);
 }
 
-/// The [`Program`] of a module that is a scene's file.
+/// The [`Program`] of a module that is a scene's file, whose torques are latched if no other mode is named.
 #[macro_export]
 macro_rules! program {
     ($module:ident) => {
+        $crate::program!($module, ::firmware::servo::Latched)
+    };
+    ($module:ident, $mode:ty) => {
         $crate::program::Program {
             name: stringify!($module),
             scene: $module::SCENE.as_data(),
@@ -162,7 +167,7 @@ macro_rules! program {
             },
             listen: |plant, address, pacing| {
                 let program = $module::PROGRAM;
-                $crate::board_sim::SimulatedBoard::start::<_, f32, ::firmware::servo::Latched>(
+                $crate::board_sim::SimulatedBoard::start::<_, f32, $mode>(
                     stringify!($module),
                     program,
                     plant,
@@ -189,6 +194,10 @@ programs!(delayed_spring, damper_wall, free_mode);
 /// What the options do. Not among the others: it lets the device go where no host is heard, as in a
 /// simulation there is none.
 pub static SUPERVISED: Program = crate::program!(supervised_spring);
+
+/// The one whose torques come at a phase of their own. Not among the others, which are compared with the
+/// paper's: its wall is not late, and there is a coupling with a memory in front of it.
+pub static UNDELAYED: Program = crate::program!(undelayed_wall, undelayed_wall::Output);
 
 #[cfg(test)]
 mod tests {

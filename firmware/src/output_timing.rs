@@ -26,6 +26,42 @@ pub enum OutputTiming {
     AtPhase(u32),
 }
 
+impl OutputTiming {
+    /// Whether a code is put out in the period of its count, at a time of its own.
+    pub const fn is_at_phase(self) -> bool {
+        matches!(self, Self::AtPhase(_))
+    }
+
+    /// Time in s from the beginning of a period to that at which the code of its count is put out;
+    /// `None` where the timer does not do that within the period.
+    pub const fn phase(self) -> Option<f64> {
+        match self {
+            Self::AtPhase(nanoseconds) => Some(nanoseconds as f64 / 1e9),
+            Self::Latched | Self::Simultaneous => None,
+        }
+    }
+
+    /// Whether a board with this period in s can do it: a phase is not too short to compute a code in,
+    /// and not so long that the next period's code could be put out in its place.
+    pub const fn fits(self, period: f64) -> bool {
+        match self.phase() {
+            Some(phase) => phase >= SHORTEST_PHASE && phase <= longest_phase(period),
+            None => true,
+        }
+    }
+}
+
+/// Shortest phase in s. A count is read up to [`READ_WITHIN`] late, and from there to the code it is
+/// about a hundred instructions: on the slowest board, whose flash memory has five wait states, and with
+/// none of them in its cache, that is 3.5 microseconds.
+pub const SHORTEST_PHASE: f64 = 5e-6;
+
+/// Longest phase in s in a period: the code of the next tick, which is not written before the next period
+/// begins, must not be there yet, also where the timer's counts round the phase up.
+pub const fn longest_phase(period: f64) -> f64 {
+    period - READ_WITHIN
+}
+
 /// The timer that begins a period latches the code of the tick before: a torque appears exactly
 /// one sample after the count that it was computed from, without jitter, so that equation 35 has no
 /// part of a sample in it. The servo computes each
@@ -40,7 +76,20 @@ pub struct Simultaneous;
 
 /// The timer puts the code of a count out a fixed time after the beginning of the count's own period,
 /// which the scene states as its output delay: no torque waits for the next count, and none depends on
-/// when the computation ended. One that has not ended by then is a fault.
+/// when the computation ended.
+///
+/// ```text
+/// period     k                              k+1                            k+2
+///            |---phase-->|                  |---phase-->|                  |
+/// count      x(k) read                      x(k+1) read                    x(k+2) read
+/// computed   torque of x(k)                 torque of x(k+1)
+///                  ^ written ... slack      ^ late: a fault; x(k) is held, then no torque
+/// at motor   x(k-1)      torque of x(k)                 torque of x(k+1)
+/// ```
+///
+/// A code that is written later than that is a fault ([`LateTick`](crate::fault::Fault::LateTick)), and
+/// is never put out: until the next phase the motor keeps the torque of the tick before, if its amplifier
+/// were not switched off in the late tick itself, and then it is mid-scale that was written over it.
 ///
 /// The time belongs to the coupling ([`Coupling::Matched`](crate::coupling::Coupling)), so that an
 /// environment need not be late.

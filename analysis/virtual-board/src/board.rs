@@ -11,7 +11,7 @@ use crate::meter::Meter;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
 use crate::peripheral::counter::Counter;
-use crate::peripheral::dac::Dac;
+use crate::peripheral::dac::{Dac, Trigger};
 use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::{Level, Pins};
 use crate::peripheral::serial::Serial;
@@ -36,6 +36,8 @@ pub struct Board {
     pub clock: Clock,
     /// The pacing timer.
     pub tick_timer: BasicTimer,
+    /// The timer that triggers the DAC at a phase of the pacing timer's period, where it runs.
+    pub phase_timer: BasicTimer,
     /// The encoder's counter.
     pub encoder: Counter,
     /// The DAC.
@@ -77,6 +79,7 @@ impl Board {
             system: System::default(),
             clock: Clock::new(chip.clock, chip.crystal, Cause::Power),
             tick_timer: BasicTimer::new(),
+            phase_timer: BasicTimer::new(),
             encoder: Counter::new(chip.counter),
             dac: Dac::new(chip.dac),
             serial: Serial::new(chip.usart),
@@ -156,8 +159,10 @@ impl Board {
 
     /// When something happens next that the program has not asked for.
     pub fn due(&self) -> u64 {
-        [self.tick_timer.due(), self.serial.due(), self.watchdog.due(), self.system.systick.due()]
+        let timers = [self.tick_timer.due(), self.phase_timer.due(), self.system.systick.due()];
+        timers
             .into_iter()
+            .chain([self.serial.due(), self.watchdog.due()])
             .flatten()
             .min()
             .unwrap_or(u64::MAX)
@@ -166,8 +171,12 @@ impl Board {
     /// Does what is due; whether the watchdog resets the board.
     pub fn advance(&mut self) -> bool {
         let now = self.now;
-        if self.tick_timer.advance(now, self.clock.timer_divider()) {
+        let divider = self.clock.timer_divider();
+        if self.tick_timer.advance(now, divider) {
             self.sample();
+        }
+        if self.phase_timer.advance(now, divider) && self.phase_timer.triggers() {
+            self.dac.trigger(Trigger::Tim7);
         }
         self.serial.advance(now, self.clock.bus_divider());
         if self.system.systick.advance(now) {
@@ -179,13 +188,14 @@ impl Board {
     }
 
     /// The pacing timer's update: the sample that it ends goes into the device, and the DAC
-    /// begins the next one.
+    /// begins the next one. A device takes what is put out then for that of the whole sample, also
+    /// where a phase was put out later than the sample began.
     fn sample(&mut self) {
         self.samples += 1;
         let counts = self.device.sample(self.torque(), self.amplifier() == Level::High);
         self.turn_encoder(counts);
         if self.tick_timer.triggers() {
-            self.dac.trigger();
+            self.dac.trigger(Trigger::Tim6);
         }
     }
 

@@ -118,11 +118,12 @@ static F4: &Layout = &clock_f4::LAYOUT;
 
 /// The map of an STM32G4. Which two timers are the encoder's counter and the free-running clock depends
 /// on the board; all else is in the same place.
-const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 18] {
+const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 19] {
     [
         first,
         second,
         map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x58, 0x38, 4),
+        map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x58, 0x38, 5),
         ungated(0x4000_3000, "IWDG", Unit::Watchdog),
         map_entry(0x4000_4400, "USART2", Unit::Serial, 0x58, 0x38, 17),
         map_entry(0x4000_7000, "PWR", Unit::Power, 0x58, 0x38, 28),
@@ -210,6 +211,7 @@ pub static STM32F405: Chip = Chip {
         map_entry(0x4000_0400, "TIM3", Unit::Encoder, 0x40, 0x20, 1),
         map_entry(0x4000_0C00, "TIM5", Unit::FreeClock, 0x40, 0x20, 3),
         map_entry(0x4000_1000, "TIM6", Unit::TickTimer, 0x40, 0x20, 4),
+        map_entry(0x4000_1400, "TIM7", Unit::PhaseTimer, 0x40, 0x20, 5),
         ungated(0x4000_3000, "IWDG", Unit::Watchdog),
         map_entry(0x4000_4800, "USART3", Unit::Serial, 0x40, 0x20, 18),
         map_entry(0x4000_7000, "PWR", Unit::Power, 0x40, 0x20, 28),

@@ -148,7 +148,7 @@ pub fn f405(unit: Unit, offset: u32) -> Option<&'static str> {
 /// What both have alike.
 fn common(unit: Unit) -> Row {
     match unit {
-        Unit::TickTimer | Unit::FreeClock | Unit::Encoder => TIMER,
+        Unit::TickTimer | Unit::PhaseTimer | Unit::FreeClock | Unit::Encoder => TIMER,
         Unit::Pins(_) => PINS,
         Unit::Dac => DAC,
         Unit::Watchdog => WATCHDOG,

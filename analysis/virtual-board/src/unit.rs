@@ -17,6 +17,8 @@ pub enum Unit {
     Pins(usize),
     /// TIM6.
     TickTimer,
+    /// TIM7.
+    PhaseTimer,
     /// The free-running clock.
     FreeClock,
     /// The encoder's counter.

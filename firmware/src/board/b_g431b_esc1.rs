@@ -78,6 +78,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Qei::new(chip.TIM4, chip.PB6, chip.PB7, quadrature::config()),
         Timer::new(chip.TIM2),
         Timer::new(chip.TIM6),
+        Timer::new(chip.TIM7),
     ));
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {

@@ -56,8 +56,11 @@ pub const BAUD: u32 = 460_800;
 /// transducers, and the type to compute in: `float` by default, `fixed` with the feature
 /// `fixed-point`. On a board the program runs the servo; on the host it prints the certificate.
 ///
-/// What may follow, in this order, are constant expressions:
+/// What may follow, in this order, are a type and constant expressions:
 ///
+/// - `output`: when the board puts a code out, such as `AtPhase<10_000>`, 10 microseconds after the
+///   beginning of the period of its count ([`AtPhase`](crate::servo::AtPhase)); by default at the next
+///   count ([`Latched`](crate::servo::Latched)), and on the emulated board at once;
 /// - `friction`: the dry friction of the device in N m, if it is known, by which the certificate says
 ///   whether it comes to rest;
 /// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
@@ -78,6 +81,7 @@ macro_rules! scene_program {
         transducers: $transducers:ident,
         float: $float:ty,
         fixed: $fixed:ty
+        $(, output: $mode:ty)?
         $(, friction: $friction:expr)?
         $(, rendering: $rendering:expr)?
         $(, options: $options:expr)?
@@ -107,6 +111,10 @@ macro_rules! scene_program {
         > = $certified.certified_in(
             <$crate::chosen_number!($float, $fixed) as $crate::number::Number>::FORMAT,
         );
+
+        // On every target, where a board would say the same.
+        $(const _: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
+            CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
         // On the host both formats are judged, whichever a board will be built for.
         #[cfg(not(target_os = "none"))]
@@ -142,6 +150,7 @@ macro_rules! scene_program {
             PROGRAM,
             CERTIFIED_AS_IT_RUNS,
             $crate::chosen_number!($float, $fixed)
+            $(, $mode)?
         );
     };
 }

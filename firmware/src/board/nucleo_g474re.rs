@@ -62,6 +62,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Qei::new(chip.TIM2, chip.PA0, chip.PA1, quadrature::config()),
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
+        Timer::new(chip.TIM7),
     ));
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {

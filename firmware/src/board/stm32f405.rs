@@ -88,6 +88,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Qei::new(chip.TIM3, chip.PC6, chip.PC7, quadrature::config()),
         Timer::new(chip.TIM5),
         Timer::new(chip.TIM6),
+        Timer::new(chip.TIM7),
     ));
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {

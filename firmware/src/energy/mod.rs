@@ -15,13 +15,23 @@ use crate::dac::DacCode;
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming};
 
+/// Parts of a period, as a power of two: where a code changes within a period, energies are kept in these
+/// parts of their unit, so that weighting the two codes rounds nothing.
+const PARTS: u32 = 8;
+
 /// Observes passivity, one tick at a time.
+///
+/// What it observes is the work of the DAC's codes. An amplifier that lags, which a scene may state, does
+/// that work later.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyMonitor {
     /// Codes above mid-scale that the DAC holds until the next count is read.
     held: i32,
-    /// Those that it holds after that, where it is latched.
+    /// Those that it holds after that, where it is latched; where codes are put out at a phase, those of
+    /// the last tick, which it holds up to the next one's phase.
     next: i32,
+    /// The part of a period up to that phase, in [`PARTS`].
+    phase: i32,
     /// The worst deficit less the net energy: kept rather than the net energy, since all that a
     /// tick has to see then is a sign.
     below: i64,
@@ -29,6 +39,13 @@ pub struct EnergyMonitor {
 }
 
 impl EnergyMonitor {
+    /// At zero energy, for codes that change this part of a period after their count.
+    pub fn with_phase(part: f64) -> Self {
+        // The cast gives the nearest of what does not fit. Never none: that is for other modes.
+        let phase = ((part * f64::from(1 << PARTS) + 0.5) as i32).max(1);
+        Self { phase, ..Self::default() }
+    }
+
     /// Ends a tick: the encoder moved by `step` counts since the last one, and `code` was written.
     #[inline(always)]
     pub fn observe<M: OutputMode>(&mut self, step: i32, code: DacCode) {
@@ -42,39 +59,54 @@ impl EnergyMonitor {
         let offset = i32::from(code.offset());
         match M::TIMING {
             OutputTiming::Latched => self.held = core::mem::replace(&mut self.next, offset),
-            OutputTiming::Simultaneous | OutputTiming::AtPhase(_) => self.held = offset,
+            OutputTiming::Simultaneous => self.held = offset,
+            // As much of a period with the code before as passes until the phase: exact for a movement
+            // at a constant speed.
+            OutputTiming::AtPhase(_) => {
+                let before = core::mem::replace(&mut self.next, offset);
+                self.held = (offset << PARTS) - (offset - before) * self.phase;
+            }
         }
     }
 
     /// To be called before [`EnergyMonitor::observe`] when updates were missed since the last
     /// tick: where in the encoder's `step` the code changed is not known, and the worse is taken.
     pub fn missed<M: OutputMode>(&mut self, step: i32) {
-        if M::TIMING == OutputTiming::Latched {
-            let more = i64::from(self.next - self.held) * i64::from(step);
-            self.below = self.below.wrapping_sub(more.max(0));
-        }
+        let held = match M::TIMING {
+            OutputTiming::Simultaneous => return,
+            OutputTiming::Latched => self.next,
+            // All but the beginning of so long a time is the newer code's.
+            OutputTiming::AtPhase(_) => self.next << PARTS,
+        };
+        let more = i64::from(held - self.held) * i64::from(step);
+        self.below = self.below.wrapping_sub(more.max(0));
     }
 
     /// Starts at zero energy, with the DAC at mid-scale.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        *self = Self { phase: self.phase, ..Self::default() };
     }
 
     /// Net energy that the motor has put into the hand and the device, in counts times codes;
     /// negative where they have put in more.
     pub const fn net(&self) -> i64 {
-        self.worst.wrapping_sub(self.below)
+        self.worst.wrapping_sub(self.below) >> self.scale()
+    }
+
+    /// Binary digits of the energies that are parts of their unit.
+    const fn scale(&self) -> u32 {
+        if self.phase == 0 { 0 } else { PARTS }
     }
 
     /// The largest that [`EnergyMonitor::net`] has been: the worst deficit. Never negative.
     pub const fn worst(&self) -> i64 {
-        self.worst
+        self.worst >> self.scale()
     }
 
     /// Whether there is a deficit now.
     #[inline(always)]
     pub const fn is_deficit(&self) -> bool {
-        self.net() > 0
+        self.worst.wrapping_sub(self.below) > 0
     }
 }
 

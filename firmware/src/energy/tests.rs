@@ -9,7 +9,9 @@ use super::*;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{DelayedSpring, Discretize, Law, LawContext};
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
-use crate::servo::{Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers};
+use crate::servo::{
+    AtPhase, Latched, PreparedServo, RenderingOptions, Servo, Simultaneous, Transducers,
+};
 
 const PERIOD: f64 = 1e-3;
 const TRANSDUCERS: Transducers = Transducers {
@@ -69,6 +71,39 @@ proptest! {
         prop_assert_eq!(monitor.is_deficit(), *work.last().unwrap() > 0);
         let at_once = worked(&ticks, 0);
         prop_assert_eq!(&observed::<Simultaneous>(&ticks).0, &at_once);
+    }
+
+    /// A code that is put out a quarter of a period after its count: a quarter of each step was against
+    /// the code before, to the last digit.
+    #[test]
+    fn both_codes_of_a_period_by_their_times(ticks in ticks()) {
+        let mut monitor = EnergyMonitor::with_phase(0.25);
+        let (newer, older) = (worked(&ticks, 0), worked(&ticks, 1));
+        let mut worst = 0;
+        for (k, &(step, code)) in ticks.iter().enumerate() {
+            monitor.observe::<AtPhase<250_000>>(step, DacCode::new(code).unwrap());
+            let exact = 3 * newer[k] + older[k];
+            worst = worst.max(exact);
+            prop_assert_eq!(monitor.net(), exact.div_euclid(4));
+            prop_assert_eq!(monitor.is_deficit(), exact > 0);
+        }
+        prop_assert_eq!(monitor.worst(), worst.div_euclid(4));
+    }
+
+    /// A tick that began late is in a longer step, most of which was against the newer code.
+    #[test]
+    fn a_late_tick_takes_the_worse_of_both_codes(ticks in ticks(), step in -4000..4000_i32) {
+        let mut monitor = EnergyMonitor::with_phase(0.25);
+        for &(step, code) in &ticks {
+            monitor.observe::<AtPhase<250_000>>(step, DacCode::new(code).unwrap());
+        }
+        let (mut in_time, before) = (monitor, monitor.net());
+        in_time.observe::<AtPhase<250_000>>(step, DacCode::MID_SCALE);
+        monitor.missed::<AtPhase<250_000>>(step);
+        monitor.observe::<AtPhase<250_000>>(step, DacCode::MID_SCALE);
+        let newer = i64::from(ticks.last().unwrap().1) - 2048;
+        let all_newer = before + newer * i64::from(step);
+        prop_assert!(monitor.net() >= in_time.net() && monitor.net() >= all_newer);
     }
 
     /// A tick was missed: the latch changed from one code to the next anywhere in the encoder's

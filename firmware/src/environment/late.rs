@@ -35,8 +35,8 @@ delayed!(@ Environment, Rational,);
     message = "`{Self}` is not late by a whole sample, but on this board a torque takes one",
     label = "this environment needs a delay of 1 to 8 samples",
     note = "give it a delay of 1, as in `DamperWall<1>`: that is the sample which passes until the \
-            motor has the torque; a `FreeModeWall` cancels without delay, and runs in simulation \
-            only"
+            motor has the torque; what cancels or answers without delay, as a `FreeModeWall`, runs as \
+            `Matched<...>` behind `Coupling::Matched`, with the output `AtPhase<...>`"
 )]
 pub trait SupportsTiming<M: OutputMode> {}
 

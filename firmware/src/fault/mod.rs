@@ -50,7 +50,8 @@ pub enum Fault {
         /// The processor's configurable fault status.
         status: u32,
     },
-    /// A tick began later in its period than the certificate allows for its count.
+    /// A tick began later in its period than the certificate allows for its count, or had no code before
+    /// the time at which it is put out.
     LateTick {
         /// Timer counts after the beginning of its period.
         late: u32,
@@ -169,9 +170,9 @@ impl fmt::Display for Fault {
             ),
             Self::LateTick { late, allowed } => write!(
                 f,
-                "a tick began {late} timer counts after the start of its period, and {allowed} are \
-                 allowed: shorten the critical sections that mask interrupts, or lengthen the \
-                 scene's period, then arm again"
+                "a tick began, or had its code, {late} timer counts after the start of its period, and \
+                 {allowed} are allowed: shorten the critical sections that mask interrupts, or \
+                 lengthen the scene's period, or its output delay where it has one, then arm again"
             ),
             Self::ClockLost => {
                 f.write_str("the crystal stopped: check it and its supply, then arm again")

@@ -11,7 +11,7 @@ use crate::energy::{EnergyMonitor, Injector, NoAction};
 use crate::environment::{Discretize, EnvironmentModel, SupportsTiming};
 use crate::number::Number;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
-use crate::scene::{Scene, Timing};
+use crate::scene::Scene;
 use crate::transducers::Transducers;
 
 /// Options of the rendering, apart from the scene.
@@ -75,6 +75,9 @@ pub struct TimingLimits {
     pub tolerated: u32,
     /// The worst period in periods.
     stretch: f32,
+    /// The latest that a count may be read where its torque comes at a fixed phase, in periods after the
+    /// beginning of its own.
+    read_within: f32,
     /// The most counts that the encoder can move within a period.
     pub largest_step: u32,
     /// Twice that.
@@ -135,7 +138,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> PreparedServo<E, N, M> {
             }
             Some(damping) => return Err(BuildError::Injection { damping, room }),
         };
-        let pace = TimingLimits::new(scene.timing, transducers)?;
+        let pace = TimingLimits::new(scene, transducers)?;
         Ok(Self { servo, injector, pace, mode: PhantomData })
     }
 
@@ -200,6 +203,12 @@ impl TimingLimits {
         if allowed < -1e-5 { 0.0 } else { allowed.max(in_time).min(0.5) }
     }
 
+    /// The latest that a tick may begin, in periods after the beginning of its own, where torques come at a
+    /// fixed phase: a count that is read late is nearer to its torque, by no more than the scene's jitter.
+    pub(crate) const fn latest_at_phase(&self) -> f32 {
+        self.read_within
+    }
+
     /// Whether the encoder cannot have moved by `step` counts within a period.
     #[inline(always)]
     pub(crate) const fn is_too_far(&self, step: i32) -> bool {
@@ -207,7 +216,8 @@ impl TimingLimits {
         step.cast_unsigned().wrapping_add(self.largest_step) > self.span
     }
 
-    fn new(timing: Timing, transducers: &Transducers) -> Result<Self, BuildError> {
+    fn new<E>(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
+        let timing = scene.timing;
         let worst = timing.worst_period.unwrap_or(timing.period);
         // A worst period of two periods, to the digits that were written, is two.
         let periods = worst / timing.period + 1e-9;
@@ -218,6 +228,8 @@ impl TimingLimits {
         // Below half the counter's range, so that twice that fits.
         let stretch = (worst / timing.period) as f32;
         let span = 2 * largest_step;
-        Ok(Self { period: timing.period, tolerated, stretch, largest_step, span })
+        let read_within = (scene.latency.output_jitter.max(READ_WITHIN) / timing.period) as f32;
+        let period = timing.period;
+        Ok(Self { period, tolerated, stretch, read_within, largest_step, span })
     }
 }

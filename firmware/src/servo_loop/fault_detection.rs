@@ -40,10 +40,29 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         let tolerated = self.rendering.timing_limits().tolerated;
         if missed > tolerated {
             self.fail(Fault::MissedTick { missed, tolerated }, hardware, inbox);
-        } else if M::TIMING == OutputTiming::Latched {
-            self.unless_latched_in_time(periods, hardware, inbox);
+        } else {
+            match M::TIMING {
+                OutputTiming::Latched => self.unless_latched_in_time(periods, hardware, inbox),
+                OutputTiming::AtPhase(_) => self.unless_read_in_time(hardware, inbox),
+                OutputTiming::Simultaneous => {}
+            }
         }
         self.tick
+    }
+
+    /// Where torques come at a fixed phase, how long a count is before its torque: the scene's jitter is
+    /// what the certificate allows that to be shorter. Whether the code is written in time shows later.
+    fn unless_read_in_time(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) {
+        let late = hardware.time_in_period();
+        let latest = self.rendering.timing_limits().latest_at_phase();
+        let allowed = (latest * self.period as f32) as u32;
+        if late > allowed {
+            self.fail(Fault::LateTick { late, allowed }, hardware, inbox);
+        }
     }
 
     /// Where torques are latched, it also matters how long a count is read before the next latch:
@@ -97,6 +116,10 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     /// A tick that took longer than any before; gives its slack. Without any the code was late
     /// for the update that it was for, and the motor has a torque that the environment does not know
     /// of: no worst period covers that.
+    ///
+    /// Where torques come at a fixed phase that code has not been put out, and here mid-scale is written
+    /// over it: the motor goes on with the torque of the tick before, until the amplifier is off or the
+    /// next phase comes.
     #[cold]
     #[inline(never)]
     pub(super) fn check_longest_tick(
@@ -105,13 +128,19 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         hardware: &mut impl Hardware,
         inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
     ) -> u32 {
-        if elapsed < self.period {
+        let allowed = self.deadline;
+        if elapsed < allowed {
             self.longest = elapsed;
-            return self.period.wrapping_sub(elapsed);
+            return allowed.wrapping_sub(elapsed);
         }
         self.was_late = true;
         self.missed = self.missed.wrapping_add(1);
-        self.fail(Fault::MissedTick { missed: 1, tolerated: 0 }, hardware, inbox);
+        let fault = if M::TIMING.is_at_phase() {
+            Fault::LateTick { late: elapsed, allowed }
+        } else {
+            Fault::MissedTick { missed: 1, tolerated: 0 }
+        };
+        self.fail(fault, hardware, inbox);
         0
     }
 

@@ -17,7 +17,8 @@ pub struct Frame {
     pub limit: LimitReason,
     /// The servo's state.
     pub state: State,
-    /// Timer counts that were left of the period; 0 where the tick was late.
+    /// Timer counts that were left of the period, or until the code was put out where that has a phase
+    /// of its own; 0 where the tick was late.
     pub slack: u32,
 }
 

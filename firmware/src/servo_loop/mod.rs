@@ -67,6 +67,8 @@ pub struct ServoLoop<E: Discretize<N>, N: Number, M> {
     tick: u32,
     /// Timer counts in a period.
     period: u32,
+    /// Timer counts that a tick has: a period, or the time until its code is put out.
+    deadline: u32,
     late: MissedUpdates,
     /// Updates missed since the start.
     missed: u32,
@@ -106,14 +108,18 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
                 rendering.timing_limits().ticks(options.link_timeout)
             }
         };
+        let phase = M::TIMING.phase().map(|phase| phase / rendering.timing_limits().period);
+        // The cast rounds down, and the hardware up.
+        let deadline = phase.map_or(period, |phase| (phase * f64::from(period)) as u32);
         Self {
             rendering,
-            energy: EnergyMonitor::default(),
+            energy: phase.map_or_else(EnergyMonitor::default, EnergyMonitor::with_phase),
             state: State::Disarmed,
             after_fade: AfterFade::Release,
             fault: previous_fault,
             tick: 0,
             period,
+            deadline,
             late: MissedUpdates::default(),
             missed: 0,
             longest: 0,
@@ -164,8 +170,13 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             code = self.unless_disarmed(code);
             pending = u32::MAX;
         }
-        // Output: latched by the timer at the beginning of the next period, where torques are.
+        // Output: put out by the timer, at the beginning of the next period or at a phase of this one.
         hardware.write(code);
+        // Before that phase, or after it: asked here, since from a late code the hardware has to be kept.
+        let mut slack = 0;
+        if M::TIMING.is_at_phase() {
+            slack = self.slack(hardware, inbox);
+        }
         // Bookkeeping: energy, requests and states, watchdog, telemetry.
         self.energy.observe::<M>(step, code);
         let link_due = tick.wrapping_sub(self.link_deadline).cast_signed() >= 0;
@@ -173,12 +184,24 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             self.run_state_machine(hardware, inbox, frames.dropped());
         }
         hardware.feed_watchdog();
-        let elapsed = hardware.time_in_period();
-        let mut slack = self.period.wrapping_sub(elapsed);
-        if elapsed > self.longest {
-            slack = self.check_longest_tick(elapsed, hardware, inbox);
+        if !M::TIMING.is_at_phase() {
+            slack = self.slack(hardware, inbox);
         }
         frames.push(Frame { tick, count, code, limit: output.limit, state: self.state, slack });
+    }
+
+    /// Timer counts that are left of those that the tick has.
+    #[inline(always)]
+    fn slack(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) -> u32 {
+        let elapsed = hardware.time_in_period();
+        if elapsed > self.longest {
+            return self.check_longest_tick(elapsed, hardware, inbox);
+        }
+        self.deadline.wrapping_sub(elapsed)
     }
 
     /// The rendering.

@@ -72,7 +72,8 @@ pub struct Status {
     pub count: i64,
     /// Timer counts in a period.
     pub period: u32,
-    /// The least timer counts that were left of a period since the start.
+    /// The least timer counts that were left since the start: of a period, or until a code was put out
+    /// where that has a phase of its own.
     pub worst_slack: u32,
     /// Updates missed since the start.
     pub missed: u32,

@@ -129,7 +129,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             tick: self.tick,
             count: self.rendering.servo().count(),
             period: self.period,
-            worst_slack: if self.was_late { 0 } else { self.period.wrapping_sub(self.longest) },
+            worst_slack: if self.was_late { 0 } else { self.deadline.wrapping_sub(self.longest) },
             missed: self.missed,
             dropped,
             energy: self.energy.net(),

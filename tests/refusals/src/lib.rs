@@ -4,9 +4,10 @@
 
 use firmware::certificate::Certified;
 use firmware::encoder::CounterWidth;
-use firmware::environment::DelayedSpring;
+use firmware::environment::{DamperWall, DelayedSpring, Matched};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
+use firmware::servo_loop::READ_WITHIN;
 
 /// An environment behind the paper's device and the standard coupling, and no torque limit.
 pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
@@ -18,6 +19,16 @@ pub const fn scene<E: Copy>(environment: E) -> Scene<E> {
         latency: Latency::NONE,
         torque_limit: None,
     }
+}
+
+/// A wall that is not late, behind the coupling that absorbs an output delay.
+pub type UndelayedWall = Matched<DamperWall<0>>;
+
+/// Such a wall in a scene with this output delay in s.
+pub const fn at_phase(output_delay: f64) -> Scene<UndelayedWall> {
+    let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+    let latency = Latency { output_jitter: READ_WITHIN, ..Latency::delayed(output_delay) };
+    Scene { coupling: Coupling::Matched, latency, ..scene(wall) }
 }
 
 /// A spring that boards can render.

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
-use analysis::program::{damper_wall, delayed_spring, free_mode};
+use analysis::program::{damper_wall, delayed_spring, free_mode, undelayed_wall};
 use analysis::studies::bench::live::live_set;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
@@ -40,7 +40,7 @@ static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
 
 /// The scenes' programs in each format.
 static PROGRAMS: LazyLock<HashMap<(&str, NumberFormat), PathBuf>> = LazyLock::new(|| {
-    let names = ["delayed_spring", "damper_wall", "free_mode"];
+    let names = ["delayed_spring", "damper_wall", "free_mode", "undelayed_wall"];
     let build = |format| {
         let files = TOOLCHAIN.build_scenes(&names, format);
         let files = files.unwrap_or_else(|error| panic!("{error}"));
@@ -270,4 +270,6 @@ emulated! {
     damper_wall_in_fixed_point: damper_wall, NumberFormat::Fixed, damper_wall::Fixed, None::<u64>;
     free_mode_in_f32: free_mode, NumberFormat::F32, f32, None::<u64>;
     free_mode_in_fixed_point: free_mode, NumberFormat::Fixed, free_mode::Fixed, None::<u64>;
+    undelayed_wall_in_f32: undelayed_wall, NumberFormat::F32, f32, None::<u64>;
+    undelayed_wall_in_fixed_point: undelayed_wall, NumberFormat::Fixed, undelayed_wall::Fixed, None::<u64>;
 }

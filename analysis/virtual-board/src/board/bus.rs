@@ -143,6 +143,7 @@ impl Board {
             Unit::Debug => self.debug.read(offset),
             Unit::Pins(port) => self.ports[port].read(offset),
             Unit::TickTimer => self.tick_timer.read(offset),
+            Unit::PhaseTimer => self.phase_timer.read(offset),
             Unit::FreeClock => self.free_clock.read(offset, now, divider),
             Unit::Encoder => {
                 self.meter.read(now);
@@ -168,6 +169,7 @@ impl Board {
             Unit::Debug => self.debug.write(offset, value),
             Unit::Pins(port) => self.ports[port].write(offset, value),
             Unit::TickTimer => self.tick_timer.write(offset, value, now, divider),
+            Unit::PhaseTimer => self.phase_timer.write(offset, value, now, divider),
             Unit::FreeClock => self.free_clock.write(offset, value, now, divider),
             Unit::Encoder => self.encoder.write(offset, value, now, divider),
             Unit::Dac => {
@@ -200,6 +202,7 @@ impl Board {
             Unit::Debug => self.debug = (self.chip.debug)(),
             Unit::Pins(port) => self.ports[port] = (self.chip.ports)(port),
             Unit::TickTimer => self.tick_timer = BasicTimer::new(),
+            Unit::PhaseTimer => self.phase_timer = BasicTimer::new(),
             Unit::FreeClock => self.free_clock = Counter::new(32),
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
             Unit::Dac => self.dac = Dac::new(self.chip.dac),

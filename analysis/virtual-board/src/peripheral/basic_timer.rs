@@ -1,4 +1,4 @@
-//! A basic timer, TIM6 (RM0440, 32.4; RM0090, 20.4): counts up to its reload value, and its update
+//! A basic timer, TIM6 or TIM7 (RM0440, 32.4; RM0090, 20.4): counts up to its reload value, and its update
 //! is an interrupt and a trigger.
 
 use super::{Access, Unmodelled, only};
@@ -23,6 +23,8 @@ pub struct BasicTimer {
     reload: u32,
     /// The prescaler that it counts with: taken over at an update.
     counting: u32,
+    /// What it begins to count from; while it counts, that is nobody's business.
+    count: u32,
     /// When it next overflows, while it counts.
     overflow: Option<u64>,
 }
@@ -90,7 +92,8 @@ impl BasicTimer {
                 self.control = value;
                 let on = value & ENABLE != 0;
                 if on != self.runs() {
-                    self.overflow = on.then(|| now + self.period(divider));
+                    let passed = u64::from(self.count) * (u64::from(self.counting) + 1) * divider;
+                    self.overflow = on.then(|| (now + self.period(divider)).saturating_sub(passed));
                 }
             }
             0x04 => {
@@ -107,6 +110,7 @@ impl BasicTimer {
                 only(value, UPDATE)?;
                 self.generate(now, divider);
             }
+            0x24 if !self.runs() && value <= self.reload => self.count = value,
             0x28 => self.prescaler = value & 0xFFFF,
             0x2C => self.reload = value & 0xFFFF,
             _ => return Err(Unmodelled::Register),
@@ -117,6 +121,7 @@ impl BasicTimer {
     /// An update by the program: takes the prescaler over and starts from zero.
     fn generate(&mut self, now: u64, divider: u64) {
         self.counting = self.prescaler;
+        self.count = 0;
         if self.control & ONLY_OVERFLOW == 0 {
             self.flag = UPDATE;
         }
@@ -135,6 +140,7 @@ mod tests {
     const DIER: u32 = 0x0C;
     const SR: u32 = 0x10;
     const EGR: u32 = 0x14;
+    const CNT: u32 = 0x24;
     const PSC: u32 = 0x28;
     const ARR: u32 = 0x2C;
 
@@ -158,6 +164,24 @@ mod tests {
             // Late or not, the next one is a period behind.
             assert!(tick_timer.advance(5000 + period + 7, divider) && tick_timer.line());
             assert_eq!(tick_timer.due(), Some(5000 + 2 * period));
+        }
+    }
+
+    /// As far ahead as its count is set to, and then once a period.
+    #[test]
+    fn a_count_that_is_set_makes_the_first_period_shorter() {
+        for divider in [1, 2] {
+            let mut timer = BasicTimer::new();
+            for (register, value) in [(PSC, 2), (ARR, 999), (CR1, ONLY_OVERFLOW), (EGR, 1)] {
+                timer.write(register, value, 0, divider).unwrap();
+            }
+            assert!(timer.write(CNT, 1000, 0, divider).is_err());
+            timer.write(CNT, 990, 0, divider).unwrap();
+            timer.write(CR1, ENABLE, 5000, divider).unwrap();
+            assert_eq!(timer.due(), Some(5000 + 30 * divider));
+            assert!(timer.advance(5000 + 30 * divider, divider));
+            assert_eq!(timer.due(), Some(5000 + 3030 * divider));
+            assert!(timer.write(CNT, 0, 6000, divider).is_err(), "while it counts");
         }
     }
 

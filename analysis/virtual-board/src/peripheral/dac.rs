@@ -15,10 +15,32 @@ pub struct Layout {
     pub trigger: u32,
     /// That field, where it is TIM6's update.
     pub tim6_trigger: u32,
+    /// That field, where it is TIM7's update.
+    pub tim7_trigger: u32,
     /// Bits of CR that change nothing here.
     pub ignored: u32,
     /// Whether there is a mode register.
     pub has_mode: bool,
+}
+
+/// Whose update triggers it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trigger {
+    /// The pacing timer's.
+    Tim6,
+    /// That of the timer a phase behind it.
+    Tim7,
+}
+
+impl Layout {
+    /// The timer that a value of CR names, if it is one of the two.
+    fn source(&self, control: u32) -> Option<Trigger> {
+        match control & self.trigger {
+            field if field == self.tim6_trigger => Some(Trigger::Tim6),
+            field if field == self.tim7_trigger => Some(Trigger::Tim7),
+            _ => None,
+        }
+    }
 }
 
 /// The G4's.
@@ -26,13 +48,20 @@ pub const G4: Layout = Layout {
     triggered: 1 << 1,
     trigger: 0xF << 2,
     tim6_trigger: 7 << 2,
+    tim7_trigger: 2 << 2,
     ignored: 0,
     has_mode: true,
 };
 
 /// The F405's.
-pub const F405: Layout =
-    Layout { triggered: 1 << 2, trigger: 0b111 << 3, tim6_trigger: 0, ignored: 0, has_mode: false };
+pub const F405: Layout = Layout {
+    triggered: 1 << 2,
+    trigger: 0b111 << 3,
+    tim6_trigger: 0,
+    tim7_trigger: 2 << 3,
+    ignored: 0,
+    has_mode: false,
+};
 
 /// MCR of the G4: the range of bus clocks, which has no effect on codes.
 const CLOCK_RANGE: u32 = 0b11 << 14;
@@ -65,10 +94,10 @@ impl Dac {
         self.held as u16
     }
 
-    /// The pacing timer's update.
-    pub fn trigger(&mut self) {
-        let Layout { triggered, trigger, tim6_trigger, .. } = self.layout;
-        if self.control & triggered != 0 && self.control & trigger == tim6_trigger {
+    /// A timer's update.
+    pub fn trigger(&mut self, source: Trigger) {
+        let waits = self.control & self.layout.triggered != 0;
+        if waits && self.layout.source(self.control) == Some(source) {
             self.output = self.held;
         }
     }
@@ -86,11 +115,11 @@ impl Dac {
 
     /// Writes.
     pub fn write(&mut self, offset: u32, value: u32) -> Access<()> {
-        let Layout { triggered, trigger, tim6_trigger, ignored, has_mode } = self.layout;
+        let Layout { triggered, trigger, ignored, has_mode, .. } = self.layout;
         match offset {
             0x00 => {
                 only(value, ENABLE | triggered | trigger | ignored)?;
-                if value & triggered != 0 && value & trigger != tim6_trigger {
+                if value & triggered != 0 && self.layout.source(value).is_none() {
                     return Err(Unmodelled::Bits(value & trigger));
                 }
                 self.control = value;

@@ -9,6 +9,7 @@ mod device;
 mod faults;
 mod harmless;
 mod interrupts;
+mod phase;
 mod reset;
 mod scenes;
 mod start;

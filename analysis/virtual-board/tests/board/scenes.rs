@@ -1,12 +1,12 @@
 //! The board's codes against the host's, tick by tick.
 
-use analysis::program::{Program, damper_wall, delayed_spring, free_mode};
+use analysis::program::{Program, damper_wall, delayed_spring, free_mode, undelayed_wall};
 use analysis::toolchain::NumberFormat;
 use firmware::boot;
 use firmware::encoder::CounterWidth;
 use firmware::environment::FreeMode;
 use firmware::scene::Scene;
-use firmware::servo::{Latched, RenderingOptions, SupportsTiming, Transducers};
+use firmware::servo::{Latched, OutputMode, RenderingOptions, SupportsTiming, Transducers};
 use firmware::servo_loop::Options;
 use firmware::tuning::Tunable;
 use tests::replica::Replica;
@@ -32,41 +32,60 @@ const FREE_MODE: Scene<FreeMode<1>> = Scene {
 
 #[test]
 fn the_wall_gives_the_host_s_codes() {
-    on_both(|chip| compare(chip, "damper_wall", damper_wall::SCENE, &damper_wall::TRANSDUCERS));
+    on_both(|chip| {
+        compare::<_, Latched>(chip, "damper_wall", damper_wall::SCENE, &damper_wall::TRANSDUCERS);
+    });
 }
 
 #[test]
 fn the_spring_gives_the_host_s_codes() {
     on_both(|chip| {
-        compare(chip, "delayed_spring", delayed_spring::SCENE, &delayed_spring::TRANSDUCERS);
+        let (scene, transducers) = (delayed_spring::SCENE, &delayed_spring::TRANSDUCERS);
+        compare::<_, Latched>(chip, "delayed_spring", scene, transducers);
     });
 }
 
 #[test]
 fn free_mode_gives_the_host_s_codes() {
-    on_both(|chip| compare(chip, "free_mode", FREE_MODE, &free_mode::TRANSDUCERS));
+    on_both(|chip| {
+        compare::<_, Latched>(chip, "free_mode", FREE_MODE, &free_mode::TRANSDUCERS);
+    });
+}
+
+#[test]
+fn the_wall_without_delay_gives_the_host_s_codes() {
+    on_both(|chip| {
+        let (scene, transducers) = (undelayed_wall::SCENE, &undelayed_wall::TRANSDUCERS);
+        compare::<_, undelayed_wall::Output>(chip, "undelayed_wall", scene, transducers);
+    });
 }
 
 /// A program's whole script on a board, against the servo on the host with the same counts.
-fn compare<E>(chip: &'static Chip, name: &'static str, scene: Scene<E>, transducers: &Transducers)
-where
-    E: Tunable<f32> + SupportsTiming<Latched>,
+fn compare<E, M>(
+    chip: &'static Chip,
+    name: &'static str,
+    scene: Scene<E>,
+    transducers: &Transducers,
+) where
+    E: Tunable<f32> + SupportsTiming<M>,
+    M: OutputMode,
 {
     let program = Program::find(name).unwrap();
     let mut bench = Bench::boot(chip, name, HandHeldDevice::of(program));
     let armed = bench.armed();
-    // What a tick computes is put out in the sample behind the next one.
+    // What a tick computes is put out in the sample that it begins, or in the one behind.
+    let late = if M::TIMING.is_at_phase() { 1 } else { 2 };
     bench.run(SAMPLES + 2);
     let samples = &bench.pins().samples[armed..];
     let transducers = &Transducers { counter: width(chip), ..*transducers };
-    let codes = with_the_same_cycle(scene, transducers, samples);
-    let at = |tick: usize| (samples[tick].count, samples[tick + 2].code.unwrap());
+    let codes = with_the_same_cycle::<E, M>(scene, transducers, samples);
+    let at = |tick: usize| (samples[tick].count, samples[tick + late].code.unwrap());
     for (tick, &code) in codes.iter().enumerate() {
         assert_eq!(at(tick).1, code, "{}, {name}, tick {tick}: {:?}", chip.name, at(tick));
     }
-    let moved = samples.iter().filter(|sample| sample.code != samples[2].code).count();
+    let moved = samples.iter().filter(|sample| sample.code != samples[late].code).count();
     assert!(moved > 1000, "{}, {name}: no torque but in {moved} samples", chip.name);
-    // And the DAC's latch is the sample by which the scene is late.
+    // And the DAC's latch is the sample by which the scene is late; at a phase, it is not.
     let mut controller = program.controller(NumberFormat::F32, transducers).unwrap();
     for (tick, sample) in samples[..SAMPLES as usize].iter().enumerate() {
         let code = controller.tick(sample.count).code;
@@ -76,15 +95,16 @@ where
 }
 
 /// The codes of the same cycle on the host, from the tick on in which it is armed.
-fn with_the_same_cycle<E>(
+fn with_the_same_cycle<E, M>(
     scene: Scene<E>,
     transducers: &Transducers,
     samples: &[Sample],
 ) -> Vec<u16>
 where
-    E: Tunable<f32> + SupportsTiming<Latched>,
+    E: Tunable<f32> + SupportsTiming<M>,
+    M: OutputMode,
 {
-    let mut host = Replica::<E, Latched>::boot(boot::Program {
+    let mut host = Replica::<E, M>::boot(boot::Program {
         scene,
         transducers: *transducers,
         rendering: RenderingOptions::DEFAULT,

@@ -3,7 +3,8 @@
 //! SysTick's interrupt is the servo's, above everything else. There is no encoder and no motor: the
 //! host's device simulation gives a count and takes a code around each tick ([`lockstep`]), and what
 //! a tick sees of that are words of memory in the place of registers ([`lines`]). Count and code
-//! belong to the same instant, since the simulation waits for the code.
+//! belong to the same instant, since the simulation waits for the code; a program whose torques come at
+//! a phase of their own has the time up to there for its tick, of which the simulation takes no notice.
 //!
 //! The clocks are the ones that the emulator gives the chip out of reset; the set-up that a real
 //! F405 needs never returns there.
@@ -44,13 +45,20 @@ unsafe fn DefaultHandler(number: i16) {
 #[macro_export]
 macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
+        $crate::board_program!(
+            $environment,
+            $program,
+            $certified,
+            $number,
+            $crate::board::qemu::Mode
+        );
+    };
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, $mode:ty) => {
         /// The scene, with its delay checked.
-        const TIMED: $crate::certificate::TimingChecked<
-            $crate::scene::Scene<$environment>,
-            $crate::board::qemu::Mode,
-        > = $certified.timing_checked::<$crate::board::qemu::Mode>();
+        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
+            $certified.timing_checked::<$mode>();
 
-        static STATICS: $crate::board::qemu::Statics<$environment, $number> =
+        static STATICS: $crate::board::qemu::Statics<$environment, $number, $mode> =
             $crate::board::qemu::Statics::empty();
 
         /// What other boards have as their timer's interrupt.

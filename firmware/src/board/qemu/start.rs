@@ -15,7 +15,7 @@ use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
 use crate::certificate::Assessment;
 use crate::number::Number;
-use crate::servo::SupportsTiming;
+use crate::servo::{OutputMode, SupportsTiming};
 use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Session};
 
@@ -31,20 +31,21 @@ use super::{
     parts::CycleParts,
 };
 
-/// When a torque reaches the motor: at the instant of its count, as the simulation has it.
+/// When a torque reaches the motor, where a program does not say: at the instant of its count, as the
+/// simulation has it.
 pub type Mode = crate::servo::Simultaneous;
 
 /// A program's places in memory, which have its scene's types.
-pub struct Statics<E: Tunable<N>, N: Number> {
+pub struct Statics<E: Tunable<N>, N: Number, M: OutputMode> {
     /// Where the servo's interrupt finds its state.
-    pub isr: IsrCell<ServoIsr<Registers, E, N, Mode>>,
-    mailbox: MailboxCell<E, N, Mode>,
-    link: StaticCell<Link<Serial, E, N, Mode>>,
+    pub isr: IsrCell<ServoIsr<Registers, E, N, M>>,
+    mailbox: MailboxCell<E, N, M>,
+    link: StaticCell<Link<Serial, E, N, M>>,
     #[cfg(feature = "log")]
-    log: StaticCell<Log<CycleParts<E, N, Mode>>>,
+    log: StaticCell<Log<CycleParts<E, N, M>>>,
 }
 
-impl<E: Tunable<N>, N: Number> Statics<E, N> {
+impl<E: Tunable<N>, N: Number, M: OutputMode> Statics<E, N, M> {
     /// Empty places.
     pub const fn empty() -> Self {
         Self {
@@ -58,15 +59,16 @@ impl<E: Tunable<N>, N: Number> Statics<E, N> {
 }
 
 /// Runs a scene; `compiler` is how it was judged when it was compiled.
-pub fn run<E, N>(
+pub fn run<E, N, M>(
     name: &'static str,
     program: Program<E>,
     compiler: &Assessment,
-    statics: &'static Statics<E, N>,
+    statics: &'static Statics<E, N, M>,
 ) -> !
 where
-    E: Tunable<N> + SupportsTiming<Mode>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
+    M: OutputMode,
 {
     let timer = start_timer();
     let period = period(program.scene.timing.period);
@@ -99,15 +101,16 @@ where
 /// In a frame of its own, which is not there any more when the host's sets are judged.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
-fn prepare<E, N>(
+fn prepare<E, N, M>(
     name: &'static str,
     program: Program<E>,
     period: Period,
-    statics: &'static Statics<E, N>,
-) -> &'static mut Link<Serial, E, N, Mode>
+    statics: &'static Statics<E, N, M>,
+) -> &'static mut Link<Serial, E, N, M>
 where
-    E: Tunable<N> + SupportsTiming<Mode>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
+    M: OutputMode,
 {
     let mut hardware = Registers::new(period);
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(&statics.mailbox);

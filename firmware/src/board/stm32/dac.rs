@@ -9,12 +9,17 @@ use embassy_stm32::rcc;
 
 use super::wiring::{DAC_RANGE, TIMER_TRIGGER};
 use crate::dac::DacCode;
+use crate::output_timing::OutputTiming;
 
 // What the servo computes for is what this board's output is linear over.
 const _: () = assert!(
     DAC_RANGE.codes_each_way() >= DacCode::CODES_TO_FULL_SCALE,
     "this board's DAC saturates within the codes of full scale"
 );
+
+/// TIM7's update among the triggers of the DAC, in both families (RM0440, table of the DAC's
+/// interconnections; RM0090, table of its external triggers).
+const PHASE_TRIGGER: u8 = 2;
 
 /// A channel of the DAC, written to by one register access.
 #[derive(Clone, Copy)]
@@ -45,18 +50,26 @@ impl DacChannel {
         core::mem::forget(pin);
     }
 
-    /// Writes a code. It appears at the pacing timer's next update where the DAC is latched,
-    /// and at once where it is not.
+    /// Writes a code. It appears at the timer's next trigger where the DAC [has one](Self::latch), and
+    /// at once where it has none.
     #[inline(always)]
     pub fn write(self, code: DacCode) {
         self.registers.dhr12r(self.channel).write(|w| w.set_dhr(code.get()));
     }
 
-    /// From now on each update of the pacing timer outputs the last written code: a code written
-    /// anywhere within a period appears exactly at its end.
-    pub fn latch(self) {
+    /// From now on a timer outputs the last written code: where torques are latched, each update of the
+    /// pacing timer, so that a code written anywhere within a period appears exactly at its end, and
+    /// where they have a phase, each update of the timer behind it. TSEL and TEN of the control register
+    /// (RM0440, 22.7.1; RM0090, 14.5.1); the code in DOR follows a trigger by three clocks of the bus at
+    /// most (RM0440, 22.4.6; RM0090, 14.3.5).
+    pub fn latch(self, timing: OutputTiming) {
+        let trigger = match timing {
+            OutputTiming::Simultaneous => return,
+            OutputTiming::Latched => TIMER_TRIGGER,
+            OutputTiming::AtPhase(_) => PHASE_TRIGGER,
+        };
         self.registers.cr().modify(|w| {
-            w.set_tsel(self.channel, TIMER_TRIGGER);
+            w.set_tsel(self.channel, trigger);
             w.set_ten(self.channel, true);
         });
     }

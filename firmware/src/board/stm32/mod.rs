@@ -42,7 +42,7 @@ pub use start::{
 };
 pub use sweep::{Setup, SweepCell, measure};
 
-/// When a torque reaches the motor.
+/// When a torque reaches the motor, where a program does not say.
 pub type Mode = crate::servo::Latched;
 
 /// A board's data besides registers.

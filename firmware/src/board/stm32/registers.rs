@@ -12,6 +12,7 @@ use crate::boot::Startup;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::FaultRecord;
+use crate::output_timing::OutputTiming;
 use crate::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
@@ -23,9 +24,9 @@ pub struct Registers {
 }
 
 impl Registers {
-    /// Prepares the pacing timer; it does not run yet.
-    pub fn new(period: Period) -> Self {
-        Self { pace: TickTimer::prepare(period), period }
+    /// Prepares the pacing timer, and what latches the DAC; neither runs yet.
+    pub fn new(period: Period, timing: OutputTiming) -> Self {
+        Self { pace: TickTimer::prepare(period, timing), period }
     }
 
     /// Begins to pace. The interrupt's handler must find its place filled from here on.

@@ -14,7 +14,7 @@ use super::serial::Serial;
 use super::stop::stop;
 use super::tick_timer::Period;
 use super::wiring::{self, DAC, ENCODER};
-use super::{BoardPeripherals, Mode, family};
+use super::{BoardPeripherals, family};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
@@ -32,40 +32,41 @@ use crate::tuning::Tunable;
 use crate::wire::{BoardInfo, Session};
 
 /// Where the servo's interrupt finds its state.
-pub type ServoCell<E, N> = IsrCell<ServoIsr<Registers, E, N, Mode>>;
+pub type ServoCell<E, N, M> = IsrCell<ServoIsr<Registers, E, N, M>>;
 
 /// The host's end of the board, for the task below the servo.
-pub type HostLink<E, N> = Link<Serial, E, N, Mode>;
+pub type HostLink<E, N, M> = Link<Serial, E, N, M>;
 
 /// Where that link is: in a place of its own, since a task would keep a copy for each step that
 /// passes it on.
-pub type LinkCell<E, N> = StaticCell<HostLink<E, N>>;
+pub type LinkCell<E, N, M> = StaticCell<HostLink<E, N, M>>;
 
 /// A program's task that serves its [`HostLink`].
-pub type Task<E, N, S> = fn(&'static mut HostLink<E, N>) -> Result<SpawnToken<S>, SpawnError>;
+pub type Task<E, N, M, S> = fn(&'static mut HostLink<E, N, M>) -> Result<SpawnToken<S>, SpawnError>;
 
 /// The static places of a program, whose types are its scene's.
-pub struct Statics<E: Discretize<N> + 'static, N: Number> {
+pub struct Statics<E: Discretize<N> + 'static, N: Number, M: 'static> {
     /// State of the servo's interrupt.
-    pub servo: &'static ServoCell<E, N>,
+    pub servo: &'static ServoCell<E, N, M>,
     /// Where it meets the task below.
-    pub mailbox: &'static MailboxCell<E, N, Mode>,
+    pub mailbox: &'static MailboxCell<E, N, M>,
     /// That task's end of the host's link.
-    pub link: &'static LinkCell<E, N>,
+    pub link: &'static LinkCell<E, N, M>,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
 }
 
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
-pub fn run<E, N, S>(
+pub fn run<E, N, M, S>(
     name: &'static str,
     program: Program<E>,
-    statics: Statics<E, N>,
-    task: Task<E, N, S>,
+    statics: Statics<E, N, M>,
+    task: Task<E, N, M, S>,
 ) -> !
 where
-    E: Tunable<N> + SupportsTiming<Mode>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
+    M: OutputMode,
 {
     let link = bring_up(name, program, statics);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
@@ -93,23 +94,24 @@ pub const fn with_board_counter<E: Copy>(program: Program<E>) -> Program<E> {
 /// the stack.
 #[inline(never)]
 #[expect(clippy::mut_from_ref, reason = "what is borrowed from is a place that is filled once")]
-fn bring_up<E, N>(
+fn bring_up<E, N, M>(
     name: &'static str,
     program: Program<E>,
-    statics: Statics<E, N>,
-) -> &'static mut HostLink<E, N>
+    statics: Statics<E, N, M>,
+) -> &'static mut HostLink<E, N, M>
 where
-    E: Tunable<N> + SupportsTiming<Mode>,
+    E: Tunable<N> + SupportsTiming<M>,
     N: Number,
+    M: OutputMode,
 {
     let port = init_chip(statics.filter).serial;
     let period = period(program.scene.timing.period);
-    let mut hardware = Registers::new(period);
+    let mut hardware = Registers::new(period, M::TIMING);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
     let Booted { servo_loop, margin, reset, previous_fault, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
-    start_timer(&mut hardware);
+    start_timer(&mut hardware, M::TIMING);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { statics.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
@@ -127,7 +129,7 @@ where
     statics.link.init(Link { port, session })
 }
 
-impl<E: Tunable<N> + SupportsTiming<Mode>, N: Number> HostLink<E, N> {
+impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N, M> {
     /// Serves the host, and sleeps from one interrupt to the next: all work begins with an
     /// interrupt.
     pub async fn serve(&mut self) -> ! {
@@ -148,12 +150,10 @@ pub fn period(seconds: f64) -> Period {
     })
 }
 
-/// Latches the DAC where that is its mode, and begins to pace. The servo's interrupt is to be
+/// Has a timer latch the DAC, which holds mid-scale, and begins to pace. The servo's interrupt is to be
 /// enabled within a period.
-pub fn start_timer(hardware: &mut Registers) {
-    if Mode::TIMING == OutputTiming::Latched {
-        DAC.latch();
-    }
+pub fn start_timer(hardware: &mut Registers, timing: OutputTiming) {
+    DAC.latch(timing);
     hardware.start();
 }
 
@@ -227,29 +227,33 @@ async fn yield_now() {
 #[macro_export]
 macro_rules! board_program {
     ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
+        $crate::board_program!(
+            $environment,
+            $program,
+            $certified,
+            $number,
+            $crate::board::stm32::Mode
+        );
+    };
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, $mode:ty) => {
         $crate::board_chip!();
 
         $crate::board_filter!($program.transducers);
 
         /// The scene, as late as the board's DAC: where it is not, this does not compile.
-        const TIMED: $crate::certificate::TimingChecked<
-            $crate::scene::Scene<$environment>,
-            $crate::board::stm32::Mode,
-        > = $certified.timing_checked::<$crate::board::stm32::Mode>();
+        const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
+            $certified.timing_checked::<$mode>();
 
         /// What this board runs.
         const BOARD_PROGRAM: $crate::boot::Program<$environment> =
             $crate::board::stm32::with_board_counter($program);
 
-        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number> =
+        static ISR_STATE: $crate::board::stm32::ServoCell<$environment, $number, $mode> =
             $crate::board::isr_cell::IsrCell::empty();
-        static MAILBOX: $crate::board::servo_isr::MailboxCell<
-            $environment,
-            $number,
-            $crate::board::stm32::Mode,
-        > = $crate::__private::static_cell::StaticCell::new();
+        static MAILBOX: $crate::board::servo_isr::MailboxCell<$environment, $number, $mode> =
+            $crate::__private::static_cell::StaticCell::new();
 
-        static LINK: $crate::board::stm32::LinkCell<$environment, $number> =
+        static LINK: $crate::board::stm32::LinkCell<$environment, $number, $mode> =
             $crate::__private::static_cell::StaticCell::new();
 
         $crate::board_tick!();
@@ -257,7 +261,7 @@ macro_rules! board_program {
         /// Below the servo: a task may not be generic, so each program has its own.
         #[$crate::__private::task(embassy_executor = $crate::__private::embassy_executor)]
         async fn serve(
-            link: &'static mut $crate::board::stm32::HostLink<$environment, $number>,
+            link: &'static mut $crate::board::stm32::HostLink<$environment, $number, $mode>,
         ) -> ! {
             link.serve().await
         }

@@ -12,6 +12,7 @@ use embassy_stm32::interrupt::InterruptExt;
 use heapless::String;
 use static_cell::StaticCell;
 
+use super::Mode;
 use super::registers::Registers;
 use super::serial::Serial;
 use super::start::{init_chip, period, start_timer, width};
@@ -25,6 +26,7 @@ use crate::encoder::Position;
 use crate::excitation::{
     Exciter, Guard, MotionLimits, SILENCE, SWEEP_PROTOCOL, Sweep, SweepEnd, byte,
 };
+use crate::output_timing::OutputMode;
 use crate::servo::Transducers;
 use crate::servo_loop::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::text::ShortF64;
@@ -149,14 +151,14 @@ pub fn measure<const N: usize>(
     cell: &'static SweepCell,
 ) -> ! {
     let mut serial = init_chip(setup.filter).serial;
-    let mut hardware = Registers::new(period(sweep.period()));
+    let mut hardware = Registers::new(period(sweep.period()), Mode::TIMING);
     hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
     hardware.start_watchdog();
-    start_timer(&mut hardware);
+    start_timer(&mut hardware, Mode::TIMING);
     let player = SweepIsr {
         beginning: exciter.clone(),
         exciter,

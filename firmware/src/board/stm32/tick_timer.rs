@@ -3,6 +3,18 @@
 //!
 //! Both count the same clock, so that a period is a whole number of the clock's counts and the two
 //! cannot drift apart.
+//!
+//! Where torques come at a phase of their own, a second basic timer latches the DAC in place of the
+//! first: it has the same clock, prescaler and reload value, and its counter is as far behind as the
+//! phase is long, so that each of its updates is that late.
+//!
+//! ```text
+//! TIM6     0 ......... reload|0 ......... reload|0        update: the tick's interrupt
+//! TIM7     reload-p..|0 ......... reload-p..|0 .......    update: the DAC, p + 1 counts later
+//! ```
+//!
+//! Not a compare channel: the basic timers have none, and of the others none is free on all boards
+//! that counts TIM6's clock and triggers the DACs of both families. TIM7 is, on each of them.
 
 use core::hint::cold_path;
 use core::num::NonZeroU32;
@@ -14,12 +26,16 @@ use embassy_stm32::rcc;
 
 use super::wiring::CLOCK;
 use crate::build_error::BuildError;
+use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::servo_loop::{BEGAN_LATE, READ_WITHIN};
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' DACs can take.
 const TIMER: pac::timer::TimBasic = pac::TIM6;
+
+/// The timer of a phase, on all boards.
+const PHASE_TIMER: pac::timer::TimBasic = pac::TIM7;
 
 /// A period as the timer counts it.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +88,14 @@ impl Period {
         NonZeroU32::new(self.prescale * self.counts).unwrap_or(NonZeroU32::MIN)
     }
 
+    /// Counts of the timer in this many seconds, at least one and less than a period; rounded up, so that
+    /// no torque comes before the time of which its tick knows.
+    fn counts_in(&self, seconds: f64) -> u32 {
+        // The cast rounds down. A time that was written in decimal digits is what it says.
+        let counts = (seconds * self.clock / f64::from(self.prescale) + (1.0 - 1e-6)) as u32;
+        counts.clamp(1, self.counts - 1)
+    }
+
     /// Seconds in a period, as it is paced.
     pub fn seconds(&self) -> f64 {
         f64::from(self.clock_counts().get()) / self.clock
@@ -92,34 +116,45 @@ pub struct TickTimer {
     in_time: u32,
     /// The clock when the present period began.
     began: u32,
+    /// Whether the timer of a phase runs, too.
+    has_phase: bool,
 }
 
 impl TickTimer {
-    /// Sets both timers up and leaves them standing. The servo's interrupt must still be disabled.
-    pub fn prepare(period: Period) -> Self {
+    /// Sets the timers up and leaves them standing. The servo's interrupt must still be disabled.
+    pub fn prepare(period: Period, timing: OutputTiming) -> Self {
         rcc::enable_and_reset::<peripherals::TIM6>();
-        TIMER.psc().write_value((period.prescale - 1) as u16);
-        TIMER.arr().write(|w| w.set_arr((period.counts - 1) as u16));
-        // The update triggers the DAC.
-        TIMER.cr2().write(|w| w.set_mms(Mms::UPDATE));
-        // Prescaler and period are taken over at an update; this one shall be no tick.
-        TIMER.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
-        TIMER.egr().write(|w| w.set_ug(true));
-        TIMER.sr().write(|w| w.set_uif(false));
+        set_up(TIMER, period);
         TIMER.dier().write(|w| w.set_uie(true));
+        if let Some(phase) = timing.phase() {
+            rcc::enable_and_reset::<peripherals::TIM7>();
+            set_up(PHASE_TIMER, period);
+            let behind = period.counts - period.counts_in(phase);
+            // CNT (RM0440, 32.4.6; RM0090, 20.4.6): it overflows that many counts after the start, and
+            // then once a period.
+            PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
+        }
         CLOCK.psc().write_value(0);
         CLOCK.arr().write_value(u32::MAX);
         CLOCK.egr().write(|w| w.set_ug(true));
         // The cast gives the nearest of what does not fit.
         let in_time = (period.clock * READ_WITHIN) as u32;
-        Self { period: period.clock_counts(), in_time, began: 0 }
+        let has_phase = timing.phase().is_some();
+        Self { period: period.clock_counts(), in_time, began: 0, has_phase }
     }
 
-    /// Starts the clock and then the timer, so that no period begins before the clock's.
+    /// Starts the clock and then the timer, so that no period begins before the clock's, and last that of
+    /// a phase, so that no torque comes before it: later by the two accesses, some tens of nanoseconds, of
+    /// which a count is read later still.
     pub fn start(&mut self) {
-        CLOCK.cnt().write_value(0);
-        CLOCK.cr1().modify(|w| w.set_cen(true));
-        TIMER.cr1().modify(|w| w.set_cen(true));
+        cortex_m::interrupt::free(|_| {
+            CLOCK.cnt().write_value(0);
+            CLOCK.cr1().modify(|w| w.set_cen(true));
+            TIMER.cr1().modify(|w| w.set_cen(true));
+            if self.has_phase {
+                PHASE_TIMER.cr1().modify(|w| w.set_cen(true));
+            }
+        });
     }
 
     /// Acknowledges the tick; gives the periods that have begun since the last time: see
@@ -144,6 +179,21 @@ impl TickTimer {
     pub fn time_in_period(&self) -> u32 {
         now().wrapping_sub(self.began)
     }
+}
+
+/// Gives a basic timer a period and makes its update its trigger output; it stands.
+///
+/// The registers are those of RM0440, 32.4, and RM0090, 20.4.
+fn set_up(timer: pac::timer::TimBasic, period: Period) {
+    timer.psc().write_value((period.prescale - 1) as u16);
+    timer.arr().write(|w| w.set_arr((period.counts - 1) as u16));
+    // CR2.MMS: the update triggers the DAC, where that listens to this timer.
+    timer.cr2().write(|w| w.set_mms(Mms::UPDATE));
+    // Prescaler and period are taken over at an update; this one shall be no tick. It also begins the
+    // prescaler's count anew, so that two timers that are started together count together.
+    timer.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
+    timer.egr().write(|w| w.set_ug(true));
+    timer.sr().write(|w| w.set_uif(false));
 }
 
 /// The clock.

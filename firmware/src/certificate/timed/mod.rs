@@ -13,7 +13,7 @@ use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;
 use crate::environment::{Environment, EnvironmentModel};
 use crate::number::Format;
-use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN};
+use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE, longest_phase};
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 use crate::step::Step;
@@ -109,6 +109,15 @@ pub enum TimingError {
         /// That of the board in s.
         board: f64,
     },
+    /// No board puts torques out so soon after the beginning of a period, or so late.
+    PhaseRange {
+        /// The mode's time from there in s.
+        phase: f64,
+        /// The shortest in s.
+        shortest: f64,
+        /// The longest in s, of the scene's period.
+        longest: f64,
+    },
     /// A board reads counts later than the scene allows for.
     Jitter {
         /// The scene's output jitter in s.
@@ -147,6 +156,18 @@ impl TimingError {
                 t.push(" s, and this board puts its torques out ");
                 t.push_number(*board);
                 t.push(" s after the beginning of a period");
+            }
+            Self::PhaseRange { phase, shortest, longest } => {
+                t.push("this board would put its torques out ");
+                t.push_number(*phase);
+                t.push(
+                    " s after the beginning of a period, but a code takes time to compute and has to be \
+                     out before the next one is there: the phase must be between ",
+                );
+                t.push_number(*shortest);
+                t.push(" s and ");
+                t.push_number(*longest);
+                t.push(" s");
             }
             Self::Jitter { jitter } => {
                 t.push("a board reads a count up to ");
@@ -255,7 +276,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if first_invalid_number(scene).is_some() {
         return Err(Step::Certificate);
     }
-    if !is_at_its_phase(M::TIMING, scene) {
+    if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
         return Err(Step::Certificate);
     }
     let n = &LoopIntervals::of_late(scene, is_late, format);
@@ -284,6 +305,10 @@ pub(super) const fn agree(
 ) -> Result<Limited, TimingError> {
     if matches!(timing, OutputTiming::Latched) && !scene.environment.is_late() {
         return Err(TimingError::NotLate);
+    }
+    if let (Some(phase), false) = (timing.phase(), timing.fits(scene.timing.period)) {
+        let longest = longest_phase(scene.timing.period);
+        return Err(TimingError::PhaseRange { phase, shortest: SHORTEST_PHASE, longest });
     }
     if !is_at_its_phase(timing, scene) {
         let board = board_delay(timing);
@@ -337,9 +362,9 @@ const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
 /// Time in s from a count to the torque that the servo computes from it, beside an environment's whole
 /// samples.
 const fn board_delay(timing: OutputTiming) -> f64 {
-    match timing {
-        OutputTiming::AtPhase(nanoseconds) => nanoseconds as f64 / 1e9,
-        OutputTiming::Latched | OutputTiming::Simultaneous => 0.0,
+    match timing.phase() {
+        Some(phase) => phase,
+        None => 0.0,
     }
 }
 

@@ -1,10 +1,10 @@
 use super::*;
 use crate::certificate::Certified;
 use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FreeMode, FreeModeWall, OneSided, Rational,
+    DamperWall, DelayedSpring, Environment, FreeMode, FreeModeWall, Matched, OneSided, Rational,
 };
 use crate::scene::{Coupling, Device, Latency, Timing};
-use crate::servo::{Latched, Simultaneous};
+use crate::servo::{AtPhase, Latched, Simultaneous};
 
 const fn scene<E>(environment: E, coupling: f64) -> Scene<E> {
     Scene {
@@ -100,4 +100,41 @@ fn the_room_is_what_the_index_leaves() {
     let later = DamperWall::<3> { stiffness: 2.0, damping: 0.003 };
     let later = scene(OneSided { face: 0.1, wall: later }, 44.0).certify().unwrap();
     close(later.timing_checked::<Latched>().injectable_damping(), 0.022 - 0.008);
+}
+
+/// A wall that is not late, behind the coupling that absorbs this output delay.
+fn at_phase(output_delay: f64, output_jitter: f64) -> Certified<Scene<UndelayedWall>> {
+    let latency = Latency { output_jitter, ..Latency::delayed(output_delay) };
+    let wall = Matched { environment: DamperWall { stiffness: 2.0, damping: 0.002 } };
+    Scene { coupling: Coupling::Matched, latency, ..scene(wall, 44.0) }.certify().unwrap()
+}
+
+type UndelayedWall = Matched<DamperWall<0>, 0, 0>;
+
+#[test]
+fn a_board_s_phase_is_the_scene_s_output_delay() {
+    let scene = at_phase(1e-5, READ_WITHIN);
+    assert!(scene.time::<AtPhase<10_000>>().is_ok());
+    let other = scene.time::<AtPhase<11_000>>().unwrap_err();
+    assert_eq!(other, TimingError::Phase { scene: 1e-5, board: 1.1e-5 });
+    let still = at_phase(1e-5, 5e-7).time::<AtPhase<10_000>>().unwrap_err();
+    assert_eq!(still, TimingError::Jitter { jitter: 5e-7 });
+}
+
+/// Too short to compute a code in, and so long that the next one might be there.
+#[test]
+fn a_phase_has_its_range() {
+    let range = |phase| TimingError::PhaseRange { phase, shortest: 5e-6, longest: 0.000999 };
+    let short = at_phase(4.999e-6, READ_WITHIN).time::<AtPhase<4_999>>().unwrap_err();
+    assert_eq!(short, range(4.999e-6));
+    assert!(short.to_string().ends_with("between 5e-6 s and 0.000999 s"), "{short}");
+    let long = at_phase(0.0009991, READ_WITHIN).time::<AtPhase<999_100>>().unwrap_err();
+    assert_eq!(long, range(0.0009991));
+    assert!(at_phase(5e-6, READ_WITHIN).time::<AtPhase<5_000>>().is_ok());
+    assert!(at_phase(0.000999, READ_WITHIN).time::<AtPhase<999_000>>().is_ok());
+    // And a board that judges for itself refuses the same.
+    let judged = |scene: Certified<Scene<UndelayedWall>>| {
+        crate::certificate::timing_checked::<_, AtPhase<4_999>>(*scene.scene(), Format::F32)
+    };
+    assert_eq!(judged(at_phase(4.999e-6, READ_WITHIN)).unwrap_err(), Step::Certificate);
 }

@@ -4,6 +4,7 @@ mod board;
 mod faults;
 mod frames;
 mod modes;
+mod phase;
 mod swap;
 
 use board::{Bench, Board, Event, PERIOD};

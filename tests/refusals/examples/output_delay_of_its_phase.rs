@@ -1,0 +1,13 @@
+//! The same scene on a board that puts its torques out when it says.
+use firmware::certificate::{Certified, TimingChecked};
+use firmware::scene::Scene;
+use firmware::servo::AtPhase;
+use refusals::{UndelayedWall, at_phase};
+
+const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(1e-5).certified();
+const TIMED: TimingChecked<Scene<UndelayedWall>, AtPhase<10_000>> =
+    CERTIFIED.timing_checked::<AtPhase<10_000>>();
+
+fn main() {
+    let _ = TIMED;
+}

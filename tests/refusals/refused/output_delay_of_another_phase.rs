@@ -1,0 +1,13 @@
+//! A scene whose torques come 10 microseconds after their counts, on a board that puts them out after 20.
+use firmware::certificate::{Certified, TimingChecked};
+use firmware::scene::Scene;
+use firmware::servo::AtPhase;
+use refusals::{UndelayedWall, at_phase};
+
+const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(1e-5).certified();
+const TIMED: TimingChecked<Scene<UndelayedWall>, AtPhase<20_000>> =
+    CERTIFIED.timing_checked::<AtPhase<20_000>>();
+
+fn main() {
+    let _ = TIMED;
+}

@@ -1,0 +1,13 @@
+//! A torque that would be put out when the next one may be there already.
+use firmware::certificate::{Certified, TimingChecked};
+use firmware::scene::Scene;
+use firmware::servo::AtPhase;
+use refusals::{UndelayedWall, at_phase};
+
+const CERTIFIED: Certified<Scene<UndelayedWall>> = at_phase(0.0009995).certified();
+const TIMED: TimingChecked<Scene<UndelayedWall>, AtPhase<999_500>> =
+    CERTIFIED.timing_checked::<AtPhase<999_500>>();
+
+fn main() {
+    let _ = TIMED;
+}
