@@ -50,7 +50,9 @@ impl Response {
 ///
 /// The torque is held from tick to tick, which makes the sine that the device feels smaller by
 /// `sinc(w T/2)` and late by `T/2`; both are taken out, as are the declared delays. The images of
-/// the held sine, which sampling folds back, stay in: see [`images`].
+/// the held sine, which sampling folds back, stay in: see [`Model::images`].
+///
+/// [`Model::images`]: super::model::Model::images
 pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<Response> {
     let skipped = (correction.settle * step.rows.len() as f64) as usize;
     let rows = step.rows.start + skipped..step.rows.end;
@@ -66,25 +68,6 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let deviation = impedance.norm() * deviation / counts.norm();
     let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
     usable.then(|| Response { omega: step.omega, admittance, deviation, counts: counts.norm() })
-}
-
-/// What the images of the held torque make of the response of a rigid device, as a factor of `J`.
-///
-/// A held sine has images around the multiples of the sampling rate; the device answers them and
-/// sampling folds the answer back. All of them are in the sampled response `G_d` of the held
-/// device, which is known exactly; the factor is `G_d / (G sinc(x) e^(-j x))`, `x = w T/2`, and 1
-/// to within about `x^4`.
-pub fn images(omega: f64, period: f64, inertia: f64, damping: f64) -> Complex<f64> {
-    // Without damping the two terms below cancel; so little of it makes no difference.
-    const LEAST: f64 = 1e-6;
-    let b = damping.abs().max(LEAST * inertia / period);
-    let (lag, half) = (inertia / b, 0.5 * omega * period);
-    let z = Complex::from_polar(1.0, 2.0 * half);
-    let lost = -(-period / lag).exp_m1();
-    let sampled = period / (z - 1.0) - lag * lost / (z - (1.0 - lost));
-    let s = Complex::new(0.0, omega);
-    // b G(s) = 1 / (s (lag s + 1))
-    sampled * s * (lag * s + 1.0) * (half / half.sin()) * Complex::from_polar(1.0, half)
 }
 
 /// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts

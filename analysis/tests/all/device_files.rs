@@ -188,11 +188,13 @@ fn a_measured_device_is_identified_and_its_table_is_a_device_file() {
     let device = Device { inertia: 0.05, damping: 0.5, passivity: None };
     let rig = Rig {
         device,
+        actuator_lag: 0.0,
         sensing: Sensing {
             period: 1e-3,
             counts_per_turn: 61_440.0,
             torque_noise: 0.02,
             skew: 1e-5,
+            output_delay: 0.0,
             seed: 7,
         },
     };

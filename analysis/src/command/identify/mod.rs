@@ -193,8 +193,8 @@ fn report<'a>(
     Report {
         inertia: found.inertia,
         damping: found.damping,
-        skew: found.skew,
-        skew_significant: found.skew.is_significant(),
+        skew: found.mean_delay,
+        skew_significant: found.mean_delay.is_significant(),
         bias: found.bias,
         disk: found.disk,
         misfit: found.misfit,
@@ -210,12 +210,12 @@ fn report<'a>(
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
-    if found.skew.is_significant() {
+    if found.mean_delay.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, the damping would be {} N \
              m s/rad at {} Hz; inertia and damping are corrected for it. If the amplifier lags, \
              and not the record, account for the lag as delay",
-            significant(1e6 * found.skew.value, 3),
+            significant(1e6 * found.mean_delay.value, 3),
             significant(found.disk.delta, 3),
             significant(found.disk.omega / std::f64::consts::TAU, 3),
         ));
@@ -280,7 +280,7 @@ fn text(found: &Identification, notes: &[String], origin: Option<&Origin>) -> St
     let mut rows = vec![
         ("damping", estimate(&found.damping, "N m s/rad")),
         ("inertia", estimate(&found.inertia, "kg m^2")),
-        ("skew", estimate(&found.skew, "s")),
+        ("skew", estimate(&found.mean_delay, "s")),
         ("disk", disk),
         ("residuals", format!("{} times the noise", significant(found.misfit.sqrt(), 2))),
     ];
