@@ -94,10 +94,11 @@ impl Identification {
 
 /// Fits the disk and the rigid device to the responses of a record with so long a period in s.
 ///
-/// Lag and delay stay in the model also where they are not significant: a fit that leaves them out
+/// The amplifier lags by no more than `longest_lag` in s, or half a period. Lag and delay stay in the model also where they are not significant: a fit that leaves them out
 /// takes what there is of them for damping.
 pub fn identify(
     period: f64,
+    longest_lag: Option<f64>,
     found: usize,
     responses: Vec<Response>,
     mut left_out: Vec<LeftOut>,
@@ -112,7 +113,7 @@ pub fn identify(
         return Err(too_few(left_out));
     }
     let measured = Measured { responses: &responses, period };
-    let Some(profile) = Profile::of(&measured) else {
+    let Some(profile) = Profile::of(&measured, longest_lag) else {
         return Err(too_few(left_out));
     };
     let model = profile.best.model;

@@ -4,7 +4,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::fit::Estimate;
-use super::profile::Profile;
+use super::profile::{Open, Profile};
 use crate::quantity::significant;
 
 /// Largest uncertainty of the mean delay, as phase in rad of the fastest response, at which there are
@@ -32,11 +32,19 @@ pub enum NoLatency {
     /// As much of the response may be the device's as the amplifier's.
     #[error(
         "the amplifier's lag cannot be told from the time constant inertia/damping of the device: \
-         the responses allow both to be {} s. Add tones well below {} Hz and well above it",
-        significant(*.0, 3),
-        significant(1.0 / (std::f64::consts::TAU * .0), 3)
+         where the one is {} s, the other may be it. Declare a shorter --longest-lag, if the amplifier's \
+         bandwidth is known",
+        significant(*.0, 3)
     )]
     LikeInertia(f64),
+    /// The responses ask for more lag than there may be.
+    #[error(
+        "the responses allow a lag of more than {} s, the longest that is taken for the amplifier's: a \
+         slower one looks like the device's inertia. Add faster tones, declare --longest-lag if the \
+         amplifier's bandwidth is known, or take a faster amplifier",
+        significant(*.0, 3)
+    )]
+    TooSlow(f64),
     /// The phase leaves too much open.
     #[error(
         "lag and delay are known to {} s only: the tones end at {} Hz, and few of them stand out of \
@@ -64,11 +72,12 @@ impl Latency {
     pub fn of(profile: &Profile, fastest: f64, is_explained: bool) -> Result<Self, NoLatency> {
         let (sum, delay) = (profile.mean_delay(), profile.delay());
         let reach = 0.5 * (sum.hi - sum.lo);
-        if !is_explained {
-            return Err(NoLatency::NotRigid);
-        }
-        if profile.is_open {
-            return Err(NoLatency::LikeInertia(profile.lag().hi));
+        // Before the misfit, which too long a lag makes.
+        match profile.open {
+            Some(Open::Longest(longest)) => return Err(NoLatency::TooSlow(longest)),
+            Some(Open::Exchange(lag)) => return Err(NoLatency::LikeInertia(lag)),
+            None if !is_explained => return Err(NoLatency::NotRigid),
+            None => {}
         }
         if reach * fastest > COARSE {
             let frequency = fastest / std::f64::consts::TAU;

@@ -43,22 +43,38 @@ pub struct Profile {
     threshold: f64,
     /// Mean squared residual in squared deviations.
     pub misfit: f64,
-    /// Whether a longer lag would do as well, but for the inertia: see [`Squares::is_told`].
-    pub is_open: bool,
+    /// Whether the lag has no upper end, and why not.
+    pub open: Option<Open>,
     /// Whether the responses are too early for a lag and a delay of 0 and more.
     pub is_early: bool,
 }
 
+/// Where lags end that the responses allow, for another reason than theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Open {
+    /// At the lag in s at which it and the time constant of the device would change places, or their
+    /// order is a matter of choice.
+    Exchange(f64),
+    /// At the longest in s that the amplifier may have.
+    Longest(f64),
+}
+
+/// Longest lag that an amplifier is believed to have where nothing is said, in periods: a servo with a
+/// slower one does not gain from its sampling rate.
+const LONGEST: f64 = 0.5;
+
 impl Profile {
-    /// Of these responses. `None` where they do not determine a device.
-    pub fn of(measured: &Measured<'_>) -> Option<Self> {
+    /// Of these responses, with an amplifier that lags by no more than `longest` in s. `None` where they
+    /// do not determine a device.
+    pub fn of(measured: &Measured<'_>, longest: Option<f64>) -> Option<Self> {
         let begin = measured.rough_delay()?;
         let begin = measured.fit(0.0, Delay::From(begin))?.model.delay;
-        let profile = Self::within(&Squares { measured, begin, may_be_early: false })?;
+        let squares = Squares { measured, begin, longest, may_be_early: false };
+        let profile = Self::within(&squares)?;
         if profile.best.is_delay_free {
             return Some(profile);
         }
-        let early = Self::within(&Squares { measured, begin, may_be_early: true })?;
+        let early = Self::within(&Squares { may_be_early: true, ..squares })?;
         let gain = profile.best.squares - early.best.squares;
         Some(match gain > EARLIER * early.threshold {
             true => Self { is_early: true, ..early },
@@ -70,7 +86,7 @@ impl Profile {
         let freedom = 2.0 * squares.measured.responses.len() as f64 - UNKNOWNS;
         let quantile = student(freedom);
         let threshold = |least: f64| quantile * quantile * (least / freedom).max(1.0);
-        let (tried, reached_inertia) = squares.tried(threshold);
+        let (tried, reached) = squares.tried(threshold);
         let at = (0..tried.len()).min_by(|&a, &b| tried[a].squares.total_cmp(&tried[b].squares))?;
         let best = squares.best_between(&tried[at.saturating_sub(1)..tried.len().min(at + 2)])?;
         let threshold = threshold(best.squares);
@@ -91,7 +107,7 @@ impl Profile {
             fits: fits.collect(),
             threshold,
             misfit: best.squares / freedom,
-            is_open: above.is_none() && reached_inertia,
+            open: squares.open(&best, above.is_none().then_some(reached).flatten(), from),
             is_early: false,
         })
     }
@@ -101,9 +117,16 @@ impl Profile {
         self.estimate(|model| model.damping, |fit| fit.deviations[0], |_| f64::NEG_INFINITY)
     }
 
-    /// Inertia in kg m^2.
+    /// Inertia in kg m^2. Where it is not told from the lag, they may have changed places.
     pub fn inertia(&self) -> Estimate {
-        self.estimate(|model| model.inertia, |fit| fit.deviations[1], |_| f64::NEG_INFINITY)
+        let found =
+            self.estimate(|model| model.inertia, |fit| fit.deviations[1], |_| f64::NEG_INFINITY);
+        let exchanged = self.fits.iter().map(|fit| fit.model.lag * fit.model.damping);
+        let least = exchanged.fold(found.lo, f64::min);
+        Estimate {
+            lo: if matches!(self.open, Some(Open::Exchange(_))) { least } else { found.lo },
+            ..found
+        }
     }
 
     /// Delay in s.
@@ -154,11 +177,31 @@ struct Squares<'a> {
     measured: &'a Measured<'a>,
     /// Delay in s without lag.
     begin: f64,
+    /// Longest lag in s that was declared.
+    longest: Option<f64>,
     /// Whether there may be a negative delay behind a lag.
     may_be_early: bool,
 }
 
 impl Squares<'_> {
+    /// The longest lag in s that is tried.
+    fn longest(&self) -> f64 {
+        self.longest.unwrap_or(LONGEST * self.measured.period)
+    }
+
+    /// Why the upper end of the allowed lags, which begin `from` one in s and have `reached` the end of
+    /// those that were tried, is not one.
+    fn open(&self, best: &Fit, reached: Option<Open>, from: f64) -> Option<Open> {
+        let of_device = best.model.inertia / best.model.damping;
+        match reached {
+            // What the responses leave open was declared.
+            Some(Open::Longest(_)) if self.longest.is_some() && from == 0.0 => None,
+            Some(end) => Some(end),
+            // The device's time constant might as well be the amplifier's.
+            None => (0.0..self.longest()).contains(&of_device).then_some(Open::Exchange(of_device)),
+        }
+    }
+
     /// The best fit with a delay that may be; the delay of a torque that no amplifier makes late may be
     /// negative, where counts are younger than their time.
     fn at(&self, lag: f64) -> Option<Fit> {
@@ -177,16 +220,21 @@ impl Squares<'_> {
         fit.model.lag * fit.model.damping < fit.model.inertia
     }
 
-    /// Fits at lags far apart, and whether they end where lag and inertia would change places.
-    fn tried(&self, threshold: impl Fn(f64) -> f64) -> (Vec<Fit>, bool) {
+    /// Fits at lags far apart, and where they end if not where the squares are far too large.
+    fn tried(&self, threshold: impl Fn(f64) -> f64) -> (Vec<Fit>, Option<Open>) {
         let shortest = SHORTEST / self.measured.fastest();
         let lags = (0..MOST).map(|i| shortest * RATIO.powi(i as i32));
         let (mut tried, mut rises) = (Vec::<Fit>::new(), 0);
         let mut least = f64::INFINITY;
-        for lag in [0.0].into_iter().chain(lags) {
+        let longest = self.longest();
+        let lags = [0.0].into_iter().chain(lags.take_while(|lag| *lag < longest)).chain([longest]);
+        for lag in lags {
             let Some(fit) = self.at(lag) else { continue };
             if !Self::is_told(&fit) {
-                return (tried, true);
+                let told = tried.last().map_or(0.0, |fit| fit.model.lag);
+                let last = self.last_told(told, lag);
+                tried.extend(last);
+                return (tried, last.map(|fit| Open::Exchange(fit.model.lag)));
             }
             let before = tried.last().map_or(f64::INFINITY, |fit| fit.squares);
             least = least.min(fit.squares);
@@ -194,10 +242,20 @@ impl Squares<'_> {
             rises = if is_far { rises + 1 } else { 0 };
             tried.push(fit);
             if rises == RISES {
-                break;
+                return (tried, None);
             }
         }
-        (tried, false)
+        (tried, Some(Open::Longest(longest)))
+    }
+
+    /// The longest lag that is told from the inertia, between one that is and one that is not.
+    fn last_told(&self, mut told: f64, mut not: f64) -> Option<Fit> {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (told + not);
+            let is_told = self.at(middle).is_some_and(|fit| Self::is_told(&fit));
+            if is_told { told = middle } else { not = middle }
+        }
+        self.at(told)
     }
 
     /// The best fit in a range that holds one minimum, by thirds.
