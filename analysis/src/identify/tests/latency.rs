@@ -154,7 +154,7 @@ fn what_the_record_does_not_tell_has_no_interval() {
     // A device that is as quick as an amplifier.
     let quick = Device { inertia: 6e-6, ..KNOB };
     let found = measured(quick, Output { lag: 1e-4, delay: 0.0 }, 1);
-    assert!(matches!(none(&found), NoLatency::LikeInertia(_)), "{:?}", found.latency);
+    assert!(matches!(none(&found), NoLatency::LikeInertia(_)), "{found:?}");
     assert!(found.inertia.lo <= 6e-6 && 6e-6 <= found.inertia.hi, "{:?}", found.inertia);
     // Tones at which the device does not show its inertia, which a delay looks like.
     let short =
