@@ -71,7 +71,8 @@ impl Profile {
         let begin = measured.fit(0.0, Delay::From(begin))?.model.delay;
         let squares = Squares { measured, begin, longest, may_be_early: false };
         let profile = Self::within(&squares)?;
-        if profile.best.is_delay_free {
+        let best = &profile.best;
+        if best.is_delay_free && best.model.delay >= 0.0 {
             return Some(profile);
         }
         let early = Self::within(&Squares { may_be_early: true, ..squares })?;
