@@ -6,7 +6,7 @@ use super::latency::{Latency, NoLatency};
 use super::least_squares::Measured;
 use super::model::Model;
 use super::profile::{Profile, student};
-use super::response::Response;
+use super::response::{Correction, Response};
 use super::step::LeftOut;
 use crate::quantity::significant;
 
@@ -94,11 +94,11 @@ impl Identification {
 
 /// Fits the disk and the rigid device to the responses of a record with so long a period in s.
 ///
-/// The amplifier lags by no more than `longest_lag` in s, or half a period. Lag and delay stay in the model also where they are not significant: a fit that leaves them out
+/// Lag and delay stay in the model also where they are not significant: a fit that leaves them out
 /// takes what there is of them for damping.
 pub fn identify(
     period: f64,
-    longest_lag: Option<f64>,
+    correction: &Correction,
     found: usize,
     responses: Vec<Response>,
     mut left_out: Vec<LeftOut>,
@@ -112,13 +112,13 @@ pub fn identify(
     if usable < 3 {
         return Err(too_few(left_out));
     }
-    let measured = Measured { responses: &responses, period };
-    let Some(profile) = Profile::of(&measured, longest_lag) else {
+    let measured = Measured { responses: &responses, period, declared: correction.delay() };
+    let Some(profile) = Profile::of(&measured, correction.longest_lag) else {
         return Err(too_few(left_out));
     };
     let model = profile.best.model;
     let latency = Latency::of(&profile, measured.fastest(), profile.misfit <= RIGID);
-    let responses = without_images(period, &responses, &model);
+    let responses = without_images(&measured, &model);
     let disk = disk(&responses);
     Ok(Identification {
         inertia: profile.inertia(),
@@ -144,12 +144,12 @@ fn lost_in_noise(response: &Response) -> LeftOut {
 }
 
 /// The responses without the images of the held torque, which are known once the device is.
-fn without_images(period: f64, measured: &[Response], model: &Model) -> Vec<Response> {
+fn without_images(measured: &Measured<'_>, model: &Model) -> Vec<Response> {
     let corrected = |r: &Response| {
-        let admittance = r.admittance / model.images(r.omega, period);
+        let admittance = r.admittance / measured.images(model, r.omega);
         Response { admittance, ..*r }
     };
-    measured.iter().map(corrected).collect()
+    measured.responses.iter().map(corrected).collect()
 }
 
 /// The response that is nearest to the rim is the one with the smallest lower end.

@@ -15,6 +15,9 @@ const SMALL: f64 = 1e-11;
 /// Smallest relative deviation that is believed: a simulation without noise has none.
 const FLOOR: f64 = 1e-9;
 
+/// Most halvings of a step that would raise the squares.
+const HALVINGS: i32 = 6;
+
 /// Delays in periods that a search begins between: the phase of the fastest response is periodic.
 const FIRST: f64 = -2.0;
 /// The last of them.
@@ -33,6 +36,8 @@ pub struct Measured<'a> {
     pub responses: &'a [Response],
     /// Sampling period in s.
     pub period: f64,
+    /// Delays in s that were taken out of the responses, which have theirs of the images still.
+    pub declared: f64,
 }
 
 /// The nearest device.
@@ -58,6 +63,12 @@ pub enum Delay {
 }
 
 impl Measured<'_> {
+    /// What the images of the torque make of a response of the model at an angular frequency in rad/s.
+    pub fn images(&self, model: &Model, omega: f64) -> Complex<f64> {
+        let delay = model.delay + self.declared;
+        Model { delay, ..*model }.images(omega, self.period)
+    }
+
     /// Angular frequency in rad/s of the fastest response.
     pub fn fastest(&self) -> f64 {
         self.responses.iter().map(|r| r.omega).fold(0.0, f64::max)
@@ -75,9 +86,8 @@ impl Measured<'_> {
         let mut model = moved(nothing, System::at(self, &nothing, false, false).step()?);
         let mut system = System::at(self, &model, is_free, true);
         for _ in 0..ITERATIONS {
-            let step = system.step()?;
-            model = moved(model, step);
-            system = System::at(self, &model, is_free, true);
+            let Some((step, next, there)) = self.descent(&model, &system, is_free) else { break };
+            (model, system) = (next, there);
             if step.component_div(&system.units).amax() < SMALL {
                 break;
             }
@@ -88,6 +98,23 @@ impl Measured<'_> {
         let deviations = [deviations[DAMPING], deviations[INERTIA], of_delay];
         let squares = system.squares;
         is_usable.then_some(Fit { model, squares, deviations, is_delay_free: is_free })
+    }
+
+    /// A step that does not raise the squares, and where it leads: responses that no device explains send
+    /// a whole step anywhere.
+    fn descent(
+        &self,
+        model: &Model,
+        system: &System,
+        is_free: bool,
+    ) -> Option<(Vector3<f64>, Model, System)> {
+        let whole = system.step()?;
+        (0..HALVINGS).find_map(|halvings| {
+            let step = whole * 0.5f64.powi(halvings);
+            let next = moved(*model, step);
+            let there = System::at(self, &next, is_free, true);
+            (there.squares <= system.squares).then_some((step, next, there))
+        })
     }
 
     /// Where to begin with the delay in s: at the best of several, each with the device that fits to it.
@@ -135,7 +162,7 @@ impl System {
             Self { matrix: Matrix3::zeros(), right: Vector3::zeros(), units, squares: 0.0 };
         for response in measured.responses {
             let images = match with_images {
-                true => model.images(response.omega, measured.period),
+                true => measured.images(model, response.omega),
                 false => Complex::from(1.0),
             };
             system.add(response, images, model, with_delay);

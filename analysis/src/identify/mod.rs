@@ -49,8 +49,7 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
             None => left_out.push(LeftOut::new(step.omega, "it has no torque, or nothing moves")),
         }
     }
-    let found =
-        fit::identify(record.period, correction.longest_lag, steps.len(), responses, left_out)?;
+    let found = fit::identify(record.period, correction, steps.len(), responses, left_out)?;
     clipping::check(record, &steps, correction, &found)?;
     Ok(found)
 }

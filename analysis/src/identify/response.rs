@@ -26,6 +26,11 @@ impl Correction {
         let count_angle = std::f64::consts::TAU / counts_per_turn;
         Self { count_angle, torque_delay: 0.0, count_delay: 0.0, settle: 0.25, longest_lag: None }
     }
+
+    /// Both declared delays together, in s.
+    pub fn delay(&self) -> f64 {
+        self.torque_delay + self.count_delay
+    }
 }
 
 /// Torque to velocity at one frequency.
@@ -62,7 +67,7 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let (torque, _) = phasor(&record.torque[rows.clone()], angle)?;
     let (counts, deviation) = phasor(&record.counts[rows], angle)?;
     let half = 0.5 * angle;
-    let late = half + step.omega * (correction.torque_delay + correction.count_delay);
+    let late = half + step.omega * correction.delay();
     let applied = torque * (half.sin() / half) * Complex::from_polar(1.0, -late);
     let velocity = Complex::new(0.0, step.omega * correction.count_angle) * counts;
     let admittance = velocity / applied;
