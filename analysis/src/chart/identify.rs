@@ -49,15 +49,14 @@ pub fn identify(title: &str, found: &Identification) -> Result<Picture, ChartErr
     })
 }
 
-/// `1/J` of the fitted device: `(b + j w m) e^(j w t0)`.
+/// `1/J` of the fitted device with what makes its torque late.
 fn fitted(found: &Identification, omega: f64) -> Complex<f64> {
-    let rigid = Complex::new(found.damping.value, omega * found.inertia.value);
-    rigid * Complex::from_polar(1.0, omega * skew(found))
+    found.model.impedance(omega)
 }
 
-/// The skew where there is one.
-fn skew(found: &Identification) -> f64 {
-    if found.skew.is_significant() { found.skew.value } else { 0.0 }
+/// Lag and delay together, where they are significant.
+fn late(found: &Identification) -> f64 {
+    if found.mean_delay.is_significant() { found.mean_delay.value } else { 0.0 }
 }
 
 fn nyquist(area: &Area<'_>, found: &Identification) -> Drawn<()> {
@@ -142,13 +141,13 @@ fn name_curves(chart: &mut Plane<'_, '_>, found: &Identification, far: f64) -> D
 
 /// The fitted one.
 fn model(found: &Identification) -> String {
-    match skew(found) {
+    match late(found) {
         0.0 => "1/(b + j w m) fitted".to_owned(),
-        skew => format!("fitted, {} us late", significant(1e6 * skew, 3)),
+        late => format!("fitted, {} us late", significant(1e6 * late, 3)),
     }
 }
 
-/// The real parts of `1/J` over frequency: all of them are the damping, but for a skew.
+/// The real parts of `1/J` over frequency: all of them are the damping, but for lag and delay.
 fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     let estimate = &found.damping;
     let real = |r: &Response| r.impedance().re;
@@ -158,13 +157,13 @@ fn damping(area: &Area<'_>, found: &Identification) -> Drawn<()> {
     chart.draw_series([Rectangle::new(band, FORBIDDEN.filled())])?;
     let level = vec![(shown.start, estimate.value), (shown.end, estimate.value)];
     chart.draw_series([PathElement::new(level, pen(1))])?;
-    let late = skew(found) != 0.0;
+    let late = late(found) != 0.0;
     if late {
         chart.draw_series(broken(over(found, |omega| fitted(found, omega).re), 8, 5, 1))?;
     }
     bars(&mut chart, found, real)?;
     let reach = significant(0.5 * (estimate.hi - estimate.lo), 2);
-    let late = if late { "; dashed: with the delay" } else { "" };
+    let late = if late { "; dashed: with lag and delay" } else { "" };
     let value = significant(estimate.value, 5);
     caption(area, format!("b = {value} +- {reach} N m s/rad{late}"))
 }

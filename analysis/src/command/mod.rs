@@ -98,7 +98,7 @@ pub enum Command {
     Certify(certify::Arguments),
     /// Compute the passivity of a device, rigid or a chain of masses.
     Device(device::Arguments),
-    /// Identify inertia, damping and passivity of a device from a measurement.
+    /// Identify a device from a measurement: inertia, damping, passivity, lag and delay.
     Identify(identify::Arguments),
     /// Copy a scene's program, to begin a scene of your own.
     New(new::Arguments),

@@ -38,8 +38,8 @@ pub enum IdentifyError {
     },
     /// The fit has more unknowns than equations, or the frequencies are the same.
     #[error(
-        "{usable} of {found} sines can be used; a fit of inertia, damping and skew needs at least \
-         3 at different frequencies{}", reasons(.left_out)
+        "{usable} of {found} sines can be used; a fit of inertia, damping, lag and delay needs at \
+         least 3 at different frequencies{}", reasons(.left_out)
     )]
     TooFew {
         /// Sines found.

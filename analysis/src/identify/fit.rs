@@ -1,15 +1,14 @@
-//! What the responses say: the disk they lie in, and the rigid device that they would be of.
-
-use nalgebra::{Complex, Matrix3, Vector3};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+//! What the responses say: the disk they lie in, and the rigid device behind a late torque that they
+//! would be of.
 
 use super::error::IdentifyError;
-use super::response::{Response, images};
+use super::latency::{Latency, NoLatency};
+use super::least_squares::Measured;
+use super::model::Model;
+use super::profile::{Profile, student};
+use super::response::{Correction, Response};
 use super::step::LeftOut;
 use crate::quantity::significant;
-
-/// Passes between the fit and the images: each gains the square of what the images do.
-const IMAGE_PASSES: usize = 3;
 
 /// Confidence of all intervals.
 pub const CONFIDENCE: f64 = 0.95;
@@ -21,12 +20,6 @@ const LEAST_COUNTS: f64 = 1.5;
 /// rigid: residuals up to three times of what the noise explains, which allows for noise that is
 /// not white.
 const RIGID: f64 = 9.0;
-
-/// Smallest relative deviation that is believed: a simulation without noise has none.
-const FLOOR: f64 = 1e-9;
-
-/// Gauss-Newton steps; the skew is small, and the rest linear, so that three are enough.
-const ITERATIONS: usize = 20;
 
 /// A number with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -64,12 +57,18 @@ pub struct Identification {
     pub inertia: Estimate,
     /// Damping in N m s/rad.
     pub damping: Estimate,
-    /// Time in s by which the counts are late against the torque, beyond what was declared.
-    pub skew: Estimate,
-    /// The disk, with the skew in it.
+    /// Mean delay in s of the torque's step response beyond what was declared, which is the sum of
+    /// the amplifier's lag and the output's delay; less than zero where the counts are younger than
+    /// their time.
+    pub mean_delay: Estimate,
+    /// Lag and delay, each for itself, or why they have no intervals.
+    pub latency: Result<Latency, NoLatency>,
+    /// The best fit of all four together.
+    pub model: Model,
+    /// The disk, with lag and delay in it.
     pub disk: Disk,
-    /// Part of `disk.delta` that is the skew's: `b cos(w t0) - m w sin(w t0) - b`, in N m s/rad at
-    /// the disk's frequency.
+    /// Part of `disk.delta` that lag and delay make, in N m s/rad at the disk's frequency; of a
+    /// delay `t0` alone it is `b cos(w t0) - m w sin(w t0) - b`.
     pub bias: f64,
     /// Mean squared residual of the fit in squared deviations.
     pub misfit: f64,
@@ -80,7 +79,7 @@ pub struct Identification {
 }
 
 impl Identification {
-    /// Whether inertia, damping and skew explain the responses.
+    /// Whether inertia, damping, lag and delay explain the responses.
     pub fn is_rigid(&self) -> bool {
         self.misfit <= RIGID
     }
@@ -95,10 +94,11 @@ impl Identification {
 
 /// Fits the disk and the rigid device to the responses of a record with so long a period in s.
 ///
-/// The skew stays in the model only where it is significant: three unknowns determine the damping
-/// less well than two.
+/// Lag and delay stay in the model also where they are not significant: a fit that leaves them out
+/// takes what there is of them for damping.
 pub fn identify(
     period: f64,
+    correction: &Correction,
     found: usize,
     responses: Vec<Response>,
     mut left_out: Vec<LeftOut>,
@@ -112,19 +112,23 @@ pub fn identify(
     if usable < 3 {
         return Err(too_few(left_out));
     }
-    let Some((fit, skew, responses)) = without_images(period, &responses) else {
+    let measured = Measured { responses: &responses, period, declared: correction.delay() };
+    let Some(profile) = Profile::of(&measured, correction.longest_lag) else {
         return Err(too_few(left_out));
     };
+    let model = profile.best.model;
+    let latency = Latency::of(&profile, measured.fastest(), profile.misfit <= RIGID);
+    let responses = without_images(&measured, &model);
     let disk = disk(&responses);
-    let (b, m, turn) =
-        (fit.unknowns[DAMPING], fit.unknowns[INERTIA], disk.omega * fit.unknowns[SKEW]);
     Ok(Identification {
-        inertia: fit.estimate(INERTIA),
-        damping: fit.estimate(DAMPING),
-        skew,
+        inertia: profile.inertia(),
+        damping: profile.damping(),
+        mean_delay: profile.mean_delay(),
+        latency,
+        model,
         disk,
-        bias: b * turn.cos() - m * disk.omega * turn.sin() - b,
-        misfit: fit.misfit,
+        bias: model.impedance(disk.omega).re - model.damping,
+        misfit: profile.misfit,
         responses,
         left_out,
     })
@@ -139,28 +143,13 @@ fn lost_in_noise(response: &Response) -> LeftOut {
     LeftOut::new(response.omega, reason)
 }
 
-/// The fit, the skew and the responses without the images of the held torque, which are known once
-/// inertia and damping are.
-fn without_images(period: f64, measured: &[Response]) -> Option<(Fit, Estimate, Vec<Response>)> {
-    let mut responses = measured.to_vec();
-    let (mut fit, mut skew) = rigid(&responses)?;
-    for _ in 0..IMAGE_PASSES {
-        let (b, m) = (fit.unknowns[DAMPING], fit.unknowns[INERTIA]);
-        let corrected = |r: &Response| {
-            let admittance = r.admittance / images(r.omega, period, m, b);
-            Response { admittance, ..*r }
-        };
-        responses = measured.iter().map(corrected).collect();
-        (fit, skew) = rigid(&responses)?;
-    }
-    Some((fit, skew, responses))
-}
-
-fn rigid(responses: &[Response]) -> Option<(Fit, Estimate)> {
-    let skewed = Fit::of(responses, true)?;
-    let skew = skewed.estimate(SKEW);
-    let fit = if skew.is_significant() { skewed } else { Fit::of(responses, false)? };
-    Some((fit, skew))
+/// The responses without the images of the held torque, which are known once the device is.
+fn without_images(measured: &Measured<'_>, model: &Model) -> Vec<Response> {
+    let corrected = |r: &Response| {
+        let admittance = r.admittance / measured.images(model, r.omega);
+        Response { admittance, ..*r }
+    };
+    measured.responses.iter().map(corrected).collect()
 }
 
 /// The response that is nearest to the rim is the one with the smallest lower end.
@@ -176,100 +165,4 @@ fn disk(responses: &[Response]) -> Disk {
     let nearest = responses.iter().map(rim).fold(none, nearer);
     let lo = responses.iter().map(|r| rim(r).lo).fold(f64::INFINITY, f64::min);
     Disk { lo, ..nearest }
-}
-
-const DAMPING: usize = 0;
-const INERTIA: usize = 1;
-const SKEW: usize = 2;
-
-/// Least squares of `1/J = (b + j w m) e^(j w t0)`, each response weighted by its deviation.
-struct Fit {
-    /// `b`, `m`, `t0`.
-    unknowns: Vector3<f64>,
-    deviations: Vector3<f64>,
-    misfit: f64,
-    freedom: f64,
-}
-
-impl Fit {
-    fn of(responses: &[Response], with_skew: bool) -> Option<Self> {
-        // Without skew the problem is linear, and without inertia a skew has no effect: so in turn.
-        let mut unknowns = System::at(responses, &Vector3::zeros(), false).step()?;
-        let mut system = System::at(responses, &unknowns, with_skew);
-        for _ in 0..ITERATIONS {
-            unknowns += system.step()?;
-            system = System::at(responses, &unknowns, with_skew);
-        }
-        let count = if with_skew { 3.0 } else { 2.0 };
-        let freedom = 2.0 * responses.len() as f64 - count;
-        let misfit = system.squares / freedom;
-        // Where the model fits worse than the noise allows, the intervals grow accordingly.
-        let covariance = system.covariance()? * misfit.max(1.0);
-        let deviations = covariance.diagonal().map(f64::sqrt);
-        let usable = unknowns.iter().chain(&deviations).all(|value| value.is_finite());
-        usable.then_some(Self { unknowns, deviations, misfit, freedom })
-    }
-
-    fn estimate(&self, index: usize) -> Estimate {
-        let (value, reach) = (self.unknowns[index], student(self.freedom) * self.deviations[index]);
-        Estimate { value, lo: value - reach, hi: value + reach }
-    }
-}
-
-/// Two-sided quantile of Student's distribution.
-fn student(freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom)
-        .map_or(f64::INFINITY, |student| student.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
-}
-
-/// The normal equations around some unknowns, in units in which all three are near 1.
-struct System {
-    matrix: Matrix3<f64>,
-    right: Vector3<f64>,
-    units: Vector3<f64>,
-    squares: f64,
-}
-
-impl System {
-    fn at(responses: &[Response], unknowns: &Vector3<f64>, with_skew: bool) -> Self {
-        let fastest = responses.iter().map(|r| r.omega).fold(0.0, f64::max);
-        let largest = responses.iter().map(|r| r.impedance().norm()).fold(0.0, f64::max);
-        let units = Vector3::new(largest, largest / fastest, 1.0 / fastest);
-        let mut system =
-            Self { matrix: Matrix3::zeros(), right: Vector3::zeros(), units, squares: 0.0 };
-        for response in responses {
-            system.add(response, unknowns, with_skew);
-        }
-        if !with_skew {
-            // A fixed unknown: its equation keeps it unchanged.
-            system.matrix[(SKEW, SKEW)] = 1.0;
-        }
-        system
-    }
-
-    fn add(&mut self, response: &Response, unknowns: &Vector3<f64>, with_skew: bool) {
-        let (omega, measured) = (response.omega, response.impedance());
-        let turn = Complex::from_polar(1.0, omega * unknowns[SKEW]);
-        let j_omega = Complex::new(0.0, omega);
-        let model = (unknowns[DAMPING] + j_omega * unknowns[INERTIA]) * turn;
-        let skew = if with_skew { j_omega * model } else { Complex::from(0.0) };
-        let slopes = [turn, j_omega * turn, skew];
-        let weight = 1.0 / response.deviation.max(FLOOR * measured.norm());
-        let residual = (measured - model) * weight;
-        self.squares += residual.norm_sqr();
-        for part in [|z: Complex<f64>| z.re, |z: Complex<f64>| z.im] {
-            let row = Vector3::from_fn(|i, _| part(slopes[i]) * weight * self.units[i]);
-            self.matrix += row * row.transpose();
-            self.right += row * part(residual);
-        }
-    }
-
-    fn step(&self) -> Option<Vector3<f64>> {
-        Some(self.matrix.cholesky()?.solve(&self.right).component_mul(&self.units))
-    }
-
-    fn covariance(&self) -> Option<Matrix3<f64>> {
-        let units = Matrix3::from_diagonal(&self.units);
-        Some(units * self.matrix.cholesky()?.inverse() * units)
-    }
 }

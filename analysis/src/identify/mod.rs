@@ -2,20 +2,27 @@
 //! (theory, section 3.3).
 //!
 //! ```text
-//! record -> steps -> responses J(w) -> disk Re(1/J) >= delta, and fit 1/J = (b + j w m) e^(j w t0)
+//! record -> steps -> responses J(w) -> disk Re(1/J) >= delta,
+//!                                      fit 1/J = (b + j w m) (1 + j w tau) e^(j w d)
 //! ```
 //!
 //! [`record`] reads a CSV file, [`step`] finds the stretches of steady sine in it, [`response`]
 //! takes one bin of each, [`fit`] draws the conclusions, and [`clipping`] refuses them where the motor
-//! did not give the torques. [`port`] records what a board measures; [`rig`] simulates a device that is
+//! did not give the torques. A conclusion is a [`model`] of the device and of what makes its torque late;
+//! [`least_squares`] finds the nearest one for a lag, [`profile`] the intervals over all lags, and
+//! [`latency`] says what they tell of lag and delay. [`port`] records what a board measures; [`rig`] simulates a device that is
 //! measured so, with all that spoils a measurement, and [`measurement`] has the emulated board measure
 //! it.
 
 pub mod clipping;
 mod error;
 pub mod fit;
+pub mod latency;
+pub mod least_squares;
 pub mod measurement;
+pub mod model;
 pub mod port;
+pub mod profile;
 pub mod record;
 pub mod response;
 pub mod rig;
@@ -23,6 +30,8 @@ pub mod step;
 
 pub use error::IdentifyError;
 pub use fit::{Disk, Estimate, Identification};
+pub use latency::{Latency, NoLatency};
+pub use model::Model;
 pub use record::Record;
 pub use response::{Correction, Response};
 pub use step::LeftOut;
@@ -40,7 +49,7 @@ pub fn identify(record: &Record, correction: &Correction) -> Result<Identificati
             None => left_out.push(LeftOut::new(step.omega, "it has no torque, or nothing moves")),
         }
     }
-    let found = fit::identify(record.period, steps.len(), responses, left_out)?;
+    let found = fit::identify(record.period, correction, steps.len(), responses, left_out)?;
     clipping::check(record, &steps, correction, &found)?;
     Ok(found)
 }

@@ -16,13 +16,20 @@ pub struct Correction {
     pub count_delay: f64,
     /// Part of each stretch that is left out at its beginning, until the transient has died out.
     pub settle: f64,
+    /// Longest lag in s that the amplifier may have; half a period where nothing is said.
+    pub longest_lag: Option<f64>,
 }
 
 impl Correction {
     /// An encoder of `counts_per_turn`, no delays, and a quarter of each stretch to settle.
     pub fn of_encoder(counts_per_turn: f64) -> Self {
         let count_angle = std::f64::consts::TAU / counts_per_turn;
-        Self { count_angle, torque_delay: 0.0, count_delay: 0.0, settle: 0.25 }
+        Self { count_angle, torque_delay: 0.0, count_delay: 0.0, settle: 0.25, longest_lag: None }
+    }
+
+    /// Both declared delays together, in s.
+    pub fn delay(&self) -> f64 {
+        self.torque_delay + self.count_delay
     }
 }
 
@@ -50,7 +57,9 @@ impl Response {
 ///
 /// The torque is held from tick to tick, which makes the sine that the device feels smaller by
 /// `sinc(w T/2)` and late by `T/2`; both are taken out, as are the declared delays. The images of
-/// the held sine, which sampling folds back, stay in: see [`images`].
+/// the held sine, which sampling folds back, stay in: see [`Model::images`].
+///
+/// [`Model::images`]: super::model::Model::images
 pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Option<Response> {
     let skipped = (correction.settle * step.rows.len() as f64) as usize;
     let rows = step.rows.start + skipped..step.rows.end;
@@ -58,7 +67,7 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let (torque, _) = phasor(&record.torque[rows.clone()], angle)?;
     let (counts, deviation) = phasor(&record.counts[rows], angle)?;
     let half = 0.5 * angle;
-    let late = half + step.omega * (correction.torque_delay + correction.count_delay);
+    let late = half + step.omega * correction.delay();
     let applied = torque * (half.sin() / half) * Complex::from_polar(1.0, -late);
     let velocity = Complex::new(0.0, step.omega * correction.count_angle) * counts;
     let admittance = velocity / applied;
@@ -66,25 +75,6 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let deviation = impedance.norm() * deviation / counts.norm();
     let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
     usable.then(|| Response { omega: step.omega, admittance, deviation, counts: counts.norm() })
-}
-
-/// What the images of the held torque make of the response of a rigid device, as a factor of `J`.
-///
-/// A held sine has images around the multiples of the sampling rate; the device answers them and
-/// sampling folds the answer back. All of them are in the sampled response `G_d` of the held
-/// device, which is known exactly; the factor is `G_d / (G sinc(x) e^(-j x))`, `x = w T/2`, and 1
-/// to within about `x^4`.
-pub fn images(omega: f64, period: f64, inertia: f64, damping: f64) -> Complex<f64> {
-    // Without damping the two terms below cancel; so little of it makes no difference.
-    const LEAST: f64 = 1e-6;
-    let b = damping.abs().max(LEAST * inertia / period);
-    let (lag, half) = (inertia / b, 0.5 * omega * period);
-    let z = Complex::from_polar(1.0, 2.0 * half);
-    let lost = -(-period / lag).exp_m1();
-    let sampled = period / (z - 1.0) - lag * lost / (z - (1.0 - lost));
-    let s = Complex::new(0.0, omega);
-    // b G(s) = 1 / (s (lag s + 1))
-    sampled * s * (lag * s + 1.0) * (half / half.sin()) * Complex::from_polar(1.0, half)
 }
 
 /// `Re(p e^(j angle k))` fitted to the samples together with a parabola, which a free device drifts
@@ -105,12 +95,13 @@ fn phasor(samples: &[f64], angle: f64) -> Option<(Complex<f64>, f64)> {
     let normal = (regressors.transpose() * &regressors).cholesky()?;
     let solution = normal.solve(&(regressors.transpose() * &values));
     let residual = values - regressors * &solution;
-    Some((Complex::new(solution[3], solution[4]), deviation(residual.as_slice(), angle)))
+    let phasor = Complex::new(solution[3], solution[4]);
+    Some((phasor, deviation(residual.as_slice(), angle, phasor.norm())))
 }
 
 /// Deviation of a phasor, from what is left at the neighbouring frequencies: the noise of a free
 /// device is a random walk, so that its mean over all frequencies says nothing about one of them.
-fn deviation(residual: &[f64], angle: f64) -> f64 {
+fn deviation(residual: &[f64], angle: f64, amplitude: f64) -> f64 {
     /// In steps of one period over the whole stretch; nearer than the first is the sine itself.
     const NEIGHBOURS: [f64; 8] = [-4.5, -3.5, -2.5, -1.5, 1.5, 2.5, 3.5, 4.5];
     let n = residual.len() as f64;
@@ -120,11 +111,33 @@ fn deviation(residual: &[f64], angle: f64) -> f64 {
         .filter(|&near| near > step && near < std::f64::consts::PI)
         .map(|near| (2.0 / n * bin(residual, near)).norm_sqr())
         .collect();
-    let power = powers.iter().sum::<f64>() / powers.len().max(1) as f64;
-    // Whole counts, at the least: 1/12 of a count squared, and no better for being repeated from
-    // period to period, since its error is repeated with it.
-    let distinct = n.min(std::f64::consts::TAU / angle);
+    // Two degrees of freedom a neighbour. What is divided by a variance that was estimated from so few is
+    // larger than by the variance.
+    let freedom = 2.0 * powers.len().max(2) as f64;
+    let power = 2.0 * powers.iter().sum::<f64>() / (freedom - 2.0);
+    // Whole counts, at the least: 1/12 of a count squared, and no better for being repeated, since the
+    // error is repeated with the phase.
+    let distinct = distinct_errors(residual.len(), angle, amplitude);
     (0.5 * power).sqrt().max((1.0 / (6.0 * distinct)).sqrt())
+}
+
+/// Samples of a sine, of `amplitude` counts, whose rounding errors are not those of others.
+///
+/// The phases of successive periods differ until so many samples are a whole number of periods; of an
+/// even number, one half has the errors of the other with the sign changed. A slow sine is rounded to
+/// the same counts by neighbouring phases.
+fn distinct_errors(samples: usize, angle: f64, amplitude: f64) -> f64 {
+    const COUNTS_A_PERIOD: f64 = 4.0;
+    let n = samples as f64;
+    let turn = angle / std::f64::consts::TAU;
+    let is_whole = |&count: &usize| {
+        let turns = count as f64 * turn;
+        (turns - turns.round()).abs() < 1.0 / n
+    };
+    let until_repeated = (1..samples).find(is_whole).unwrap_or(samples);
+    let different = until_repeated >> usize::from(until_repeated.is_multiple_of(2));
+    let in_a_period = n.min(1.0 / turn);
+    in_a_period.max((different as f64).min(COUNTS_A_PERIOD * amplitude))
 }
 
 /// `sum of x_k e^(-j angle k)`.

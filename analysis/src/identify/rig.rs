@@ -1,5 +1,7 @@
 //! A rig that measures a simulated device, with the errors of a real measurement: an encoder of
-//! whole counts, unrecorded torque noise, records that are skewed in time.
+//! whole counts, unrecorded torque noise, records that are skewed in time, torques that are late.
+
+use std::collections::VecDeque;
 
 use firmware::scene::Device;
 use nalgebra::DVector;
@@ -32,6 +34,8 @@ pub struct Sensing {
     pub torque_noise: f64,
     /// Time in s, less than the period, by which the counts of a row are older than its time.
     pub skew: f64,
+    /// Time in s by which the torque of a row is applied later than its time, periods and parts.
+    pub output_delay: f64,
     /// The noise's seed.
     pub seed: u64,
 }
@@ -39,10 +43,10 @@ pub struct Sensing {
 /// A simulated device between motor and encoder, at rest at zero to begin with.
 #[derive(Clone, Debug)]
 pub struct MeasuredDevice {
-    /// From a tick to the time at which the next row's counts are taken.
-    until: DiscretePlant,
-    /// From there to the next tick; none without skew.
-    after: Option<DiscretePlant>,
+    /// A tick in pieces, in their order.
+    pieces: Vec<Piece>,
+    /// The latest torques, the newest first: as many as the delay reaches back to.
+    torques: VecDeque<f64>,
     state: DVector<f64>,
     /// Angle in rad that the encoder sees.
     seen: f64,
@@ -51,22 +55,50 @@ pub struct MeasuredDevice {
     noise: fastrand::Rng,
 }
 
+/// A piece of a tick, in which the torque does not change.
+#[derive(Clone, Debug)]
+struct Piece {
+    plant: DiscretePlant,
+    /// Ticks by which the torque that acts is older than the newest.
+    age: usize,
+    /// Whether the next row's counts are taken at its end.
+    counts: bool,
+}
+
+/// The pieces of a tick: it is cut where the late torque changes, and where the counts are taken.
+fn pieces(plant: &Plant, sensing: &Sensing) -> Result<Vec<Piece>, SimulationError> {
+    let &Sensing { period, skew, output_delay, .. } = sensing;
+    let whole = (output_delay / period).floor();
+    let (change, count) = ((output_delay - whole * period).max(0.0), period - skew);
+    let cuts = [0.0, change.min(count), change.max(count), period];
+    let long = cuts.windows(2).filter(|ends| ends[1] > ends[0]);
+    long.map(|ends| {
+        let discretization = Discretization::exact(ends[1] - ends[0]);
+        Ok(Piece {
+            plant: DiscretePlant::checked(plant, &discretization, 0.0)?,
+            age: whole as usize + usize::from(ends[0] < change),
+            counts: ends[1] == count,
+        })
+    })
+    .collect()
+}
+
 impl MeasuredDevice {
     /// A device that is driven and seen so.
     ///
     /// # Errors
     /// Where the device is too fast for its motion over a period to be computed.
     pub fn new(plant: &Plant, sensing: &Sensing) -> Result<Self, SimulationError> {
-        let Sensing { period, counts_per_turn, torque_noise, skew, seed } = *sensing;
-        let over = |time| DiscretePlant::checked(plant, &Discretization::exact(time), 0.0);
+        let pieces = pieces(plant, sensing)?;
+        let oldest = pieces.iter().map(|piece| piece.age).max().unwrap_or(0);
         Ok(Self {
-            until: over(period - skew)?,
-            after: (skew > 0.0).then(|| over(skew)).transpose()?,
+            pieces,
+            torques: VecDeque::from(vec![0.0; oldest + 1]),
             state: plant.state_at(0.0, 0.0),
             seen: 0.0,
-            encoder: SimulatedEncoder::new(counts_per_turn),
-            torque_noise,
-            noise: fastrand::Rng::with_seed(seed),
+            encoder: SimulatedEncoder::new(sensing.counts_per_turn),
+            torque_noise: sensing.torque_noise,
+            noise: fastrand::Rng::with_seed(sensing.seed),
         })
     }
 
@@ -75,13 +107,15 @@ impl MeasuredDevice {
         self.encoder.read(self.seen)
     }
 
-    /// Holds a torque in N m until the next tick.
+    /// Holds a torque in N m until the next tick, both of them later by the output's delay.
     pub fn hold(&mut self, torque: f64) {
-        let motor = torque + self.torque_noise * normal(&mut self.noise);
-        self.state = self.until.end(&self.state, motor, 0.0);
-        self.seen = self.state[POSITION];
-        if let Some(after) = &self.after {
-            self.state = after.end(&self.state, motor, 0.0);
+        self.torques.pop_back();
+        self.torques.push_front(torque + self.torque_noise * normal(&mut self.noise));
+        for piece in &self.pieces {
+            self.state = piece.plant.end(&self.state, self.torques[piece.age], 0.0);
+            if piece.counts {
+                self.seen = self.state[POSITION];
+            }
         }
     }
 }
@@ -91,6 +125,8 @@ impl MeasuredDevice {
 pub struct Rig {
     /// The device.
     pub device: Device,
+    /// Time constant in s of its amplifier; 0 for one that does not lag.
+    pub actuator_lag: f64,
     /// With what.
     pub sensing: Sensing,
 }
@@ -102,7 +138,10 @@ impl Rig {
     /// Where the device is too fast for its motion over a period to be computed.
     pub fn measure(&self, sines: &[Excitation]) -> Result<Record, SimulationError> {
         let period = self.sensing.period;
-        let mut device = MeasuredDevice::new(&Plant::rigid(self.device), &self.sensing)?;
+        let rigid = Plant::rigid(self.device);
+        let lag = self.actuator_lag;
+        let plant = if lag > 0.0 { rigid.with_actuator_lag(lag) } else { rigid };
+        let mut device = MeasuredDevice::new(&plant, &self.sensing)?;
         let (mut torque, mut counts, mut frequency) = (vec![], vec![], vec![]);
         for sine in sines {
             let ticks = (sine.duration / period).round() as usize;

@@ -9,8 +9,19 @@ use super::*;
 const PADDLE: Device = Device { inertia: 0.05, damping: 0.5, passivity: None };
 const KNOB: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
-const SENSING: Sensing =
-    Sensing { period: 1e-3, counts_per_turn: 61_440.0, torque_noise: 0.0, skew: 0.0, seed: 1 };
+const SENSING: Sensing = Sensing {
+    period: 1e-3,
+    counts_per_turn: 61_440.0,
+    torque_noise: 0.0,
+    skew: 0.0,
+    output_delay: 0.0,
+    seed: 1,
+};
+
+/// A rig with an amplifier that does not lag.
+fn rig(device: Device, sensing: Sensing) -> Rig {
+    Rig { device, actuator_lag: 0.0, sensing }
+}
 
 /// Sines that move the device by `amplitude` rad, whatever the frequency.
 fn sines(device: Device, frequencies: &[f64], amplitude: f64) -> Vec<Excitation> {
@@ -38,7 +49,7 @@ fn assert_near(found: &Estimate, wanted: f64, part: f64) {
 fn damping_and_inertia_through_counts_and_noise() {
     for (device, noise) in [(PADDLE, 0.02), (KNOB, 2e-4)] {
         for seed in 0..10 {
-            let rig = Rig { device, sensing: Sensing { torque_noise: noise, seed, ..SENSING } };
+            let rig = rig(device, Sensing { torque_noise: noise, seed, ..SENSING });
             let found = identified(&rig, LOW_TO_HIGH, 0.02);
             assert_near(&found.damping, device.damping, 0.02);
             assert_near(&found.inertia, device.inertia, 0.01);
@@ -54,11 +65,10 @@ fn damping_and_inertia_through_counts_and_noise() {
 
 #[test]
 fn ten_microseconds_of_skew_are_found_and_taken_out() {
-    let rig =
-        Rig { device: PADDLE, sensing: Sensing { skew: 1e-5, torque_noise: 0.02, ..SENSING } };
+    let rig = rig(PADDLE, Sensing { skew: 1e-5, torque_noise: 0.02, ..SENSING });
     let found = identified(&rig, &[1.0, 5.0, 20.0, 50.0, 80.0, 100.0], 0.02);
-    assert!(found.skew.is_significant(), "{found:?}");
-    assert_near(&found.skew, 1e-5, 0.1);
+    assert!(found.mean_delay.is_significant(), "{found:?}");
+    assert_near(&found.mean_delay, 1e-5, 0.1);
     assert_near(&found.damping, PADDLE.damping, 0.02);
     // Theory, section 3.3: 0.5 becomes 0.30 at 100 Hz.
     assert!((found.disk.delta - 0.30).abs() < 0.01, "{:?}", found.disk);
@@ -68,7 +78,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
     let correction =
         Correction { count_delay: 1e-5, ..Correction::of_encoder(rig.sensing.counts_per_turn) };
     let declared = identify(&record, &correction).unwrap();
-    assert!(declared.skew.value.abs() < 1e-6, "{:?}", declared.skew);
+    assert!(declared.mean_delay.value.abs() < 1e-6, "{:?}", declared.mean_delay);
     assert_near(&declared.damping, PADDLE.damping, 0.02);
 }
 
@@ -76,7 +86,7 @@ fn ten_microseconds_of_skew_are_found_and_taken_out() {
 fn intervals_cover_the_truth_as_often_as_they_say() {
     let mut covered = 0;
     for seed in 0..100 {
-        let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.05, seed, ..SENSING } };
+        let rig = rig(PADDLE, Sensing { torque_noise: 0.05, seed, ..SENSING });
         let found = identified(&rig, &[1.0, 2.0, 4.0, 8.0, 16.0], 0.02);
         covered += usize::from(found.damping.lo <= 0.5 && 0.5 <= found.damping.hi);
     }
@@ -87,17 +97,17 @@ fn intervals_cover_the_truth_as_often_as_they_say() {
 fn without_noise_only_the_counts_are_left() {
     // The finest encoder for its counter: only the method's own error is left.
     for device in [PADDLE, KNOB] {
-        let rig = Rig { device, sensing: Sensing { counts_per_turn: 2f64.powi(30), ..SENSING } };
+        let rig = rig(device, Sensing { counts_per_turn: 2f64.powi(30), ..SENSING });
         let found = identified(&rig, LOW_TO_HIGH, 0.02);
         assert_near(&found.damping, device.damping, 1e-5);
         assert_near(&found.inertia, device.inertia, 1e-5);
-        assert!(found.skew.value.abs() < 1e-8, "{:?}", found.skew);
+        assert!(found.mean_delay.value.abs() < 1e-8, "{:?}", found.mean_delay);
     }
 }
 
 #[test]
 fn steps_are_found_without_labels() {
-    let rig = Rig { device: PADDLE, sensing: Sensing { torque_noise: 0.02, ..SENSING } };
+    let rig = rig(PADDLE, Sensing { torque_noise: 0.02, ..SENSING });
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 0.02)).unwrap();
     let blind = Record { frequency: None, ..record.clone() };
     let (labelled, found) = (step::steps(&record).0, step::steps(&blind).0);
@@ -111,7 +121,7 @@ fn steps_are_found_without_labels() {
 
 #[test]
 fn too_little_motion_is_said_to_be_so() {
-    let rig = Rig { device: PADDLE, sensing: SENSING };
+    let rig = rig(PADDLE, SENSING);
     let record = rig.measure(&sines(PADDLE, LOW_TO_HIGH, 1e-5)).unwrap();
     let error =
         identify(&record, &Correction::of_encoder(rig.sensing.counts_per_turn)).unwrap_err();
@@ -180,7 +190,7 @@ fn a_sweep_is_called_one() {
 
 #[test]
 fn a_tone_that_is_left_out_is_named_with_the_reason() {
-    let rig = Rig { device: PADDLE, sensing: SENSING };
+    let rig = rig(PADDLE, SENSING);
     let mut tones = sines(PADDLE, LOW_TO_HIGH, 0.02);
     tones[2].duration = 1.0;
     tones[7].amplitude *= 5e-3;
@@ -191,3 +201,5 @@ fn a_tone_that_is_left_out_is_named_with_the_reason() {
     assert_eq!(said[0], "the tone of 2 Hz is left out: 2 of its periods are fewer than 4");
     assert!(said[1].starts_with("the tone of 64 Hz") && said[1].contains("counts"), "{said:?}");
 }
+
+mod latency;

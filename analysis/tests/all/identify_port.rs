@@ -62,6 +62,7 @@ impl Board {
             counts_per_turn: TRANSDUCERS.counts_per_turn,
             torque_noise: 0.002,
             skew: 0.0,
+            output_delay: 0.0,
             seed: 1,
         };
         let plant = Plant::rigid(damper_wall::SCENE.device);

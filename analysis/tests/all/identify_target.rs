@@ -26,6 +26,13 @@ fn assert_near(found: &Value, path: &str, wanted: f64, part: f64) {
     assert!((value - wanted).abs() < part * wanted, "{path} {value}");
 }
 
+/// The measured device without its amplifier, of which the passivity is that of the machine.
+fn without_lag(table: &str) {
+    let text = std::fs::read_to_string(table).unwrap();
+    let lines = text.lines().filter(|line| !line.starts_with("actuator_lag = ["));
+    std::fs::write(table, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+}
+
 #[test]
 fn the_board_measures_damping_within_two_percent_and_plays_the_hosts_codes() {
     let folder = tempfile::tempdir().unwrap();
@@ -46,6 +53,7 @@ fn the_board_measures_damping_within_two_percent_and_plays_the_hosts_codes() {
     // The record can be read again, drawn, and its table certified with.
     let again = answer(&["identify", &record, "--counts-per-rev", "61440", "--settle", "0"]);
     assert_near(&again, "/damping/value", number(&found, "/damping/value"), 1e-9);
+    without_lag(&table);
     assert_near(&answer(&["device", &table]), "/delta", DAMPING, 0.02);
     let drawn =
         haptic(&["chart", "identify", &record, "--counts-per-rev", "61440", "-o", &picture]);
@@ -86,6 +94,48 @@ fn ten_microseconds_of_skew_are_reported_as_the_bias_that_they_are() {
 }
 
 #[test]
+fn lag_and_delay_of_the_output_go_into_the_table() {
+    let (lag, delay) = (1.2e-4, 2e-4);
+    let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    let device =
+        format!("[device]\ninertia = {INERTIA}\ndamping = {DAMPING}\nactuator_lag = {lag}\n");
+    std::io::Write::write_all(&mut file, device.as_bytes()).unwrap();
+    let table = tempfile::NamedTempFile::new().unwrap();
+    let into = table.path().to_str().unwrap();
+    let late = ["identify", file.path().to_str().unwrap(), "--target", "host", "-o", into];
+    let found = answer(&[&late[..], &["--output-delay", "2e-4"]].concat());
+    // One record in twenty is outside; none is far.
+    let holds = |path: &str, truth: f64| {
+        let end = |end: &str| number(&found, &format!("{path}/{end}"));
+        let more = 0.5 * (end("hi") - end("lo"));
+        assert!(end("lo") - more <= truth && truth <= end("hi") + more, "{path} {found}");
+        assert!(end("hi") - end("lo") < 4e-5 + 0.02 * truth, "{path} {found}");
+    };
+    holds("/damping", DAMPING);
+    holds("/inertia", INERTIA);
+    holds("/latency/actuator_lag", lag);
+    holds("/latency/output_delay", delay);
+    holds("/skew", lag + delay);
+    assert_eq!((&found["told_apart"], &found["no_latency"]), (&true.into(), &Value::Null));
+    assert_eq!(found["taken_out"]["hold"], 5e-4);
+    let table = std::fs::read_to_string(table.path()).unwrap();
+    let range = |key: &str| {
+        let lists = table.lines().filter_map(|line| line.split_once(&format!("{key} = [")));
+        let list = lists.filter_map(|(_, list)| list.split_once(']')).next().unwrap().0.to_owned();
+        let ends: Vec<f64> = list.split(", ").map(|end| end.parse().unwrap()).collect();
+        (ends[0], ends[1])
+    };
+    for (key, path) in
+        [("actuator_lag", "/latency/actuator_lag"), ("output_delay", "/latency/output_delay")]
+    {
+        let (lo, hi) = range(key);
+        let end = |end: &str| number(&found, &format!("{path}/{end}"));
+        assert!(lo <= end("lo") && end("lo") <= 1.002 * lo, "{table}");
+        assert!(hi >= end("hi") && end("hi") >= 0.998 * hi, "{table}");
+    }
+}
+
+#[test]
 fn a_device_that_is_not_rigid_is_said_to_be_none() {
     let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
     let chain = "[device]\n[[device.mass]]\ninertia = 1.1e-5\ndamping = 0.02\n\
@@ -113,6 +163,8 @@ fn options_of_a_simulated_measurement_need_a_target() {
         &["identify", "r.csv"],
         &["identify", "r.csv", "--counts-per-rev", "4096", "--skew", "1e-5"],
         &["identify", "--target", "host", "--skew", "0.001"],
+        &["identify", "--target", "host", "--output-delay", "0.009"],
+        &["identify", "--target", "host", "--longest-lag", "0"],
         &["identify", "--target", "moon"],
     ] {
         assert_eq!(haptic(arguments).status.code(), Some(2), "{arguments:?}");

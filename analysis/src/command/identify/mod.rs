@@ -1,4 +1,5 @@
-//! `haptic identify`: a device's inertia, damping and passivity from a measurement.
+//! `haptic identify`: a device's inertia, damping and passivity, and the lag and the delay of its torque,
+//! from a measurement.
 
 mod port;
 pub mod target;
@@ -12,7 +13,7 @@ use serde::Serialize;
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, not_negative, positive};
-use crate::identify::{self, Correction, Disk, Estimate, Identification, Record};
+use crate::identify::{self, Correction, Disk, Estimate, Identification, Latency, Record};
 use crate::link::Address;
 use crate::quantity::significant;
 use target::Origin;
@@ -42,7 +43,8 @@ pub struct Arguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
-    /// Write the table `device` of a scene file to this file
+    /// Write the table `device` of a scene file to this file, and the delay for its table `servo` as a
+    /// comment
     #[arg(short, long, value_name = "FILE.toml")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -65,6 +67,10 @@ pub struct Reading {
     /// --target: 0, because the record starts after the settling
     #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true)]
     pub settle: Option<f64>,
+    /// Longest time constant that the amplifier may have, in s, as its bandwidth in the data sheet says:
+    /// 1/(2 pi f). The shorter, the narrower are the intervals of lag and delay; default: half a period
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
+    pub longest_lag: Option<f64>,
 }
 
 impl Reading {
@@ -74,6 +80,7 @@ impl Reading {
             torque_delay: self.torque_delay,
             count_delay: self.count_delay,
             settle: self.settle.unwrap_or(settle),
+            longest_lag: self.longest_lag,
             ..Correction::of_encoder(counts_per_turn)
         }
     }
@@ -99,13 +106,51 @@ struct Point {
     deviation: f64,
 }
 
+/// What was taken out of the responses before the fit, in s.
+#[derive(Debug, Serialize)]
+struct TakenOut {
+    /// Half a period, which a torque that is held is late by.
+    hold: f64,
+    /// As declared: from the time of a row to its torque.
+    torque_delay: f64,
+    /// As declared: age of a row's counts at its time.
+    count_delay: f64,
+}
+
+impl TakenOut {
+    fn of(record: &Record, correction: &Correction) -> Self {
+        let &Correction { torque_delay, count_delay, .. } = correction;
+        Self { hold: 0.5 * record.period, torque_delay, count_delay }
+    }
+
+    fn row(&self) -> String {
+        let micro = |time: f64| significant(1e6 * time, 4);
+        format!(
+            "{} us, half of the period that a torque is held for; {} us and {} us, declared for torque \
+             and counts. The torque of a row counts from the row's time, at which the board's DAC is \
+             latched, so the period from computing a code to its latch is in none of the numbers",
+            micro(self.hold),
+            micro(self.torque_delay),
+            micro(self.count_delay)
+        )
+    }
+}
+
 /// An identification as programs read it.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     inertia: Estimate,
     damping: Estimate,
+    /// Mean delay of the torque's step response in s: the sum of lag and delay.
     skew: Estimate,
     skew_significant: bool,
+    /// Lag and delay; `None` where they have no intervals that are true.
+    latency: Option<Latency>,
+    /// Whether the responses exclude a lag alone or a delay alone.
+    told_apart: bool,
+    /// Why there is no `latency`.
+    no_latency: Option<String>,
+    taken_out: TakenOut,
     bias: f64,
     disk: Disk,
     misfit: f64,
@@ -129,8 +174,9 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         let unwritable = |source| CommandError::Unwritable { path: path.clone(), source };
         std::fs::write(path, device_table(&found)).map_err(unwritable)?;
     }
-    let report = report(&found, &notes, origin.as_ref());
-    arguments.answer.print(&report, |_| text(&found, &notes, origin.as_ref()))?;
+    let taken_out = TakenOut::of(&record, &correction);
+    let report = report(&found, taken_out, &notes, origin.as_ref());
+    arguments.answer.print(&report, |report| text(&found, report, &notes, origin.as_ref()))?;
     let differs = origin.and_then(|origin| origin.difference);
     if let Some(difference) = differs {
         eprintln!("{difference}");
@@ -179,6 +225,7 @@ fn load(file: &Path) -> Result<Record, CommandError> {
 
 fn report<'a>(
     found: &Identification,
+    taken_out: TakenOut,
     notes: &'a [String],
     measured: Option<&'a Origin>,
 ) -> Report<'a> {
@@ -193,8 +240,12 @@ fn report<'a>(
     Report {
         inertia: found.inertia,
         damping: found.damping,
-        skew: found.skew,
-        skew_significant: found.skew.is_significant(),
+        skew: found.mean_delay,
+        skew_significant: found.mean_delay.is_significant(),
+        latency: found.latency.ok(),
+        told_apart: found.latency.is_ok_and(|latency| latency.is_told_apart()),
+        no_latency: found.latency.err().map(|reason| reason.to_string()),
+        taken_out,
         bias: found.bias,
         disk: found.disk,
         misfit: found.misfit,
@@ -210,15 +261,18 @@ fn report<'a>(
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
-    if found.skew.is_significant() {
+    if found.mean_delay.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, the damping would be {} N \
-             m s/rad at {} Hz; inertia and damping are corrected for it. If the amplifier lags, \
-             and not the record, account for the lag as delay",
-            significant(1e6 * found.skew.value, 3),
+             m s/rad at {} Hz; inertia and damping are corrected for it",
+            significant(1e6 * found.mean_delay.value, 3),
             significant(found.disk.delta, 3),
             significant(found.disk.omega / std::f64::consts::TAU, 3),
         ));
+        notes.push(match &found.latency {
+            Ok(latency) => split(found, latency),
+            Err(reason) => format!("no interval of lag and delay: {reason}"),
+        });
     }
     if !found.is_rigid() {
         notes.push(format!(
@@ -241,6 +295,54 @@ fn notes(found: &Identification) -> Vec<String> {
     notes
 }
 
+/// What the responses tell of lag and delay, each for itself.
+fn split(found: &Identification, latency: &Latency) -> String {
+    let micro = |[lo, hi]: [f64; 2]| {
+        format!("{} to {} us", significant(1e6 * lo, 3), significant(1e6 * hi, 3))
+    };
+    let (lag, delay) = (micro(latency.lag_range()), micro(latency.delay_range()));
+    let sum = micro([found.mean_delay.lo.max(0.0), found.mean_delay.hi]);
+    let skew = "A skew of the record that was not declared counts as delay";
+    match (latency.actuator_lag.lo > 0.0, latency.output_delay.lo > 0.0) {
+        (false, false) => format!(
+            "lag and delay cannot be told apart: a lag alone explains the responses, and so does a delay \
+             alone. Their sum is {sum}. A scene is safe with both ranges, a lag of {lag} and a delay of \
+             {delay}, because the truth is in them; faster tones, a larger torque or --longest-lag make \
+             them narrower. {skew}"
+        ),
+        (false, true) => format!(
+            "there may be no lag, but at most {lag}, in a sum of {sum}; the delay is {delay}. {skew}"
+        ),
+        (true, false) => format!(
+            "there may be no delay, but at most {delay}, in a sum of {sum}; the lag is {lag}. {skew}"
+        ),
+        (true, true) => format!("the lag is {lag}, the delay {delay}, their sum {sum}. {skew}"),
+    }
+}
+
+/// The ranges of lag and delay for a scene file: that of the lag stands in the table of the device, that
+/// of the delay belongs into the table of the servo, which a file of a device does not have.
+fn latency_lines(found: &Identification) -> String {
+    let latency = match &found.latency {
+        Ok(latency) => latency,
+        Err(reason) => return format!("# actuator_lag, output_delay: none; {reason}\n"),
+    };
+    // Outwards, so that no end is rounded into the interval.
+    let range = |[lo, hi]: [f64; 2]| {
+        let outward = |value: f64, part: f64| significant(value * (1.0 + part), 4);
+        format!("[{}, {}]", outward(lo, -5e-4), outward(hi, 5e-4))
+    };
+    let sum = &found.mean_delay;
+    format!(
+        "actuator_lag = {} # s, at 95 %\n\n# The scene's servo; lag and delay together are {} to {} s at 95 %:\n\
+         # [servo]\n# output_delay = {} # s, at 95 %\n",
+        range(latency.lag_range()),
+        significant(sum.lo, 4),
+        significant(sum.hi, 4),
+        range(latency.delay_range()),
+    )
+}
+
 /// The table for a scene file.
 pub fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
@@ -252,9 +354,10 @@ pub fn device_table(found: &Identification) -> String {
         ),
         None => "# passivity: none; do not certify with this device\n".to_owned(),
     };
+    let latency = latency_lines(found);
     format!(
         "[device]\ninertia = {} # kg m^2, {} at 95 %\ndamping = {} # N m s/rad, {} at 95 %\n\
-         {passivity}",
+         {passivity}{latency}",
         significant(found.inertia.value, 5),
         range(&found.inertia),
         significant(found.damping.value.max(0.0), 5),
@@ -262,7 +365,12 @@ pub fn device_table(found: &Identification) -> String {
     )
 }
 
-fn text(found: &Identification, notes: &[String], origin: Option<&Origin>) -> String {
+fn text(
+    found: &Identification,
+    report: &Report<'_>,
+    notes: &[String],
+    origin: Option<&Origin>,
+) -> String {
     let estimate = |e: &Estimate, unit: &str| {
         let reach = significant(0.5 * (e.hi - e.lo), 2);
         format!("{} +- {reach} {unit}", significant(e.value, 5))
@@ -280,10 +388,16 @@ fn text(found: &Identification, notes: &[String], origin: Option<&Origin>) -> St
     let mut rows = vec![
         ("damping", estimate(&found.damping, "N m s/rad")),
         ("inertia", estimate(&found.inertia, "kg m^2")),
-        ("skew", estimate(&found.skew, "s")),
+        ("lag + delay", estimate(&found.mean_delay, "s")),
         ("disk", disk),
         ("residuals", format!("{} times the noise", significant(found.misfit.sqrt(), 2))),
     ];
+    if let Ok(Latency { actuator_lag, output_delay }) = &found.latency {
+        let range =
+            |e: &Estimate| format!("{} to {} s", significant(e.lo, 3), significant(e.hi, 3));
+        rows.extend([("lag", range(actuator_lag)), ("delay", range(output_delay))]);
+    }
+    rows.push(("taken out", report.taken_out.row()));
     rows.extend(origin.map(Origin::row));
     rows.extend(notes.iter().map(|note| ("note", note.clone())));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();

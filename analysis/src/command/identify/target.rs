@@ -46,6 +46,11 @@ pub struct Simulated {
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = skew,
           allow_negative_numbers = true, requires = "target")]
     pub skew: f64,
+    /// Time by which the simulated torques are later than their codes, in s; the file's
+    /// `device.actuator_lag` is the simulated amplifier's lag
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = output_delay,
+          allow_negative_numbers = true, requires = "target")]
+    pub output_delay: f64,
     /// Seed of the noise
     #[arg(long, value_name = "N", default_value_t = 1, requires = "target")]
     pub seed: u64,
@@ -89,8 +94,9 @@ pub fn measure(
         Some(file) => Plant::of(&file::load_device(&file.to_string_lossy())?.chain),
         None => Plant::rigid(damper_wall::SCENE.device),
     };
-    let &Simulated { torque_noise, skew, seed, .. } = arguments;
-    let sensing = Sensing { period: SWEEP.period(), counts_per_turn, torque_noise, skew, seed };
+    let &Simulated { torque_noise, skew, output_delay, seed, .. } = arguments;
+    let period = SWEEP.period();
+    let sensing = Sensing { period, counts_per_turn, torque_noise, skew, output_delay, seed };
     let elf = match target {
         Target::Host => None,
         Target::Qemu => Some(build()?),
@@ -122,6 +128,12 @@ fn build() -> Result<PathBuf, CommandError> {
     let elf = toolchain.build_scene("identify", NumberFormat::F32)?;
     spinner.finish_and_clear();
     Ok(elf)
+}
+
+fn output_delay(text: &str) -> Result<f64, String> {
+    let longest = firmware::latency::LONGEST_DELAY * SWEEP.period();
+    let value = not_negative(text)?;
+    if value <= longest { Ok(value) } else { Err(format!("it must be at most {longest} s")) }
 }
 
 fn skew(text: &str) -> Result<f64, String> {

@@ -1,0 +1,201 @@
+//! Damping, inertia and delay of the device that is nearest to some responses, for a lag that is given.
+
+use nalgebra::{Complex, Matrix3, Vector3};
+
+use super::model::Model;
+use super::response::Response;
+
+/// Most Gauss-Newton steps. Near the solution each gains several digits, the images of the torque
+/// included, which are of the model before the step.
+const ITERATIONS: usize = 30;
+
+/// A step that is so small, in the units of the system, is the last.
+const SMALL: f64 = 1e-11;
+
+/// Smallest relative deviation that is believed: a simulation without noise has none.
+const FLOOR: f64 = 1e-9;
+
+/// Most halvings of a step that would raise the squares.
+const HALVINGS: i32 = 6;
+
+/// Delays in periods that a search begins between: the phase of the fastest response is periodic.
+const FIRST: f64 = -2.0;
+/// The last of them.
+const LAST: f64 = 10.0;
+/// The search's step as phase in rad of the fastest response.
+const SEARCH: f64 = 0.5;
+
+const DAMPING: usize = 0;
+const INERTIA: usize = 1;
+const DELAY: usize = 2;
+
+/// Responses as they were measured, with the images of the torque held for so long a period.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a> {
+    /// The responses.
+    pub responses: &'a [Response],
+    /// Sampling period in s.
+    pub period: f64,
+    /// Delays in s that were taken out of the responses, which have theirs of the images still.
+    pub declared: f64,
+}
+
+/// The nearest device.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit {
+    /// The device.
+    pub model: Model,
+    /// Sum of the squared residuals in squared deviations.
+    pub squares: f64,
+    /// Deviations of damping, inertia and delay for this lag.
+    pub deviations: [f64; 3],
+    /// Whether the delay was fitted, and not given.
+    pub is_delay_free: bool,
+}
+
+/// What is known of the delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Delay {
+    /// Where to begin, in s.
+    From(f64),
+    /// All of it, in s.
+    Fixed(f64),
+}
+
+impl Measured<'_> {
+    /// What the images of the torque make of a response of the model at an angular frequency in rad/s.
+    pub fn images(&self, model: &Model, omega: f64) -> Complex<f64> {
+        let delay = model.delay + self.declared;
+        Model { delay, ..*model }.images(omega, self.period)
+    }
+
+    /// Angular frequency in rad/s of the fastest response.
+    pub fn fastest(&self) -> f64 {
+        self.responses.iter().map(|r| r.omega).fold(0.0, f64::max)
+    }
+
+    /// The best fit for a lag in s. `None` where the responses do not determine one.
+    pub fn fit(&self, lag: f64, delay: Delay) -> Option<Fit> {
+        let (begin, is_free) = match delay {
+            Delay::From(begin) => (begin, true),
+            Delay::Fixed(delay) => (delay, false),
+        };
+        // For a given delay the problem is linear; a delay of a device that has no inertia yet would
+        // do nothing: so in turn.
+        let nothing = Model { damping: 0.0, inertia: 0.0, delay: begin, lag };
+        let mut model = moved(nothing, System::at(self, &nothing, false, false).step()?);
+        let mut system = System::at(self, &model, is_free, true);
+        for _ in 0..ITERATIONS {
+            let Some((step, next, there)) = self.descent(&model, &system, is_free) else { break };
+            (model, system) = (next, there);
+            if step.component_div(&system.units).amax() < SMALL {
+                break;
+            }
+        }
+        let deviations = system.deviations()?;
+        let is_usable = system.squares.is_finite() && deviations.iter().all(|d| d.is_finite());
+        let of_delay = if is_free { deviations[DELAY] } else { 0.0 };
+        let deviations = [deviations[DAMPING], deviations[INERTIA], of_delay];
+        let squares = system.squares;
+        is_usable.then_some(Fit { model, squares, deviations, is_delay_free: is_free })
+    }
+
+    /// A step that does not raise the squares, and where it leads: responses that no device explains send
+    /// a whole step anywhere.
+    fn descent(
+        &self,
+        model: &Model,
+        system: &System,
+        is_free: bool,
+    ) -> Option<(Vector3<f64>, Model, System)> {
+        let whole = system.step()?;
+        (0..HALVINGS).find_map(|halvings| {
+            let step = whole * 0.5f64.powi(halvings);
+            let next = moved(*model, step);
+            let there = System::at(self, &next, is_free, true);
+            (there.squares <= system.squares).then_some((step, next, there))
+        })
+    }
+
+    /// Where to begin with the delay in s: at the best of several, each with the device that fits to it.
+    pub fn rough_delay(&self) -> Option<f64> {
+        let step = SEARCH / self.fastest();
+        let last = ((LAST - FIRST) * self.period / step).ceil() as usize;
+        let candidates = (0..=last).map(|i| FIRST * self.period + i as f64 * step);
+        let squares = |delay: f64| {
+            let nothing = Model { damping: 0.0, inertia: 0.0, delay, lag: 0.0 };
+            let model = moved(nothing, System::at(self, &nothing, false, false).step()?);
+            // A device that is late by half a turn has all signs changed.
+            let squares = System::at(self, &model, false, false).squares;
+            (model.inertia > 0.0).then_some((delay, squares))
+        };
+        let best = candidates.filter_map(squares).min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map(|(delay, _)| delay)
+    }
+}
+
+fn moved(model: Model, step: Vector3<f64>) -> Model {
+    Model {
+        damping: model.damping + step[DAMPING],
+        inertia: model.inertia + step[INERTIA],
+        delay: model.delay + step[DELAY],
+        ..model
+    }
+}
+
+/// The normal equations around a model, in units in which all three unknowns are near 1.
+struct System {
+    matrix: Matrix3<f64>,
+    right: Vector3<f64>,
+    units: Vector3<f64>,
+    squares: f64,
+}
+
+impl System {
+    /// `with_images` takes the images of the model out of the responses, which those of no device are
+    /// not.
+    fn at(measured: &Measured<'_>, model: &Model, with_delay: bool, with_images: bool) -> Self {
+        let fastest = measured.fastest();
+        let largest = measured.responses.iter().map(|r| r.impedance().norm()).fold(0.0, f64::max);
+        let units = Vector3::new(largest, largest / fastest, 1.0 / fastest);
+        let mut system =
+            Self { matrix: Matrix3::zeros(), right: Vector3::zeros(), units, squares: 0.0 };
+        for response in measured.responses {
+            let images = match with_images {
+                true => measured.images(model, response.omega),
+                false => Complex::from(1.0),
+            };
+            system.add(response, images, model, with_delay);
+        }
+        if !with_delay {
+            // A fixed unknown: its equation keeps it unchanged.
+            system.matrix[(DELAY, DELAY)] = 1.0;
+        }
+        system
+    }
+
+    fn add(&mut self, response: &Response, images: Complex<f64>, model: &Model, with_delay: bool) {
+        let (omega, measured) = (response.omega, response.impedance() * images);
+        let (fitted, output) = (model.impedance(omega), model.output(omega));
+        let j_omega = Complex::new(0.0, omega);
+        let delay = if with_delay { j_omega * fitted } else { Complex::from(0.0) };
+        let slopes = [output, j_omega * output, delay];
+        let weight = 1.0 / response.deviation.max(FLOOR * measured.norm());
+        let residual = (measured - fitted) * weight;
+        self.squares += residual.norm_sqr();
+        for part in [|z: Complex<f64>| z.re, |z: Complex<f64>| z.im] {
+            let row = Vector3::from_fn(|i, _| part(slopes[i]) * weight * self.units[i]);
+            self.matrix += row * row.transpose();
+            self.right += row * part(residual);
+        }
+    }
+
+    fn step(&self) -> Option<Vector3<f64>> {
+        Some(self.matrix.cholesky()?.solve(&self.right).component_mul(&self.units))
+    }
+
+    fn deviations(&self) -> Option<Vector3<f64>> {
+        let covariance = self.matrix.cholesky()?.inverse();
+        Some(covariance.diagonal().map(f64::sqrt).component_mul(&self.units))
+    }
+}
