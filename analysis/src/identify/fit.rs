@@ -3,7 +3,7 @@
 
 use super::error::IdentifyError;
 use super::latency::{Latency, NoLatency};
-use super::least_squares::Measured;
+use super::least_squares::{Delay, Measured};
 use super::model::Model;
 use super::profile::{Profile, student};
 use super::response::{Correction, Response};
@@ -117,8 +117,11 @@ pub fn identify(
         return Err(too_few(left_out));
     };
     let model = profile.best.model;
-    let latency = Latency::of(&profile, measured.fastest(), profile.misfit <= RIGID);
-    let responses = without_images(&measured, &model);
+    let is_rigid = profile.misfit <= RIGID;
+    let latency = Latency::of(&profile, measured.fastest(), is_rigid);
+    // Lag and delay of a fit that explains nothing would add images which are not there.
+    let plain = if is_rigid { None } else { measured.fit(0.0, Delay::Fixed(0.0)) };
+    let responses = without_images(&measured, &plain.map_or(model, |fit| fit.model));
     let disk = disk(&responses);
     Ok(Identification {
         inertia: profile.inertia(),

@@ -261,7 +261,8 @@ fn report<'a>(
 /// Warnings about the identified numbers.
 fn notes(found: &Identification) -> Vec<String> {
     let mut notes: Vec<String> = found.left_out.iter().map(ToString::to_string).collect();
-    if found.mean_delay.is_significant() {
+    // Of what no rigid device explains, the fitted times mean nothing.
+    if found.is_rigid() && found.mean_delay.is_significant() {
         notes.push(format!(
             "the counts are {} us late against the torque: uncorrected, the damping would be {} N \
              m s/rad at {} Hz; inertia and damping are corrected for it",
