@@ -30,6 +30,22 @@ pub enum Coupling {
     Matched,
 }
 
+impl Coupling {
+    /// Compliance in rad/(N m) for the torque of the same tick, for a law that has this one of its
+    /// [own](crate::environment::Law::matched_compliance); `None`: rigid.
+    ///
+    /// # Errors
+    /// Where the law remembers torques for a coupling that needs none, or none for one that does.
+    pub const fn compliance(self, matched: Option<f64>) -> Result<Option<f64>, BuildError> {
+        match (self, matched) {
+            (Self::Rigid, None) => Ok(None),
+            (Self::Spring { stiffness }, None) => Ok(Some(1.0 / stiffness)),
+            (Self::Matched, Some(compliance)) => Ok(Some(compliance)),
+            _ => Err(BuildError::CouplingMemory),
+        }
+    }
+}
+
 /// What an environment offers to the coupling in one tick.
 #[derive(Clone, Copy, Debug)]
 pub enum Response<N> {

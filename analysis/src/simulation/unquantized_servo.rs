@@ -4,7 +4,6 @@
 
 use firmware::coupling::Solver;
 use firmware::environment::{DataLaw, Discretize, Law};
-use firmware::number::Format;
 use firmware::scene::Scene;
 use firmware::servo::BuildError;
 use firmware::torque::{LimitReason, Limiter};
@@ -26,7 +25,8 @@ impl UnquantizedServo {
     pub fn new(scene: &Scene) -> Result<Self, BuildError> {
         let context = scene.context();
         let law = Discretize::<f64>::law(&scene.environment, &context)?;
-        let solver = Solver::new(context.compliance(Format::F64)?, law.slopes())?;
+        let compliance = scene.coupling.compliance(law.matched_compliance())?;
+        let solver = Solver::new(compliance, law.slopes())?;
         // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
         Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })

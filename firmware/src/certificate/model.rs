@@ -6,7 +6,9 @@
 //! coefficients are the scene's, as doubles.
 
 use super::validity::first_invalid;
-use crate::environment::{Environment, EnvironmentModel, MAX_DEGREE, Rational, StatedModel, Wall};
+use crate::environment::{
+    Environment, EnvironmentModel, MAX_DEGREE, Memory, Rational, StatedModel, Wall,
+};
 use crate::latency::Latency;
 use crate::matched::{MatchedCoupling, limit_behind_spring};
 use crate::number::{Format, Rounding};
@@ -42,6 +44,11 @@ pub(super) struct LoopIntervals {
     pub is_matched: bool,
     /// Delays and lags; `None`: none at all, and a coupling without memory.
     pub latency: Option<Lagging>,
+}
+
+/// Whether torques lag, or the coupling has memory.
+pub(super) const fn has_latency(scene: &Scene) -> bool {
+    !scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched)
 }
 
 /// What a scene with latency needs besides.
@@ -100,7 +107,8 @@ impl Missed {
 
 impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
-        let mut out = Self::of_late(scene, scene.environment.is_late(), format);
+        let is_late = scene.environment.is_late();
+        let mut out = Self::of_late::<Environment>(scene, is_late, format);
         if let (Some(stiffness), None) = (out.coupling, &out.latency) {
             let written = Interval::ONE.div(stiffness);
             out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
@@ -110,7 +118,14 @@ impl LoopIntervals {
 
     /// The same where it is known whether the environment [is late](Environment::is_late), for the paper's
     /// rule, which does not ask whether the coupling is the standard one.
-    pub const fn of_late(scene: &Scene, is_late: bool, format: Format) -> Self {
+    ///
+    /// Only a type that [remembers](EnvironmentModel::MEMORY) torques for its coupling has latency on a
+    /// board: the program of any other omits the code.
+    pub const fn of_late<E: EnvironmentModel>(
+        scene: &Scene,
+        is_late: bool,
+        format: Format,
+    ) -> Self {
         let period = Interval::decimal(scene.timing.period);
         let delta = Interval::decimal(match scene.device.passivity {
             Some(passivity) => passivity,
@@ -159,7 +174,7 @@ impl LoopIntervals {
             is_matched: matches!(scene.coupling, Coupling::Matched),
             latency: None,
         };
-        if !scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched) {
+        if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
             out.add_latency(scene);
         }
         out

@@ -248,8 +248,8 @@ impl<N: Number> Law<N> for DataLaw<N> {
         self.law.slopes()
     }
 
-    fn has_memory(&self) -> bool {
-        self.memory.is_some()
+    fn matched_compliance(&self) -> Option<f64> {
+        self.memory.as_ref().map(CouplingMemory::compliance)
     }
 
     #[inline]

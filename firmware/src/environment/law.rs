@@ -21,9 +21,10 @@ pub trait Law<N: Number> {
     fn lasting_deflection(&self) -> N {
         N::ZERO
     }
-    /// Whether it remembers torques for the coupling.
-    fn has_memory(&self) -> bool {
-        false
+    /// Compliance in rad/(N m) for the torque of the same tick of a coupling whose torques it remembers;
+    /// `None` where it remembers none.
+    fn matched_compliance(&self) -> Option<f64> {
+        None
     }
     /// Ends the tick for the coupling, with this torque in N m.
     #[inline(always)]
@@ -51,18 +52,6 @@ impl LawContext {
     pub(crate) fn matched(&self, format: Format) -> Result<MatchedCoupling, BuildError> {
         MatchedCoupling::of(self.period, self.passivity, &self.latency, format)
             .ok_or(BuildError::NoMatchedCoupling)
-    }
-
-    /// Compliance of the coupling in rad/(N m) for the torque of the same tick; `None`: rigid.
-    ///
-    /// # Errors
-    /// Where there is no such coupling.
-    pub fn compliance(&self, format: Format) -> Result<Option<f64>, BuildError> {
-        Ok(match self.coupling {
-            Coupling::Rigid => None,
-            Coupling::Spring { stiffness } => Some(1.0 / stiffness),
-            Coupling::Matched => Some(self.matched(format)?.compliance),
-        })
     }
 }
 

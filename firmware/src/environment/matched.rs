@@ -34,6 +34,7 @@ pub struct CouplingMemory<N: Number, D, const LAGS: usize> {
     trails: [Fading<N>; LAGS],
     torques: D,
     deflection: N,
+    compliance: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -74,7 +75,13 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
             trails,
             torques,
             deflection: N::ZERO,
+            compliance: coupling.compliance,
         })
+    }
+
+    /// Compliance of the coupling in rad/(N m) for the torque of the same tick.
+    pub(crate) fn compliance(&self) -> f64 {
+        self.compliance
     }
 
     /// Deflection in rad in this tick of the torques of earlier ticks.
@@ -141,8 +148,8 @@ impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
         self.law.slopes()
     }
 
-    fn has_memory(&self) -> bool {
-        true
+    fn matched_compliance(&self) -> Option<f64> {
+        Some(self.memory.compliance())
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
 use crate::certificate::{Certified, certify_scene};
-use crate::coupling::{Coupling, Response, Solver};
+use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
@@ -91,14 +91,12 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
         let law = scene.environment.law(&scene.setting()?)?;
-        if law.has_memory() != matches!(scene.coupling, Coupling::Matched) {
-            return Err(BuildError::CouplingMemory);
-        }
+        let compliance = scene.coupling.compliance(law.matched_compliance())?;
         Ok(Self {
             position: Position::new(transducers.counter),
             angle_scale: N::angle_scale(radians_per_count)
                 .map_err(|reason| BuildError::Unrepresentable { name: "encoder step", reason })?,
-            solver: Solver::new(scene.context().compliance(N::FORMAT)?, law.slopes())?,
+            solver: Solver::new(compliance, law.slopes())?,
             law,
             limiter: transducers.limiter(scene.torque_limit)?,
             code_scale: N::code_scale(codes_per_torque)

@@ -8,10 +8,11 @@ use core::marker::PhantomData;
 use super::Certified;
 use super::assessment::Assessment;
 use super::margin::Limited;
-use super::model::{LoopIntervals, Missed, largest_solved, nonlinear_bound};
+use super::model::{LoopIntervals, Missed, has_latency, largest_solved, nonlinear_bound};
 use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;
-use crate::environment::{Environment, EnvironmentModel};
+use crate::coupling::Coupling;
+use crate::environment::{Environment, EnvironmentModel, Memory};
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE, longest_phase};
 use crate::passivity::interval::Interval;
@@ -118,6 +119,8 @@ pub enum TimingError {
         /// The longest in s, of the scene's period.
         longest: f64,
     },
+    /// The torque lags, and the coupling does not absorb that.
+    Unmatched,
     /// A board reads counts later than the scene allows for.
     Jitter {
         /// The scene's output jitter in s.
@@ -169,6 +172,10 @@ impl TimingError {
                 t.push_number(*longest);
                 t.push(" s");
             }
+            Self::Unmatched => t.push(
+                "where torques lag, a servo renders only what is behind the matched coupling: give the \
+                 scene that, and its environment's type `Matched`",
+            ),
             Self::Jitter { jitter } => {
                 t.push("a board reads a count up to ");
                 t.push_number(READ_WITHIN);
@@ -279,7 +286,11 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
         return Err(Step::Certificate);
     }
-    let n = &LoopIntervals::of_late(scene, is_late, format);
+    let is_matched = matches!(scene.coupling, Coupling::Matched);
+    if has_latency(scene) && (!is_matched || matches!(E::MEMORY, Memory::None)) {
+        return Err(Step::Certificate);
+    }
+    let n = &LoopIntervals::of_late::<E>(scene, is_late, format);
     let solved = match M::TIMING {
         OutputTiming::Latched if is_late => Some(Interval::ONE),
         OutputTiming::Latched => None,
@@ -313,6 +324,9 @@ pub(super) const fn agree(
     if !is_at_its_phase(timing, scene) {
         let board = board_delay(timing);
         return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
+    }
+    if has_latency(scene) && !matches!(scene.coupling, Coupling::Matched) {
+        return Err(TimingError::Unmatched);
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
     let jitter = scene.latency.output_jitter;
