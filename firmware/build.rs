@@ -20,15 +20,24 @@ fn main() {
     println!("cargo:rerun-if-changed={}", root.join("memory.x").display());
     // Arguments of this package's own programs, so that a program that depends on the library
     // finds its own map and not this one.
-    let has = |feature| env::var_os(feature).is_some();
-    let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into(), "-Tlink.x".into()];
-    if ["LOG", "STM32", "EMULATED"].iter().any(|name| has(format!("CARGO_FEATURE_{name}"))) {
+    let any = |features: &[&str]| {
+        features.iter().any(|name| env::var_os(format!("CARGO_FEATURE_{name}")).is_some())
+    };
+    let mut arguments = vec![format!("-L{}", root.display()), "--nmagic".into()];
+    if any(&["LOG", "EMULATED"]) {
+        // Before the script that would take its sections.
+        let measured = root.join("firmware/src/board/qemu/measured.x");
+        println!("cargo:rerun-if-changed={}", measured.display());
+        arguments.push(format!("-T{}", measured.display()));
+    }
+    arguments.push("-Tlink.x".into());
+    if any(&["LOG", "STM32", "EMULATED"]) {
         arguments.push("-Tdefmt.x".into());
     }
     for argument in &arguments {
         println!("cargo:rustc-link-arg-bins={argument}");
     }
-    if has("CARGO_FEATURE_ON_TARGET".into()) {
+    if any(&["ON_TARGET"]) {
         for argument in &arguments {
             println!("cargo:rustc-link-arg-tests={argument}");
         }

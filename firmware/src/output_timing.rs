@@ -51,9 +51,9 @@ impl OutputTiming {
     }
 }
 
-/// Shortest phase in s. A count is read up to [`READ_WITHIN`] late, and from there to the code it is
-/// about a hundred instructions: on the slowest board, whose flash memory has five wait states, and with
-/// none of them in its cache, that is 3.5 microseconds.
+/// Shortest phase in s. A count is read up to [`READ_WITHIN`] late, and from there to the code it is up to
+/// 150 instructions, of three cycles each on the slowest board, where they come from a flash memory with
+/// five wait states: less than 4 microseconds together. Whether a tick makes it shows in its slack.
 pub const SHORTEST_PHASE: f64 = 5e-6;
 
 /// Longest phase in s in a period: the code of the next tick, which is not written before the next period

@@ -15,7 +15,7 @@ pub use paddle::TRANSDUCERS;
 /// What the hand feels, behind a coupling that remembers the amplifier's lag.
 pub type Environment = Matched<FreeModeWall<OneSided<DamperWall<0>>>, 0, 1>;
 
-/// When a torque is put out: the tick has a third of this to spare on the slowest board.
+/// When a torque is put out: 1680 cycles of the slowest board, for about 150 instructions.
 pub type Output = AtPhase<10_000>;
 
 /// The scene.

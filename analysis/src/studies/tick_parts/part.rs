@@ -36,7 +36,7 @@ pub enum Part {
 const TICK: (&str, &str) = ("<firmware::servo::prepared_servo::PreparedServo<", "::tick");
 
 /// How the functions of a part are called: how the name begins, and what else is in it.
-const NAMES: [(&str, &str, Part); 16] = [
+const NAMES: [(&str, &str, Part); 17] = [
     ("<firmware::energy::Injector<", "", Part::Injection),
     ("<firmware::environment::velocity::Difference<", "", Part::Damper),
     ("<firmware::environment::free_mode::", "", Part::Canceller),
@@ -48,6 +48,7 @@ const NAMES: [(&str, &str, Part); 16] = [
     ("<firmware::environment::delay_line::", "", Part::Delay),
     ("<firmware::environment::wall_law::WallLaw<", "", Part::Spring),
     ("<firmware::coupling::", "", Part::Coupling),
+    ("<firmware::environment::matched::CouplingMemory<", "", Part::Coupling),
     ("<firmware::torque::", "", Part::Limit),
     ("<firmware::encoder::", "", Part::Encoder),
     ("<firmware::servo::Servo<", "::angle", Part::Encoder),
