@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 2
+PROTOCOL = 3
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -45,13 +45,16 @@ REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
         ("face", "f64"), ("one_sided", "bool")]
 FREE = ("residual", "f64")
+TIME_RANGE = [("least", "f64"), ("most", "f64")]
 SCENE = [
     ("device", [("inertia", "f64"), ("damping", "f64"), ("passivity", ("option", "f64"))]),
     ("timing", [("period", "f64"), ("worst_period", ("option", "f64"))]),
-    ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")])])),
+    ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")]), ("matched", [])])),
     ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
                               ("free-mode", [FREE, ("delay", "u")]),
                               ("free-mode-wall", [FREE, ("wall", WALL)])])),
+    ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
+                 ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE)]),
     ("torque_limit", ("option", "f64")),
 ]
 FIELDS = {
@@ -88,7 +91,8 @@ FIELDS = {
         ("rendering", [("fade", "f64"), ("injection", ("option", "f64"))]),
         ("format", ("enum", [("f32", []), ("f64", []), ("fixed", [("fraction_bits", "u")]),
                              ("truncated", [("fraction_bits", "u")])])),
-        ("timing", ("enum", [("simultaneous", []), ("latched", [])])),
+        ("timing", ("enum", [("simultaneous", []), ("latched", []),
+                             ("at_phase", [("nanoseconds", "u")])])),
     ],
 }
 

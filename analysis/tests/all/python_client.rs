@@ -173,6 +173,10 @@ fn reads_every_message_to_the_host() {
                 "environment": {"type": "free-mode-wall", "residual": 0.01, "wall": {
                     "stiffness": 22.0, "damping": 0.01, "filter": 0.5, "delay": 300,
                     "face": -0.1, "one_sided": true}},
+                "latency": {
+                    "output_delay": {"least": 0.0, "most": 0.0}, "output_jitter": 0.0,
+                    "actuator_lag": {"least": 0.0, "most": 0.0},
+                    "sensor_lag": {"least": 0.0, "most": 0.0}},
                 "torque_limit": 1.5,
             },
             "transducers": {"counts_per_turn": 61_440.0, "counter": {"type": "16"},

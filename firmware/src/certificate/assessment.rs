@@ -72,7 +72,7 @@ pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
 pub(super) enum Extent {
     /// The answers of both rules.
     BothRules,
-    /// Of a rejected scene, only the result of its own rule.
+    /// Of a rejected scene, and of one whose torques lag and are limited, only the result of its own rule.
     OwnRule,
 }
 
@@ -123,6 +123,11 @@ const fn judge(
     if is_refused && matches!(extent, Extent::OwnRule) {
         return nonlinear_outcome(n, &alone, out);
     }
+    // What lags and is limited is certified by then, and the other rule takes the stack of a small board.
+    if is_lagging_and_limited(out, n) && matches!(extent, Extent::OwnRule) {
+        out.exact = Answer::Undecided;
+        return nonlinear_outcome(n, &alone, out);
+    }
     let coupled = if n.latency.is_some() && matches!(extent, Extent::BothRules) {
         out.alpha_coupled = posed.coupled_without_latency();
         match posed.over_cells(&Precision::TIGHT, true) {
@@ -148,6 +153,10 @@ const fn judge(
         Rule::Exact => exact_outcome(posed, &alone, &coupled, out),
         Rule::Nonlinear => nonlinear_outcome(n, &alone, out),
     }
+}
+
+const fn is_lagging_and_limited(out: &Assessment, n: &LoopIntervals) -> bool {
+    matches!(out.rule, Rule::Nonlinear) && n.latency.is_some()
 }
 
 const fn exact_outcome(

@@ -13,7 +13,7 @@ use firmware::certificate::TimingChecked;
 use firmware::dac::DacCode;
 use firmware::encoder::RawCount;
 use firmware::scene::Scene;
-use firmware::servo::{PreparedServo, RenderingOptions};
+use firmware::servo::{OutputMode, PreparedServo, RenderingOptions};
 use firmware::servo_loop::{Hardware, Options, ServoLoop};
 
 use super::{Environment, FILTER, Failure, SCENE, TRANSDUCERS};
@@ -114,7 +114,7 @@ pub fn measure() -> Result<(), Failure> {
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
-    let hardware = Registers::new(period(SCENE.timing.period));
+    let hardware = Registers::new(period(SCENE.timing.period), <Mode as OutputMode>::TIMING);
     let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
     let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;
@@ -122,7 +122,7 @@ pub fn measure() -> Result<(), Failure> {
     requests.arm();
     let mut hardware = Muted(hardware);
     hardware.0.zero_encoder();
-    start_timer(&mut hardware.0);
+    start_timer(&mut hardware.0, <Mode as OutputMode>::TIMING);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {
         ISR_STATE.init(ServoIsr { servo_loop, hardware, inbox, frames });

@@ -10,13 +10,13 @@ use firmware::board::input_filter::InputFilter;
 use firmware::board::stm32::quadrature::Counter;
 use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
-use firmware::board::stm32::{init_chip, period, start_timer, width};
+use firmware::board::stm32::{Mode, init_chip, period, start_timer, width};
 use firmware::boot::Startup;
 use firmware::dac::DacCode;
 use firmware::encoder::Position;
 use firmware::environment::{DamperWall, OneSided};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
-use firmware::servo::Transducers;
+use firmware::servo::{OutputMode, Transducers};
 use firmware::servo_loop::Hardware;
 
 /// The builder's encoder and motor.
@@ -54,9 +54,9 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 /// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
-    let mut hardware = Registers::new(period(SCENE.timing.period));
+    let mut hardware = Registers::new(period(SCENE.timing.period), <Mode as OutputMode>::TIMING);
     hardware.zero_encoder();
-    start_timer(&mut hardware);
+    start_timer(&mut hardware, <Mode as OutputMode>::TIMING);
     hardware
 }
 
