@@ -3,7 +3,7 @@
 //! The compiler, the host and the board compute the same certificate; with this codec a test asks a
 //! board, so that the three can be compared bit for bit. Scenes do not get to a servo this way.
 
-use firmware::certificate::{Answer, Assessment, Parameter, assess};
+use firmware::certificate::{Answer, Assessment, Parameter, PassivityProblem, assess};
 use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wall};
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -14,9 +14,9 @@ const TERMS: usize = MAX_DEGREE + 1;
 /// A scene as 64-bit words; an `f64` is its bits.
 pub type SceneWords = [u64; WORDS];
 
-/// Words of a scene: the type of its environment, each number with whether it is there, the side of a
+/// Words of a scene: the type of its environment, whether its coupling is matched, each number with whether it is there, the side of a
 /// wall, and two polynomials.
-const WORDS: usize = 1 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
+const WORDS: usize = 2 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
 
 /// An enclosure's ends as bits; `None` where the index does not exist.
 pub type IntervalBits = Option<(u64, u64)>;
@@ -28,16 +28,22 @@ pub struct CertifyReply {
     pub alpha: IntervalBits,
     /// Index behind the coupling.
     pub alpha_coupled: IntervalBits,
+    /// Index at the port of a scene with latency.
+    pub alpha_port: IntervalBits,
     /// Equations 17 to 19.
     pub paper: Answer,
     /// Theory, section 4.1.
     pub exact: Answer,
     /// Instructions that certifying took; 0 where nothing counts them.
     pub instructions: u64,
+    /// Whether the scene is certified, without the numbers behind the verdict.
+    pub is_certified: bool,
+    /// Instructions of that.
+    pub verdict_instructions: u64,
 }
 
 /// A [`CertifyReply`] as words.
-pub type ReplyWords = [u64; 9];
+pub type ReplyWords = [u64; 14];
 
 /// The words of a scene.
 pub fn encode(scene: &Scene) -> SceneWords {
@@ -50,6 +56,7 @@ pub fn encode(scene: &Scene) -> SceneWords {
         Environment::Rational(_) => 4,
         Environment::Stated(_) => 5,
     });
+    words.push(matches!(scene.coupling, Coupling::Matched).into());
     for parameter in Parameter::ALL {
         words.optional(scene.get(*parameter));
     }
@@ -95,6 +102,9 @@ pub fn decode(words: &SceneWords) -> Option<Scene> {
         _ => return None,
     };
     let mut scene = Scene { environment, ..BLANK };
+    if words.take() != 0 {
+        scene.coupling = Coupling::Matched;
+    }
     for parameter in Parameter::ALL {
         if let Some(value) = words.take_optional() {
             scene = scene.with(*parameter, value)?;
@@ -113,20 +123,24 @@ pub fn decode(words: &SceneWords) -> Option<Scene> {
 
 /// Certifies the scene of the words; `None` if they are malformed. `count` measures the
 /// instructions that this takes.
-pub fn certify(
-    words: &SceneWords,
-    count: impl FnOnce(&mut dyn FnMut()) -> u64,
-) -> Option<ReplyWords> {
+pub fn certify(words: &SceneWords, count: impl Fn(&mut dyn FnMut()) -> u64) -> Option<ReplyWords> {
     let scene = decode(words)?;
     let mut found = None;
     let instructions = count(&mut || found = Some(assess(&scene)));
-    let Assessment { alpha, alpha_coupled, paper, exact, .. } = found?;
+    let mut is_certified = false;
+    let verdict_instructions = count(&mut || {
+        is_certified = PassivityProblem::of(&scene).is_ok_and(|posed| posed.is_certified());
+    });
+    let Assessment { alpha, alpha_coupled, alpha_port, paper, exact, .. } = found?;
     let mut words = Cursor { words: [0; _], next: 0 };
     words.interval(alpha);
     words.interval(alpha_coupled);
+    words.interval(alpha_port);
     words.push(answer_code(paper));
     words.push(answer_code(exact));
     words.push(instructions);
+    words.push(is_certified.into());
+    words.push(verdict_instructions);
     Some(words.words)
 }
 
@@ -136,9 +150,12 @@ pub fn decode_reply(words: &ReplyWords) -> Option<CertifyReply> {
     Some(CertifyReply {
         alpha: words.take_interval(),
         alpha_coupled: words.take_interval(),
+        alpha_port: words.take_interval(),
         paper: answer_from_code(words.take())?,
         exact: answer_from_code(words.take())?,
         instructions: words.take(),
+        is_certified: words.take() != 0,
+        verdict_instructions: words.take(),
     })
 }
 
@@ -288,10 +305,13 @@ mod tests {
         let bits = |i: Option<Interval>| i.map(|i| (i.lo().to_bits(), i.hi().to_bits()));
         let expected = CertifyReply {
             alpha: bits(found.alpha),
+            alpha_port: None,
             alpha_coupled: bits(found.alpha_coupled),
             paper: found.paper,
             exact: found.exact,
             instructions: 17,
+            is_certified: found.outcome.is_ok(),
+            verdict_instructions: 17,
         };
         assert_eq!(decode_reply(&words.unwrap()), Some(expected));
     }

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
 use analysis::program::{damper_wall, delayed_spring, free_mode, undelayed_wall};
+use analysis::studies::bench;
 use analysis::studies::bench::live::live_set;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
@@ -139,9 +140,11 @@ fn the_board_judges_as_the_host_does() {
         let expected = CertifyReply {
             alpha: bits(found.alpha),
             alpha_coupled: bits(found.alpha_coupled),
+            alpha_port: bits(found.alpha_port),
             paper: found.paper,
             exact: found.exact,
-            instructions: reply.instructions,
+            is_certified: found.outcome.is_ok(),
+            ..reply
         };
         assert_eq!(reply, expected, "{}", case.name);
         assert!(reply.instructions > 0);
@@ -149,6 +152,33 @@ fn the_board_judges_as_the_host_does() {
     }
     board.finish().unwrap();
     println!("instructions of the longest judgement: {most}");
+}
+
+/// So is that of scenes whose torque lags; the board takes no longer for one than it may.
+#[test]
+fn the_board_judges_lagging_scenes_as_the_host_does() {
+    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = CertifyClient::boot(&elf).unwrap();
+    let mut most = 0;
+    let published = super::latency::scenes().into_iter().step_by(4);
+    for scene in published.chain(bench::lagging_scenes().into_iter().step_by(7)) {
+        let reply = board.certify(&scene).unwrap_or_else(|error| panic!("{scene:?}: {error}"));
+        let found = assess(&scene);
+        let expected = CertifyReply {
+            alpha: bits(found.alpha),
+            alpha_coupled: bits(found.alpha_coupled),
+            alpha_port: bits(found.alpha_port),
+            paper: found.paper,
+            exact: found.exact,
+            is_certified: found.outcome.is_ok(),
+            ..reply
+        };
+        assert_eq!(reply, expected, "{scene:?}");
+        most = most.max(reply.verdict_instructions);
+    }
+    board.finish().unwrap();
+    println!("instructions of the longest verdict with latency: {most}");
+    assert!(most <= 3_400_000, "{most}");
 }
 
 /// Torques and codes are those of the host, bit for bit, in every number format; there the scene is

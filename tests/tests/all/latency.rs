@@ -2,7 +2,11 @@
 
 use analysis::file::{self, Format};
 use analysis::verdict::{Verdict, VerdictReport, judge};
+use firmware::certificate::Certified;
+use firmware::environment::DamperWall;
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde_json::{Value, json};
+use std::hint::black_box;
 use tests::exact::{Q, of_decimal, of_f64};
 
 /// Width of an index relative to its magnitude.
@@ -25,6 +29,39 @@ fn scene_file(case: &Value) -> Value {
         scene["coupling"] = json!({ "stiffness": case["K"] });
     }
     scene
+}
+
+/// The published cases.
+fn published() -> Value {
+    serde_json::from_str(include_str!("../../data/lag.json")).expect("JSON")
+}
+
+/// All of them as scenes.
+pub fn scenes() -> Vec<Scene> {
+    let read = |case: &Value| {
+        let text = scene_file(case).to_string();
+        let read = file::parse("lag.json", Format::Json, &text);
+        read.unwrap_or_else(|error| panic!("{error}")).scene
+    };
+    published()["cases"].as_array().expect("a list").iter().map(read).collect()
+}
+
+const LAGGING: Scene<DamperWall<1>> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: DamperWall { stiffness: 9.0, damping: 0.004 },
+    latency: Latency::delayed(1e-5).with_actuator_lag(53e-6),
+    torque_limit: None,
+};
+/// The compiler's judgement.
+const CERTIFIED: Certified<Scene<DamperWall<1>>> = LAGGING.certified();
+
+#[test]
+fn the_compiler_judges_as_the_host_does() {
+    let here = black_box(LAGGING).certify().unwrap();
+    assert_eq!(CERTIFIED.assessment(), here.assessment());
+    assert!(CERTIFIED.assessment().outcome.is_ok());
 }
 
 fn judged(case: &Value) -> VerdictReport {
@@ -138,7 +175,7 @@ fn a_matched_coupling_without_latency_has_the_verdict_of_the_standard_one() {
 
 #[test]
 fn every_published_case_has_its_verdict_and_its_index() {
-    let published: Value = serde_json::from_str(include_str!("../../data/lag.json")).expect("JSON");
+    let published = published();
     let cases = published["cases"].as_array().expect("cases");
     assert_eq!(cases.len(), 60);
     let wrong: Vec<String> = cases.iter().flat_map(complaints).collect();

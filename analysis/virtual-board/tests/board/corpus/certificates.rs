@@ -51,6 +51,7 @@ fn certificates_are_equal() {
         let expected = CertifyReply {
             alpha: bits(found.alpha),
             alpha_coupled: bits(found.alpha_coupled),
+            alpha_port: bits(found.alpha_port),
             paper: found.paper,
             exact: found.exact,
             ..replies[0]
