@@ -21,7 +21,7 @@ impl Interval {
 }
 
 const fn one_end(x: f64) -> Interval {
-    if !(x < VANISHES) {
+    if x.is_nan() || x >= VANISHES {
         return Interval::new(0.0, f64::MIN_POSITIVE);
     }
     let (mut halvings, mut small) = (0, x);

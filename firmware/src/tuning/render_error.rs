@@ -9,6 +9,10 @@ use crate::step::Step;
 
 /// Why a scene cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a rejection has its remedies, and nothing is allocated"
+)]
 pub enum RenderError {
     /// The change is not one of this scene.
     Tuning(TuningError),

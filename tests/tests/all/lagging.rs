@@ -249,8 +249,9 @@ fn search(seed: u64, loops: usize, hands: usize) -> Found {
             };
             found.hands += 1;
             // Heavy masses on the ground by nothing drift at exactly 1.
-            if !(certified.radius(&hand) <= 1.0 + 1e-7) {
-                println!("{certified:?} {hand:?} {}", certified.radius(&hand));
+            let radius = certified.radius(&hand);
+            if radius.is_nan() || radius > 1.0 + 1e-7 {
+                println!("{certified:?} {hand:?} {radius}");
                 found.unstable += 1;
             }
             is_shown |= refused.radius(&hand) > 1.0 + 1e-7;

@@ -136,7 +136,7 @@ fn speeds(
         state[2 * n + 1] = past[whole];
         state = after * state;
         let speed = state[n].abs();
-        if !(speed < 1e9) {
+        if speed.is_nan() || speed >= 1e9 {
             return (first, f64::INFINITY);
         }
         if tick < ticks / 4 {
