@@ -129,14 +129,13 @@ impl<N: Number> Solver<N> {
             compliance,
             line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
             contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
-            stiffness: match is_rigid {
+            stiffness: if is_rigid {
+                None
+            } else {
                 // Not above that of the compliance as rounded: while the environment slides on
                 // the face, it must not come back out as the device goes in.
-                false => {
-                    let stiffness = N::FORMAT.coefficient(1.0 / given, Rounding::Inward);
-                    Some(BuildError::coefficient::<N>("coupling stiffness", stiffness)?)
-                }
-                true => None,
+                let stiffness = N::FORMAT.coefficient(1.0 / given, Rounding::Inward);
+                Some(BuildError::coefficient::<N>("coupling stiffness", stiffness)?)
             },
         })
     }

@@ -87,13 +87,7 @@ impl MatchedCoupling {
         let (t, delta) = (Interval::decimal(period), Interval::decimal(passivity));
         let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
         let standard = t.div(delta.double());
-        let nominal = Latency {
-            output_delay: TimeRange::exactly(latency.output_delay.middle()),
-            actuator_lag: TimeRange::exactly(latency.actuator_lag.middle()),
-            sensor_lag: TimeRange::exactly(latency.sensor_lag.middle()),
-            ..*latency
-        };
-        let Some(taps) = Taps::of(t, &nominal, false) else { return None };
+        let Some(taps) = Taps::of(t, latency, Within::Middle) else { return None };
         let Some(unknown) = unknown(t, latency) else { return None };
         let held = format.coefficient(standard.midpoint(), Rounding::Nearest);
         let arriving =
@@ -190,14 +184,13 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 }
 
 impl Taps {
-    /// Of the shortest times in a latency, or of the longest.
-    const fn of(t: Interval, latency: &Latency, longest: bool) -> Option<Self> {
-        let delay = end(latency.output_delay, longest).div(t);
+    /// Of the times at one place in their ranges.
+    const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
+        let delay = place.of(latency.output_delay).div(t);
         let whole = delay.midpoint().max(0.0) as usize;
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);
-        let lags =
-            [end(latency.actuator_lag, longest).div(t), end(latency.sensor_lag, longest).div(t)];
+        let lags = [place.of(latency.actuator_lag).div(t), place.of(latency.sensor_lag).div(t)];
         let Some(weights) = weights(lags) else { return None };
         let mut taps =
             Self { whole, arriving: part, trails: [(Interval::ZERO, Interval::ZERO); 2] };
@@ -246,14 +239,29 @@ const fn weights(lags: [Interval; 2]) -> Option<[Interval; 2]> {
     Some([a.mul(a).div(apart), b.mul(b).div(apart.neg())])
 }
 
-const fn end(range: TimeRange, longest: bool) -> Interval {
-    Interval::decimal(if longest { range.most } else { range.least })
+/// A place in the range of each time.
+#[derive(Clone, Copy)]
+enum Within {
+    Least,
+    Middle,
+    Most,
+}
+
+impl Within {
+    const fn of(self, range: TimeRange) -> Interval {
+        Interval::decimal(match self {
+            Self::Least => range.least,
+            Self::Middle => range.middle(),
+            Self::Most => range.most,
+        })
+    }
 }
 
 /// What the ends of the ranges leave unknown of [`Taps::moment`]: every compliance grows with every
 /// time.
 const fn unknown(t: Interval, latency: &Latency) -> Option<Interval> {
-    let (shortest, longest) = (Taps::of(t, latency, false), Taps::of(t, latency, true));
+    let shortest = Taps::of(t, latency, Within::Least);
+    let longest = Taps::of(t, latency, Within::Most);
     let (Some(shortest), Some(longest)) = (shortest, longest) else { return None };
     let range = longest.moment().sub(shortest.moment());
     Some(Interval::new(0.0, range.hi().max(0.0)))
@@ -264,7 +272,8 @@ const fn unknown(t: Interval, latency: &Latency) -> Option<Interval> {
 ///
 /// For any `s > 0` the work of the pulses by which such a torque differs is at most
 /// `(s / 2) integral v^2 + (h T / (2 s)) sum (F_k - F_(k-1))^2`, and so is that of a count read late
-/// (equation 42). The first comes off `delta`, the second off a spring: `s = 2 delta sqrt(h)` shares it about equally.
+/// (equation 42). The first comes off `delta`, the second off a spring: `s = 2 delta sqrt(h)` shares it
+/// about equally.
 const fn after_jitter(
     t: Interval,
     delta: Interval,
@@ -326,7 +335,7 @@ pub const fn limit_behind_spring(
     latency: &Latency,
 ) -> Option<Interval> {
     let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
-    let Some(taps) = Taps::of(t, latency, true) else { return None };
+    let Some(taps) = Taps::of(t, latency, Within::Most) else { return None };
     let standard = t.div(delta.double());
     let excess = compliance.sub(standard).sub(given_up);
     limit(t, delta, excess, standard.mul(taps.moment()))
