@@ -127,6 +127,23 @@ fn check<E>(report: &EmulatorReport, certified: &Certified<Scene<E>>) {
     assert!(used + 1024 <= size, "{used} of {size} bytes of stack used");
 }
 
+/// The board's judgement of a scene, which is that of the host, bit for bit.
+fn judged_alike(board: &mut CertifyClient, scene: &Scene, name: &str) -> CertifyReply {
+    let reply = board.certify(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let found = assess(scene);
+    let expected = CertifyReply {
+        alpha: bits(found.alpha),
+        alpha_coupled: bits(found.alpha_coupled),
+        alpha_port: bits(found.alpha_port),
+        paper: found.paper,
+        exact: found.exact,
+        is_certified: found.outcome.is_ok(),
+        ..reply
+    };
+    assert_eq!(reply, expected, "{name}");
+    reply
+}
+
 /// The board's judgement of all reference cases is that of the host, bit for bit.
 #[test]
 fn the_board_judges_as_the_host_does() {
@@ -134,19 +151,7 @@ fn the_board_judges_as_the_host_does() {
     let mut board = CertifyClient::boot(&elf).unwrap();
     let mut most = 0;
     for case in vectors::all() {
-        let scene = case.scene();
-        let reply = board.certify(&scene).unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        let found = assess(&scene);
-        let expected = CertifyReply {
-            alpha: bits(found.alpha),
-            alpha_coupled: bits(found.alpha_coupled),
-            alpha_port: bits(found.alpha_port),
-            paper: found.paper,
-            exact: found.exact,
-            is_certified: found.outcome.is_ok(),
-            ..reply
-        };
-        assert_eq!(reply, expected, "{}", case.name);
+        let reply = judged_alike(&mut board, &case.scene(), &case.name);
         assert!(reply.instructions > 0);
         most = most.max(reply.instructions);
     }
@@ -162,18 +167,7 @@ fn the_board_judges_lagging_scenes_as_the_host_does() {
     let mut most = 0;
     let published = super::latency::scenes().into_iter().step_by(4);
     for scene in published.chain(bench::lagging_scenes().into_iter().step_by(7)) {
-        let reply = board.certify(&scene).unwrap_or_else(|error| panic!("{scene:?}: {error}"));
-        let found = assess(&scene);
-        let expected = CertifyReply {
-            alpha: bits(found.alpha),
-            alpha_coupled: bits(found.alpha_coupled),
-            alpha_port: bits(found.alpha_port),
-            paper: found.paper,
-            exact: found.exact,
-            is_certified: found.outcome.is_ok(),
-            ..reply
-        };
-        assert_eq!(reply, expected, "{scene:?}");
+        let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));
         most = most.max(reply.verdict_instructions);
     }
     board.finish().unwrap();
