@@ -55,7 +55,7 @@ impl LatencyLimits {
         rates: Range<f64>,
         points: usize,
     ) -> Self {
-        let lag = 1.0 / (TAU * bandwidth);
+        let lag = lag_of(bandwidth);
         let point = |rate: f64| {
             let period = 1.0 / rate;
             let spring = |latency, delay| largest_spring(device, period, latency, delay);
@@ -75,8 +75,13 @@ impl LatencyLimits {
     }
 }
 
-/// The largest certified spring in N m/rad without a coupling.
-fn largest_spring(device: &Device, period: f64, latency: Latency, delay: usize) -> f64 {
+/// Time constant in s of a first-order loop of this bandwidth in Hz.
+pub fn lag_of(bandwidth: f64) -> f64 {
+    1.0 / (TAU * bandwidth)
+}
+
+/// The largest certified spring in N m/rad without a coupling, so many samples late.
+pub fn largest_spring(device: &Device, period: f64, latency: Latency, delay: usize) -> f64 {
     let scene = |stiffness| Scene {
         device: *device,
         timing: Timing { period, worst_period: None },

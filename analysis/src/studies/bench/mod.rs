@@ -9,9 +9,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use crate::latency_limits::{lag_of, largest_spring};
 use crate::stability_map::{Family, Map, MapError};
-use firmware::certificate::{PassivityProblem, assess};
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::certificate::assess;
+use firmware::environment::{Coefficients, Environment, Rational};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use serde::Serialize;
 
@@ -129,11 +130,6 @@ pub fn lagging_scenes() -> Vec<Scene> {
     scenes().into_iter().map(|scene| Scene { latency, ..scene }).collect()
 }
 
-/// Time constant in s of a first-order loop of this bandwidth in Hz.
-pub fn lag_of(bandwidth: f64) -> f64 {
-    1.0 / (std::f64::consts::TAU * bandwidth)
-}
-
 /// Microseconds of the scene in the middle: what a verdict costs grows with its degree, and many times
 /// as much where poles are next to the circle.
 pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
@@ -153,24 +149,9 @@ pub fn middle_verdict_time(scenes: &[Scene]) -> f64 {
 /// of 0.022 N m s/rad, with a torque 5 us after its count and a current loop of 3 kHz; and the same
 /// where torques are latched by the next count and the lag is charged as a whole sample.
 pub fn lagging_springs() -> (f64, f64) {
-    let spring = |latency, delay| {
-        let scene = |stiffness| Scene {
-            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-            timing: Timing { period: 0.001, worst_period: None },
-            coupling: Coupling::Rigid,
-            environment: Environment::DelayedSpring(Wall::spring(stiffness, delay)),
-            latency,
-            torque_limit: None,
-        };
-        let passes = |k| PassivityProblem::of(&scene(k)).is_ok_and(|posed| posed.is_certified());
-        let (mut certified, mut refused) = (0.0, 100.0);
-        for _ in 0..40 {
-            let middle = 0.5 * (certified + refused);
-            *if passes(middle) { &mut certified } else { &mut refused } = middle;
-        }
-        certified
-    };
-    (spring(Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3)), 0), spring(Latency::NONE, 2))
+    let device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+    let early = Latency::delayed(5e-6).with_actuator_lag(lag_of(3e3));
+    (largest_spring(&device, 1e-3, early, 0), largest_spring(&device, 1e-3, Latency::NONE, 2))
 }
 
 /// The middle of some values; 0 of none.
