@@ -5,6 +5,10 @@ use super::fixed_point::{self, Scaled};
 use super::rounding::Rounding;
 use super::{Format, float};
 
+/// The largest unit of a knot of a table: it stands for all of the table's torque.
+pub const KNOT_FULL_SCALE: i16 = i16::MAX;
+pub(super) const TWICE_FULL_SCALE: f64 = 2.0 * KNOT_FULL_SCALE as f64;
+
 impl Format {
     /// The value of the coefficient that this format makes of `value`. What the format does not
     /// hold is given back as it is: it is refused by name where the servo is built.
@@ -16,6 +20,18 @@ impl Format {
                 Scaled::of(value, rounding).to_f64()
             }
             Self::F32 | Self::F64 | Self::Fixed { .. } | Self::Truncated { .. } => value,
+        }
+    }
+
+    /// Torque in N m of half a unit of a knot, as this format makes it of that of a knot at full scale.
+    pub(crate) const fn knot_scale(self, torque: f64) -> f64 {
+        let half_unit = torque / TWICE_FULL_SCALE;
+        match self {
+            Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
+                let factor = fixed_point::knot_factor(fraction_bits);
+                self.coefficient(half_unit * factor, Rounding::Nearest) / factor
+            }
+            Self::F32 | Self::F64 => self.coefficient(half_unit, Rounding::Nearest),
         }
     }
 

@@ -55,8 +55,14 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// all energy in it is what its spring stores at this position; a state left at zero with the
     /// device elsewhere would be none.
     pub(crate) fn rest_here(&mut self) -> N {
-        let reading = self.position.reading();
-        let (x, _) = N::angle(reading.count, self.angle_scale);
+        let count = match self.law.turn() {
+            Some(turn) => {
+                turn.start_at(self.position.count());
+                turn.within(self.position.low()).0
+            }
+            None => self.position.reading().count,
+        };
+        let (x, _) = N::angle(count, self.angle_scale);
         self.torque = N::ZERO;
         self.law.rest_at(x);
         x

@@ -11,12 +11,14 @@ pub use crate::output_timing::{AtPhase, Latched, OutputMode, OutputTiming, Simul
 pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
+use core::hint::cold_path;
+
 use crate::certificate::{Certified, certify_scene};
 use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Discretize, EnvironmentModel, Law};
+use crate::environment::{Discretize, EnvironmentModel, Law, Turn};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -90,7 +92,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let law = scene.environment.law(&scene.setting()?)?;
+        let mut law = scene.environment.law(&scene.setting()?)?;
+        if let Some(turn) = law.turn() {
+            turn.set_counts(transducers.counts_per_turn)?;
+        }
         let compliance = scene.coupling.compliance(law.matched_compliance())?;
         Ok(Self {
             position: Position::new(transducers.counter),
@@ -137,7 +142,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The code that belongs to the same instant as the count.
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw);
+        let (x, fits) = self.angle(raw, action);
         let x = x.minus(self.law.lasting_deflection());
         let offer = action.add_to(self.law.evaluate(x));
         let output = self.solve_to_code(offer, fits);
@@ -150,7 +155,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// [`Servo::tick_zero_delay`] would give in the tick after this one.
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw);
+        let (x, fits) = self.angle(raw, action);
         // The torque of this tick was computed in the one before.
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
@@ -164,6 +169,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        let angle = if self.law.turn().is_some() { Turn::<N>::wrapped(angle) } else { angle };
         let x = N::from_f64(angle)?.minus(self.law.lasting_deflection());
         self.solve_to_code(self.law.evaluate(x), true);
         self.update_environment(x, &mut NoAction);
@@ -181,8 +187,18 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
 
     /// The device's angle in rad, and whether the number format holds it.
     #[inline(always)]
-    fn angle(&mut self, raw: RawCount) -> (N, bool) {
+    fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, bool) {
         let reading = self.position.update(raw);
+        if let Some(turn) = self.law.turn() {
+            let (count, turns) = turn.within(self.position.low());
+            if turns != 0 {
+                cold_path();
+                let by = turn.left(turns);
+                self.law.shift(by);
+                action.shift(by);
+            }
+            return N::angle(count, self.angle_scale);
+        }
         let (x, fits) = N::angle(reading.count, self.angle_scale);
         (x, fits && !reading.saturated)
     }

@@ -58,6 +58,21 @@ macro_rules! coarse {
             fn angle(count: i32, scale: f64) -> (Self, bool) {
                 (Self(f64::from(count) * scale), true)
             }
+            fn knot_scale(torque: f64) -> Result<f64, OutOfRange> {
+                Ok($format.knot_scale(torque))
+            }
+            fn between_knots(
+                self,
+                cells: f64,
+                around: impl FnOnce(i32) -> (i32, i32),
+                torque: f64,
+            ) -> Self {
+                let place = self.0 * cells;
+                let cell = place.round();
+                let (from, to) = around(cell as i32);
+                let (sum, rise) = (f64::from(from + to), f64::from(to - from));
+                Self((sum + 2.0 * rise * (place - cell)) * torque)
+            }
             fn code_scale(codes_per_torque: f64) -> Result<f64, OutOfRange> {
                 Ok(codes_per_torque)
             }
