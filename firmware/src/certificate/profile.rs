@@ -1,9 +1,8 @@
 //! The index of a torque profile: by its extreme slopes alone (theory, section 14).
 
 use super::model::LoopIntervals;
-use crate::environment::{AnyProfile, Ends};
+use crate::environment::{AnyProfile, Ends, Scale};
 use crate::latency::{Latency, TimeRange};
-use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
 
 /// The steepest slopes of a profile as a servo has them, in N m/rad, neither of them negative. Of a
@@ -21,12 +20,12 @@ impl ExtremeSlopes {
     /// own.
     pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
         let outline = profile.outline();
-        let unit = torque_of_unit(profile, n.format).mul(knots_per_rad(profile, n.format));
-        let mut rise = unit.mul(Interval::exact(outline.rise as f64));
+        let Scale { parts_per_rad, torque_of_part, stop_of_part } = profile.scale();
+        let parts = around(n.format.parts_per_rad(parts_per_rad));
+        let unit = around(n.format.torque_of_part(torque_of_part)).mul(parts);
+        let stop = around(n.format.torque_of_part(stop_of_part)).mul(parts);
+        let rise = unit.mul(Interval::exact(outline.rise as f64)).max(stop);
         let fall = unit.mul(Interval::exact(outline.fall as f64));
-        if let Some(Ends { stiffness, .. }) = profile.ends {
-            rise = rise.max(n.coefficient(Interval::decimal(stiffness)));
-        }
         if profile.delay > 0 {
             return Some(Self { rise, fall });
         }
@@ -92,13 +91,9 @@ const fn damper(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     n.coefficient(Interval::decimal(profile.damping).div(n.period))
 }
 
-const fn torque_of_unit(profile: &AnyProfile, format: Format) -> Interval {
-    Interval::exact(format.knot_scale(profile.torque)).double()
-}
-
-const fn knots_per_rad(profile: &AnyProfile, format: Format) -> Interval {
-    let written = profile.knots_per_rad();
-    Interval::exact(format.coefficient(written, Rounding::Nearest))
+/// Around a number that was computed in a few roundings.
+const fn around(value: f64) -> Interval {
+    Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
 }
 
 /// Upper bound on the index at the device's port, without a coupling (equation 45): for a torque that is

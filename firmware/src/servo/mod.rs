@@ -18,7 +18,7 @@ use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Discretize, EnvironmentModel, Law, Turn};
+use crate::environment::{Discretize, EnvironmentModel, Law};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -169,7 +169,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
-        let angle = if self.law.turn().is_some() { Turn::<N>::wrapped(angle) } else { angle };
+        let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
         let x = N::from_f64(angle)?.minus(self.law.lasting_deflection());
         self.solve_to_code(self.law.evaluate(x), true);
         self.update_environment(x, &mut NoAction);
@@ -190,14 +190,15 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, bool) {
         let reading = self.position.update(raw);
         if let Some(turn) = self.law.turn() {
-            let (count, turns) = turn.within(self.position.low());
-            if turns != 0 {
-                cold_path();
-                let by = turn.left(turns);
-                self.law.shift(by);
-                action.shift(by);
+            if let Some((count, turns)) = turn.within(self.position.low()) {
+                if turns != 0 {
+                    cold_path();
+                    let by = turn.left(turns);
+                    self.law.shift(by);
+                    action.shift(by);
+                }
+                return N::angle(count, self.angle_scale);
             }
-            return N::angle(count, self.angle_scale);
         }
         let (x, fits) = N::angle(reading.count, self.angle_scale);
         (x, fits && !reading.saturated)

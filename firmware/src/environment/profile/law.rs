@@ -1,7 +1,8 @@
 //! The law of a torque profile: one look into its table a tick.
 
-use super::knots::{FULL_SCALE, KnotTable, Outline};
-use super::sum::{Ends, Layout};
+use super::knots::{KnotTable, Outline};
+use super::scale::Scale;
+use super::sum::Layout;
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::environment::delay_line::DelayLine;
@@ -14,24 +15,23 @@ use crate::number::Number;
 #[derive(Clone, Debug)]
 pub struct ProfileLaw<N: Number, K, V, D> {
     knots: K,
-    /// Middle of the first cell.
-    origin: N,
-    cells: N::Coefficient,
+    /// Parts of a cell in a rad.
+    parts: N::Coefficient,
+    /// Parts from the angle of zero to the first knot.
+    origin: i32,
+    /// Parts from the first knot to the lower end.
+    from: i32,
+    /// Parts between the ends; all that there are where there are none.
+    span: u32,
+    /// Torque of a part of a unit.
     torque: N::Coefficient,
-    stops: Option<Stops<N>>,
-    turn: Option<Turn<N>>,
+    /// Torque of a part beyond the ends.
+    stop: N::Coefficient,
+    turn: Turn<N>,
     velocity: V,
     delay: D,
     /// The steepest that it rises in N m/rad.
     steepest: f64,
-}
-
-/// The ends of a range.
-#[derive(Clone, Copy, Debug)]
-struct Stops<N: Number> {
-    from: N,
-    to: N,
-    stiffness: N::Coefficient,
 }
 
 impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, V, D> {
@@ -42,53 +42,61 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         velocity: V,
         delay: D,
     ) -> Result<Self, BuildError> {
-        let knots_per_rad = layout.knots_per_rad(outline.knots);
-        let rise = layout.torque * f64::from(outline.rise) / f64::from(FULL_SCALE) * knots_per_rad;
-        let stops = match layout.ends {
-            None => None,
-            Some(Ends { from, to, stiffness }) => Some(Stops {
-                from: BuildError::number("lower end stop", from)?,
-                to: BuildError::number("upper end stop", to)?,
-                stiffness: BuildError::coefficient::<N>("stiffness of the end stops", stiffness)?,
-            }),
+        let scale = Scale::of(layout, outline);
+        let parts = N::parts_scale(scale.parts_per_rad)
+            .map_err(|reason| BuildError::Unrepresentable { name: "knots per rad", reason })?;
+        let place =
+            |name, angle| BuildError::number::<N>(name, angle).map(|angle: N| angle.parts(parts));
+        let origin = place("profile centre", layout.centre)?;
+        let (from, span, turn) = match layout.ends {
+            None => (i32::MIN, u32::MAX, Turn::endless()?),
+            Some(ends) => {
+                let from = place("lower end stop", ends.from)?;
+                let to = place("upper end stop", ends.to)?;
+                (from, to.wrapping_sub(from).cast_unsigned(), Turn::none())
+            }
         };
-        let turn = match layout.ends {
-            None => Some(Turn::new()?),
-            Some(_) => None,
+        let torque = |name, torque| {
+            N::part_scale(torque).map_err(|reason| BuildError::Unrepresentable { name, reason })
         };
-        let out_of_range = |reason| BuildError::Unrepresentable { name: "profile torque", reason };
         Ok(Self {
             knots,
-            origin: BuildError::number("profile centre", layout.centre + 0.5 / knots_per_rad)?,
-            cells: BuildError::coefficient::<N>("knots per rad", knots_per_rad)?,
-            torque: N::knot_scale(layout.torque).map_err(out_of_range)?,
-            stops,
+            parts,
+            origin,
+            from,
+            span,
+            torque: torque("profile torque", scale.torque_of_part)?,
+            stop: torque("stiffness of the end stops", scale.stop_of_part)?,
             turn,
             velocity,
             delay,
-            steepest: layout
-                .ends
-                .map_or(rise, |ends| rise.max(ends.stiffness))
-                .max(f64::MIN_POSITIVE),
+            steepest: scale.steepest_rise(outline).max(f64::MIN_POSITIVE),
         })
     }
 
     /// The torque in N m with the environment at `x` (rad), undelayed.
     #[inline(always)]
     fn torque(&self, x: N) -> N {
-        let torque = match &self.stops {
-            None => self.inside(x),
-            Some(stops) => {
-                let within = x.larger(stops.from).smaller(stops.to);
-                self.inside(within).plus(x.minus(within).times(stops.stiffness))
-            }
+        let place = x.parts(self.parts);
+        let torque = if place.wrapping_sub(self.from).cast_unsigned() <= self.span {
+            self.inside(place)
+        } else {
+            self.beyond(place)
         };
         self.velocity.add_to(torque, x)
     }
 
     #[inline(always)]
-    fn inside(&self, x: N) -> N {
-        x.minus(self.origin).between_knots(self.cells, |cell| self.knots.around(cell), self.torque)
+    fn inside(&self, place: i32) -> N {
+        N::of_parts(self.knots.units_at(place.wrapping_sub(self.origin)), self.torque)
+    }
+
+    /// The torque at the nearer end, and that of its spring.
+    #[inline(always)]
+    fn beyond(&self, place: i32) -> N {
+        let to = self.from.wrapping_add(self.span.cast_signed());
+        let end = if place < self.from { self.from } else { to };
+        self.inside(end).plus(N::of_parts(place.saturating_sub(end), self.stop))
     }
 }
 
@@ -124,7 +132,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for Profil
 
     #[inline(always)]
     fn turn(&mut self) -> Option<&mut Turn<N>> {
-        self.turn.as_mut()
+        Some(&mut self.turn)
     }
 
     fn shift(&mut self, by: N) {

@@ -68,7 +68,7 @@ fn end_stops_are_springs_beyond_the_range() {
     assert_eq!(profile.ends, Some(Ends { from: -2.0, to: 2.0, stiffness: 5.0 }));
     let any = profile.as_any();
     let at_end = torque::<f64>(&any, 2.0);
-    assert!((torque::<f64>(&any, 2.5) - at_end - 2.5).abs() < 1e-12);
+    assert!((torque::<f64>(&any, 2.5) - at_end - 2.5).abs() < 1e-4);
     assert!((torque::<f64>(&any, -2.5) + at_end + 2.5).abs() < 1e-4);
 }
 

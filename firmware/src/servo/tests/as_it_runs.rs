@@ -58,20 +58,17 @@ macro_rules! coarse {
             fn angle(count: i32, scale: f64) -> (Self, bool) {
                 (Self(f64::from(count) * scale), true)
             }
-            fn knot_scale(torque: f64) -> Result<f64, OutOfRange> {
-                Ok($format.knot_scale(torque))
+            fn parts_scale(parts_per_rad: f64) -> Result<f64, OutOfRange> {
+                Ok($format.parts_per_rad(parts_per_rad))
             }
-            fn between_knots(
-                self,
-                cells: f64,
-                around: impl FnOnce(i32) -> (i32, i32),
-                torque: f64,
-            ) -> Self {
-                let place = self.0 * cells;
-                let cell = place.round();
-                let (from, to) = around(cell as i32);
-                let (sum, rise) = (f64::from(from + to), f64::from(to - from));
-                Self((sum + 2.0 * rise * (place - cell)) * torque)
+            fn parts(self, scale: f64) -> i32 {
+                (self.0 * scale).round() as i32
+            }
+            fn part_scale(torque: f64) -> Result<f64, OutOfRange> {
+                Ok($format.torque_of_part(torque))
+            }
+            fn of_parts(parts: i32, scale: f64) -> Self {
+                Self(f64::from(parts) * scale)
             }
             fn code_scale(codes_per_torque: f64) -> Result<f64, OutOfRange> {
                 Ok(codes_per_torque)
