@@ -20,11 +20,14 @@ impl ExtremeSlopes {
     /// own.
     pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
         let outline = profile.outline();
-        let Scale { parts_per_rad, torque_of_part, stop_of_part } = profile.scale();
+        let Scale { parts_per_rad, torque_of_part } = profile.scale();
         let parts = around(n.format.parts_per_rad(parts_per_rad));
         let unit = around(n.format.torque_of_part(torque_of_part)).mul(parts);
-        let stop = around(n.format.torque_of_part(stop_of_part)).mul(parts);
-        let rise = unit.mul(Interval::exact(outline.rise as f64)).max(stop);
+        let inside = unit.mul(Interval::exact(outline.rise as f64));
+        let rise = match profile.ends {
+            Some(Ends { stiffness, .. }) => inside.max(n.coefficient(Interval::decimal(stiffness))),
+            None => inside,
+        };
         let fall = unit.mul(Interval::exact(outline.fall as f64));
         if profile.delay > 0 {
             return Some(Self { rise, fall });

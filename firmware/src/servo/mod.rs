@@ -188,7 +188,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The device's angle in rad, and whether the number format holds it.
     #[inline(always)]
     fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, bool) {
-        let reading = self.position.update(raw);
+        self.position.follow(raw);
         if let Some(turn) = self.law.turn() {
             if let Some((count, turns)) = turn.within(self.position.low()) {
                 if turns != 0 {
@@ -200,6 +200,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
                 return N::angle(count, self.angle_scale);
             }
         }
+        let reading = self.position.reading();
         let (x, fits) = N::angle(reading.count, self.angle_scale);
         (x, fits && !reading.saturated)
     }

@@ -46,7 +46,7 @@ pub struct Outline {
 impl<const KNOTS: usize> Knots<KNOTS> {
     pub(super) const fn new(units: [i16; KNOTS], wraps: bool, layout: Layout) -> Self {
         const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
-        let mut cells = [Cell(0); KNOTS];
+        let mut cells = [Cell::between(0, 0); KNOTS];
         let mut i = 0;
         while i < KNOTS {
             cells[i] = Cell::between(units[i], units[(i + 1) % KNOTS]);
@@ -97,14 +97,19 @@ impl Outline {
     }
 }
 
-/// The straight line from one knot to the next: its beginning in the high half, its rise in the low half,
-/// so that a tick reads it at once.
+/// The straight line from one knot to the next, so that a tick reads both of its numbers at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cell(i32);
+pub struct Cell {
+    /// Units at its beginning, in parts.
+    from: i32,
+    /// Units from there to its end.
+    rise: i32,
+}
 
 impl Cell {
     const fn between(from: i16, to: i16) -> Self {
-        Self(((from as i32) << 16) | (to - from) as u16 as i32)
+        let (from, to) = (from as i32, to as i32);
+        Self { from: from << PART_BITS, rise: to - from }
     }
 
     /// Units at a place in the cell, both in parts.
@@ -112,7 +117,7 @@ impl Cell {
     const fn at(self, place: i32) -> i32 {
         let part = place & ((1 << PART_BITS) - 1);
         // At most 2^28 and 2^29: no overflow.
-        ((self.0 >> 16) << PART_BITS).wrapping_add((self.0 as i16 as i32).wrapping_mul(part))
+        self.from.wrapping_add(self.rise.wrapping_mul(part))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::knots::{KnotTable, Outline};
 use super::scale::Scale;
-use super::sum::Layout;
+use super::sum::{Ends, Layout};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
 use crate::environment::delay_line::DelayLine;
@@ -14,24 +14,35 @@ use crate::number::Number;
 /// The law of a torque profile.
 #[derive(Clone, Debug)]
 pub struct ProfileLaw<N: Number, K, V, D> {
-    knots: K,
     /// Parts of a cell in a rad.
     parts: N::Coefficient,
-    /// Parts from the angle of zero to the first knot.
-    origin: i32,
-    /// Parts from the first knot to the lower end.
+    /// The place of the lower end in parts from the angle of zero.
     from: i32,
     /// Parts between the ends; all that there are where there are none.
     span: u32,
+    /// The place of the first knot.
+    origin: i32,
+    knots: K,
     /// Torque of a part of a unit.
     torque: N::Coefficient,
-    /// Torque of a part beyond the ends.
-    stop: N::Coefficient,
+    /// The lower end, and the upper one.
+    ends: [End<N>; 2],
+    /// Stiffness beyond them.
+    stiffness: N::Coefficient,
     turn: Turn<N>,
     velocity: V,
     delay: D,
     /// The steepest that it rises in N m/rad.
     steepest: f64,
+}
+
+/// An end of the range.
+#[derive(Clone, Copy, Debug)]
+struct End<N> {
+    /// Its angle.
+    angle: N,
+    /// The torque there.
+    torque: N,
 }
 
 impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, V, D> {
@@ -43,35 +54,45 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         delay: D,
     ) -> Result<Self, BuildError> {
         let scale = Scale::of(layout, outline);
-        let parts = N::parts_scale(scale.parts_per_rad)
-            .map_err(|reason| BuildError::Unrepresentable { name: "knots per rad", reason })?;
-        let place =
-            |name, angle| BuildError::number::<N>(name, angle).map(|angle: N| angle.parts(parts));
-        let origin = place("profile centre", layout.centre)?;
-        let (from, span, turn) = match layout.ends {
-            None => (i32::MIN, u32::MAX, Turn::endless()?),
-            Some(ends) => {
-                let from = place("lower end stop", ends.from)?;
-                let to = place("upper end stop", ends.to)?;
-                (from, to.wrapping_sub(from).cast_unsigned(), Turn::none())
-            }
-        };
-        let torque = |name, torque| {
-            N::part_scale(torque).map_err(|reason| BuildError::Unrepresentable { name, reason })
-        };
-        Ok(Self {
-            knots,
+        let unrepresentable = |name| move |reason| BuildError::Unrepresentable { name, reason };
+        let parts =
+            N::parts_scale(scale.parts_per_rad).map_err(unrepresentable("knots per rad"))?;
+        let torque =
+            N::part_scale(scale.torque_of_part).map_err(unrepresentable("profile torque"))?;
+        let centre: N = BuildError::number("profile centre", layout.centre)?;
+        let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
+        let mut law = Self {
             parts,
-            origin,
-            from,
-            span,
-            torque: torque("profile torque", scale.torque_of_part)?,
-            stop: torque("stiffness of the end stops", scale.stop_of_part)?,
-            turn,
+            from: i32::MIN,
+            span: u32::MAX,
+            origin: centre.parts(parts),
+            knots,
+            torque,
+            ends: [End { angle: N::ZERO, torque: N::ZERO }; 2],
+            stiffness: BuildError::coefficient::<N>("stiffness of the end stops", stiffness)?,
+            turn: Turn::none(),
             velocity,
             delay,
-            steepest: scale.steepest_rise(outline).max(f64::MIN_POSITIVE),
-        })
+            steepest: scale.steepest_rise(outline).max(stiffness).max(f64::MIN_POSITIVE),
+        };
+        match &layout.ends {
+            Some(ends) => law.limit(ends)?,
+            None => law.turn = Turn::endless()?,
+        }
+        Ok(law)
+    }
+
+    /// Gives it ends.
+    fn limit(&mut self, ends: &Ends) -> Result<(), BuildError> {
+        let from: N = BuildError::number("lower end stop", ends.from)?;
+        let to: N = BuildError::number("upper end stop", ends.to)?;
+        self.from = from.parts(self.parts);
+        self.span = to.parts(self.parts).wrapping_sub(self.from).cast_unsigned();
+        self.ends = [from, to].map(|angle| {
+            let torque = self.inside(angle.parts(self.parts));
+            End { angle, torque }
+        });
+        Ok(())
     }
 
     /// The torque in N m with the environment at `x` (rad), undelayed.
@@ -81,7 +102,10 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         let torque = if place.wrapping_sub(self.from).cast_unsigned() <= self.span {
             self.inside(place)
         } else {
-            self.beyond(place)
+            // The spring beyond the nearer end, from the torque there.
+            let [lower, upper] = &self.ends;
+            let end = if place < self.from { lower } else { upper };
+            x.minus(end.angle).times(self.stiffness).plus(end.torque)
         };
         self.velocity.add_to(torque, x)
     }
@@ -89,14 +113,6 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
     #[inline(always)]
     fn inside(&self, place: i32) -> N {
         N::of_parts(self.knots.units_at(place.wrapping_sub(self.origin)), self.torque)
-    }
-
-    /// The torque at the nearer end, and that of its spring.
-    #[inline(always)]
-    fn beyond(&self, place: i32) -> N {
-        let to = self.from.wrapping_add(self.span.cast_signed());
-        let end = if place < self.from { self.from } else { to };
-        self.inside(end).plus(N::of_parts(place.saturating_sub(end), self.stop))
     }
 }
 

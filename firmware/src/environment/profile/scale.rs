@@ -11,8 +11,6 @@ pub(crate) struct Scale {
     pub parts_per_rad: f64,
     /// Torque in N m of a part of a unit.
     pub torque_of_part: f64,
-    /// Torque in N m of a part beyond the ends; 0 where there are none.
-    pub stop_of_part: f64,
 }
 
 impl Scale {
@@ -20,19 +18,11 @@ impl Scale {
     pub(crate) const fn of(layout: &Layout, outline: &Outline) -> Self {
         const PARTS: f64 = (1_u32 << PART_BITS) as f64;
         let parts_per_rad = layout.knots_per_rad(outline.knots) * PARTS;
-        Self {
-            parts_per_rad,
-            torque_of_part: layout.torque / (FULL_SCALE as f64 * PARTS),
-            stop_of_part: match layout.ends {
-                Some(ends) => ends.stiffness / parts_per_rad,
-                None => 0.0,
-            },
-        }
+        Self { parts_per_rad, torque_of_part: layout.torque / (FULL_SCALE as f64 * PARTS) }
     }
 
-    /// The steepest rise in N m/rad of a table and its ends.
+    /// The steepest rise in N m/rad of a table.
     pub(crate) const fn steepest_rise(&self, outline: &Outline) -> f64 {
-        let inside = outline.rise as f64 * self.torque_of_part;
-        inside.max(self.stop_of_part) * self.parts_per_rad
+        outline.rise as f64 * self.torque_of_part * self.parts_per_rad
     }
 }
