@@ -21,6 +21,7 @@ mod margin;
 mod matched;
 mod misses;
 mod own_environment;
+mod profiles;
 mod random;
 mod reference;
 mod remedies;
