@@ -90,13 +90,8 @@ impl Program {
 
     /// Its device at rest, in the hand that shows it.
     pub fn device(&self) -> SimulatedDevice {
-        SimulatedDevice::new(
-            self.scene.device,
-            (self.trajectory)(),
-            self.scene.timing.period,
-            &self.transducers,
-        )
-        .expect("a device that is written there moves")
+        SimulatedDevice::new(&self.scene, (self.trajectory)(), &self.transducers)
+            .expect("a device that is written there moves")
     }
 
     /// Starts it on a board that is a thread, around this device.
