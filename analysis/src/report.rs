@@ -210,7 +210,7 @@ fn numbers(report: &VerdictReport, scene: &Scene) -> Markup {
         ("Index with the coupling, alpha", enclosure(report.alpha_coupled)),
     ];
     rows.extend(report.alpha_port.map(|port| ("Index at the port, with latency", enclosure(port))));
-    rows.extend(report.margin.map(|margin| ("Margin", damping(margin))));
+    rows.extend(report.margin_in_words().map(|margin| ("Margin", margin)));
     rows.extend(report.theta.map(|theta| {
         let degrees = significant(theta.to_degrees(), 4);
         ("Least real part at", format!("{} rad a sample, {degrees}\u{b0}", significant(theta, 6)))
