@@ -84,6 +84,16 @@ impl Latency {
         Self { actuator_lag: TimeRange::exactly(lag), ..self }
     }
 
+    /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is
+    /// not: no torque comes before its count.
+    ///
+    /// The sample counts where an amplifier lags. There the bound for jitter does not ask in which tick a
+    /// torque begins (theory, equation 42).
+    pub const fn largest_jitter(&self, is_late: bool, period: f64) -> f64 {
+        let sample = if is_late && !self.actuator_lag.is_zero() { period } else { 0.0 };
+        self.output_delay.least + sample
+    }
+
     /// Whether there is none of it.
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()

@@ -140,6 +140,13 @@ impl MatchedCoupling {
         }
     }
 
+    /// Sum of the magnitudes of all compliances: the most deflection in rad for torques of up to 1 N m each.
+    pub(crate) fn largest_deflection(&self) -> f64 {
+        let lasts = |trail: &Trail| trail.gain.abs() / (1.0 - trail.decay);
+        let held = self.held * self.whole as f64 + self.arriving.abs();
+        self.compliance + held + self.trails.iter().map(lasts).sum::<f64>()
+    }
+
     /// Sum over the taps of `(2 m + 1)` times what rounding changed.
     const fn rounding(&self, standard: Interval, taps: &Taps) -> Interval {
         let n = self.whole as f64;

@@ -143,6 +143,11 @@ impl Scene {
         }
     }
 
+    /// The largest output jitter in s that it may have.
+    pub const fn largest_jitter(&self) -> f64 {
+        self.latency.largest_jitter(self.environment.is_late(), self.timing.period)
+    }
+
     /// The scene with this value, also where it had none that could be left out: a passivity, a worst
     /// period, a coupling, a torque limit. `None` where there is no place for it.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {

@@ -137,7 +137,7 @@ fn on_host() -> Vec<Figure> {
 }
 
 /// What a torque that lags costs a verdict, and what the verdict about it is worth.
-fn lagging() -> [Figure; 2] {
+fn lagging() -> [Figure; 3] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes());
     let (lagging, whole_samples) = bench::lagging_springs();
     [
@@ -154,6 +154,13 @@ fn lagging() -> [Figure; 2] {
             "N m/rad",
             Some(whole_samples),
             "latched, lag as a whole sample",
+        ),
+        Figure::new(
+            "undelayed_spring: stiffness at rest in closed loop, same latency",
+            bench::at_rest::rendered_stiffness(&program::STIFFEST),
+            "N m/rad",
+            Some(lagging),
+            "the certified spring above",
         ),
     ]
 }

@@ -235,7 +235,8 @@ keys! {
     OUTPUT_DELAY = Key { bound: TIME, ..of(Parameter::OutputDelay) },
         Default(0.0), "[4.0e-6, 6.0e-6]";
     /// Largest deviation from that delay, to either side, which may differ from tick to tick. Not more
-    /// than the delay. Simulations leave it out.
+    /// than the delay, or than that and a period where the environment is late and the amplifier lags.
+    /// Simulations leave it out.
     OUTPUT_JITTER = of(Parameter::OutputJitter),
         Default(0.0), "0.0";
 

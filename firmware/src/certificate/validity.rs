@@ -48,7 +48,7 @@ const NO_MORE_THAN_DAMPING: &str =
 const NO_LONGER_DELAY: &str = "at most eight periods:";
 const NO_LONGER_LAG: &str = "at most a hundred periods:";
 /// No torque comes before its count.
-const NO_TORQUE_BEFORE: &str = "at most the output delay:";
+const NO_TORQUE_BEFORE: &str = "at most the time from a count to its torque:";
 
 const fn requirement(range: Range) -> &'static str {
     match range {
@@ -134,8 +134,8 @@ const fn latency_conflict(
     let (period, latency) = (scene.timing.period, &scene.latency);
     let (range, longest) = match parameter {
         Parameter::OutputDelay => (latency.output_delay, LONGEST_DELAY * period),
-        Parameter::OutputJitter if value > latency.output_delay.least => {
-            let limit = Some(latency.output_delay.least);
+        Parameter::OutputJitter if value > scene.largest_jitter() => {
+            let limit = Some(scene.largest_jitter());
             return Some(InvalidParameter { parameter, value, bound: NO_TORQUE_BEFORE, limit });
         }
         Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),

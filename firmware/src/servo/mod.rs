@@ -151,6 +151,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw);
+        let x = x.minus(self.law.lasting_deflection());
         // The torque of this tick was computed in the one before.
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
