@@ -213,7 +213,7 @@ fn walls_rest_below_the_limit_and_not_above_it() {
         let ticks = if report.delay == 0 { 0.5 } else { delay - 0.5 };
         near(report.limit, PADDLE.damping / (PERIOD * ticks), 1e-9);
         assert!(report.holds(), "{report:?}");
-        let hand = report.hand.hand;
+        let hand = &report.hand.hand;
         let numbers = [hand.inertia, hand.damping, hand.stiffness];
         assert!(hand.link.is_none() && numbers.iter().all(|number| *number >= 0.0), "{hand:?}");
         // The loop in that hand once more, by the tests' own exponential and eigenvalues.

@@ -28,3 +28,4 @@ mod simulated;
 mod soundness;
 mod vectors;
 mod virtual_board;
+mod worst_hand;
