@@ -103,6 +103,14 @@ impl LaggingLoop {
         })
     }
 
+    /// The damping below which `-1/H` is inside of the disk of nearly all aliases, at some angle.
+    pub(super) fn needed(&self) -> f64 {
+        const NEARLY_ALL: i32 = 2000;
+        let needed = |theta: f64| self.disk(theta, NEARLY_ALL).needed();
+        let worst = minimizing_angle(|theta| -needed(theta), 0.0, PI).unwrap_or(0.5 * PI);
+        needed(worst.max(1e-3))
+    }
+
     /// Where the most damping is needed, and on both sides where still most of what lacks is.
     fn angles(&self, reach: i32) -> Vec<f64> {
         let needed = |theta: f64| self.disk(theta, reach).needed();

@@ -126,6 +126,13 @@ fn worst(
     Ok(worst)
 }
 
+/// The damping in N m s/rad below which some hand that does not vary in time destabilises a scene on a
+/// device (theory, equation 43), from many aliases and a grid of angles; `None` where the device is no single
+/// mass with damping, or the loop has no transfer function.
+pub fn needed(scene: &Scene, device: &Chain) -> Option<f64> {
+    Some(LaggingLoop::new(scene, device)?.needed())
+}
+
 /// A hand on the device of a scene that is constructed so that the loop grows, if it does.
 fn constructed(
     scene: &Scene,

@@ -56,7 +56,7 @@ fn on(scene: &Scene, inertia: f64, damping: f64) -> Scene {
 }
 
 /// How the loop grows a tick in a hand on a device, by the other model.
-fn radius(drawn: &Loop, inertia: f64, damping: f64, hand: &HandImpedance) -> f64 {
+pub fn radius(drawn: &Loop, inertia: f64, damping: f64, hand: &HandImpedance) -> f64 {
     assert!(hand.link.is_none() || hand.absorbers.is_empty());
     let link = hand.link.map(|link| tests::hands::Segment {
         link_stiffness: link.stiffness,
