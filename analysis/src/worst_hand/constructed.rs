@@ -64,7 +64,7 @@ impl LaggingLoop {
             period: scene.timing.period,
             damping,
             inertia,
-            delay: latency.output_delay.middle(),
+            delay: latency.torque_delay().middle(),
             lags,
             controller,
         })

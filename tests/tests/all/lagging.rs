@@ -29,6 +29,15 @@ pub struct Loop {
     pub section: Option<[f64; 4]>,
 }
 
+/// A part of the torque.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Delay in periods.
+    pub delay: f64,
+    /// All of them together are 1.
+    pub weight: f64,
+}
+
 impl Loop {
     pub fn draw(rng: &mut ChaCha8Rng) -> Self {
         let some = |rng: &mut ChaCha8Rng, part: f64, hi: f64| {
@@ -66,6 +75,7 @@ impl Loop {
                 output_jitter: 0.0,
                 actuator_lag: exactly(self.actuator_lag),
                 sensor_lag: exactly(self.sensor_lag),
+                ..Latency::NONE
             },
             torque_limit: None,
         }
@@ -143,7 +153,7 @@ impl Loop {
     }
 
     /// The closed loop over a period: hand and device, amplifier, sensor, past torques, controller.
-    fn closed(&self, hand: &Hand, absorbers: &[[f64; 2]]) -> DMatrix<f64> {
+    fn closed(&self, hand: &Hand, absorbers: &[[f64; 2]], parts: &[Part]) -> DMatrix<f64> {
         let bodies = 2 * (1 + hand.segments.len() + absorbers.len());
         let (amplifier, sensor, torque) = (bodies, bodies + 1, bodies + 2);
         let mut rates = rates(hand, bodies + 3);
@@ -158,9 +168,10 @@ impl Loop {
             rates[(sensor, sensor)] = -1.0 / self.sensor_lag;
             rates[(sensor, 0)] = 1.0 / self.sensor_lag;
         }
-        let whole = self.output_delay as usize;
-        let part = self.output_delay - whole as f64;
-        let (before, after) = ((&rates * part).exp(), (&rates * (1.0 - part)).exp());
+        let whole = parts.iter().map(|part| part.delay as usize).max().expect("a part");
+        let mut times: Vec<f64> = parts.iter().map(|part| part.delay.fract()).collect();
+        times.extend([0.0, 1.0]);
+        times.sort_by(f64::total_cmp);
         let plant = bodies + 2;
         let (numerator, denominator) = self.controller();
         let order = denominator.len() - 1;
@@ -189,9 +200,14 @@ impl Loop {
         let square = |m: &DMatrix<f64>| m.view((0, 0), (plant, plant)).into_owned();
         let driven = |m: &DMatrix<f64>| m.view((0, plant), (plant, 1)).into_owned();
         let mut through = DMatrix::zeros(plant, size);
-        through.view_mut((0, 0), (plant, plant)).copy_from(&square(&before));
-        through += driven(&before) * held(whole + 1);
-        let through = square(&after) * through + driven(&after) * held(whole);
+        through.view_mut((0, 0), (plant, plant)).copy_from(&DMatrix::identity(plant, plant));
+        for ends in times.windows(2).filter(|ends| ends[1] > ends[0]) {
+            let step = (&rates * (ends[1] - ends[0])).exp();
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let late = |part: &Part| held((part.delay - middle).ceil() as usize) * part.weight;
+            let torque = parts.iter().fold(DMatrix::zeros(1, size), |sum, part| sum + late(part));
+            through = square(&step) * through + driven(&step) * torque;
+        }
         closed.view_mut((0, 0), (plant, size)).copy_from(&through);
         for ago in 1..=past {
             closed.view_mut((plant + ago - 1, 0), (1, size)).copy_from(&held(ago - 1));
@@ -212,7 +228,13 @@ impl Loop {
     /// Spectral radius: the growth of the loop's powers, each the square of the one before. No iteration
     /// that need not converge, as one for eigenvalues.
     pub fn radius(&self, hand: &Hand, absorbers: &[[f64; 2]]) -> f64 {
-        let mut power = self.closed(hand, absorbers);
+        let whole = [Part { delay: self.output_delay, weight: 1.0 }];
+        self.mixed_radius(hand, absorbers, &whole)
+    }
+
+    /// The same with a torque of which each part comes after a delay of its own.
+    pub fn mixed_radius(&self, hand: &Hand, absorbers: &[[f64; 2]], parts: &[Part]) -> f64 {
+        let mut power = self.closed(hand, absorbers, parts);
         let (mut growth, mut share) = (0.0, 1.0);
         for _ in 0..SQUARINGS {
             let norm = power.norm();
