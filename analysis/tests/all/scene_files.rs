@@ -145,7 +145,7 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
     device(
         &format!("{response}[0, 1.1e-3]"),
         "5:21",
-        &["0.0011", "is more than `servo.period` = 0.001 s"],
+        &["[0, 1.1e-3]", "is more than `servo.period` = 0.001 s"],
     );
     for lag in ["actuator_lag", "sensor_lag"] {
         let both = format!("{lag} = 1e-4\n{response}[0, 1e-4]");
