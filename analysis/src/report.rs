@@ -168,6 +168,7 @@ fn latency(latency: &Latency) -> Vec<(&'static str, String)> {
         ("Deviation from that delay, at most", jitter),
         ("Lag of the amplifier", latency.actuator_lag),
         ("Lag of the encoder's filter", latency.sensor_lag),
+        ("Step response of the amplifier", latency.actuator_response),
     ];
     let text = |time: TimeRange| {
         let [least, most] = [time.least, time.most].map(|end| significant(end, 6));

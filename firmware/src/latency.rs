@@ -1,6 +1,7 @@
 //! What lies between a count and its torque: delays of the output, and lags of amplifier and sensor.
 //!
-//! A lag is first order, with a gain of 1. All of it belongs to the controller's side of the device's
+//! A lag is first order, with a gain of 1. Of an amplifier that is not known to be, the begin and the end of
+//! its step response may be stated in its place. All of it belongs to the controller's side of the device's
 //! port: the device's passivity is that from the motor's torque to the velocity at the encoder
 //! (theory, section 13).
 
@@ -34,6 +35,14 @@ impl TimeRange {
         Self { least, most }
     }
 
+    /// The time that passes when one of another range follows.
+    pub const fn followed_by(self, next: Self) -> Self {
+        if next.is_zero() {
+            return self;
+        }
+        Self { least: self.least + next.least, most: self.most + next.most }
+    }
+
     /// Whether it is certainly no time.
     pub const fn is_zero(self) -> bool {
         self.least == 0.0 && self.most == 0.0
@@ -62,6 +71,9 @@ pub struct Latency {
     pub actuator_lag: TimeRange,
     /// Time constant of the filter between encoder and servo.
     pub sensor_lag: TimeRange,
+    /// Where the amplifier is no lag: its step response rises or rests, begins after the least and has
+    /// ended before the most of this, which is a period at the most. Zero where the torque follows at once.
+    pub actuator_response: TimeRange,
 }
 
 impl Latency {
@@ -72,6 +84,7 @@ impl Latency {
         output_jitter: 0.0,
         actuator_lag: TimeRange::ZERO,
         sensor_lag: TimeRange::ZERO,
+        actuator_response: TimeRange::ZERO,
     };
 
     /// A delay of the output in s that is known and constant.
@@ -84,6 +97,11 @@ impl Latency {
         Self { actuator_lag: TimeRange::exactly(lag), ..self }
     }
 
+    /// The same in front of an amplifier whose step response rises from `begin` to `end`, in s.
+    pub const fn with_actuator_response(self, begin: f64, end: f64) -> Self {
+        Self { actuator_response: TimeRange::between(begin, end), ..self }
+    }
+
     /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is
     /// not: no torque comes before its count.
     ///
@@ -94,12 +112,18 @@ impl Latency {
         self.output_delay.least + sample
     }
 
+    /// From a count to the parts of its torque: the delay of the output, and the amplifier's response.
+    pub const fn torque_delay(&self) -> TimeRange {
+        self.output_delay.followed_by(self.actuator_response)
+    }
+
     /// Whether there is none of it.
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()
             && self.output_jitter == 0.0
             && self.actuator_lag.is_zero()
             && self.sensor_lag.is_zero()
+            && self.actuator_response.is_zero()
     }
 }
 

@@ -193,7 +193,7 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 impl Taps {
     /// Of the times at one place in their ranges.
     const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        let delay = place.of(latency.output_delay).div(t);
+        let delay = place.of(latency.torque_delay()).div(t);
         let whole = delay.midpoint().max(0.0) as usize;
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);

@@ -106,6 +106,7 @@ parameters! {
     OutputJitter: "servo.output_jitter", "output jitter", "s", Range::NotNegative;
     ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
     SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
+    ActuatorResponse: "device.actuator_response", "actuator response", "s", Range::NotNegative;
 }
 
 /// The parameters that may be changed while the servo runs, with the names that people type.

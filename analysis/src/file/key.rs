@@ -222,6 +222,11 @@ keys! {
     SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) },
         Default(0.0), "2.0e-5";
 
+    /// In place of `actuator_lag`, of an amplifier whose step response never falls: when it begins and when it
+    /// has ended, at most a period; any shape between is covered.
+    ACTUATOR_RESPONSE = Key { bound: TIME, ..of(Parameter::ActuatorResponse) },
+        Default(0.0), "[2.0e-5, 2.5e-4]";
+
     /// When the servo runs.
     SERVO = other("servo", "", TABLE),
         Needed, "";

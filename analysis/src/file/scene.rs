@@ -118,13 +118,14 @@ fn latency_of(
             return Ok(*value);
         }
         let name = key::PERIOD.path;
-        let reason =
-            format!("is more than {longest} times `{name}` = {period} s, the most that it may be");
+        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
+        let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
         Err(top.conflict(key, span.clone(), reason))
     };
     let output_delay = within(&key::OUTPUT_DELAY, &servo.output_delay, LONGEST_DELAY);
     let actuator_lag = within(&key::ACTUATOR_LAG, &device.actuator_lag, LONGEST_LAG);
     let sensor_lag = within(&key::SENSOR_LAG, &device.sensor_lag, LONGEST_LAG);
+    let actuator_response = within(&key::ACTUATOR_RESPONSE, &device.actuator_response, 1.0);
     let largest = match (&output_delay, &actuator_lag) {
         (&Ok(output_delay), &Ok(actuator_lag)) => {
             Latency { output_delay, actuator_lag, ..Latency::NONE }.largest_jitter(is_late, period)
@@ -138,6 +139,7 @@ fn latency_of(
         output_jitter: output_jitter?,
         actuator_lag: actuator_lag?,
         sensor_lag: sensor_lag?,
+        actuator_response: actuator_response?,
     })
 }
 

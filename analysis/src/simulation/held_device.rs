@@ -84,7 +84,7 @@ impl HeldDevice {
         period: f64,
     ) -> Result<Self, SimulationError> {
         let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency);
-        let delayed = Discretization::exact(period).delayed(latency.output_delay.middle());
+        let delayed = Discretization::exact(period).delayed(latency.torque_delay().middle());
         let lags = !latency.actuator_lag.is_zero();
         let part = |length: f64| Part::new(&plant, length, lags);
         let before = (delayed.latency > 0.0).then(|| part(delayed.latency)).transpose()?;

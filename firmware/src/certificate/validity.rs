@@ -47,6 +47,8 @@ const NO_MORE_THAN_DAMPING: &str =
 
 const NO_LONGER_DELAY: &str = "at most eight periods:";
 const NO_LONGER_LAG: &str = "at most a hundred periods:";
+const NO_LONGER_RESPONSE: &str = "at most the period:";
+const NO_LAG_BESIDE: &str = "0 beside a lag of amplifier or sensor";
 /// No torque comes before its count.
 const NO_TORQUE_BEFORE: &str = "at most the time from a count to its torque:";
 
@@ -140,6 +142,14 @@ const fn latency_conflict(
         }
         Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),
         Parameter::SensorLag => (latency.sensor_lag, LONGEST_LAG * period),
+        Parameter::ActuatorResponse => {
+            let has_lag = !latency.actuator_lag.is_zero() || !latency.sensor_lag.is_zero();
+            if has_lag && !latency.actuator_response.is_zero() {
+                let bound = NO_LAG_BESIDE;
+                return Some(InvalidParameter { parameter, value, bound, limit: None });
+            }
+            (latency.actuator_response, period)
+        }
         _ => return None,
     };
     if value == 0.0 && range.least == 0.0 {
@@ -155,8 +165,12 @@ const fn latency_conflict(
         });
     }
     let (value, bound, limit) = if value > longest {
-        let is_delay = matches!(parameter, Parameter::OutputDelay);
-        (value, if is_delay { NO_LONGER_DELAY } else { NO_LONGER_LAG }, longest)
+        let bound = match parameter {
+            Parameter::OutputDelay => NO_LONGER_DELAY,
+            Parameter::ActuatorResponse => NO_LONGER_RESPONSE,
+            _ => NO_LONGER_LAG,
+        };
+        (value, bound, longest)
     } else if least > value {
         (least, "at most the other end of its range:", value)
     } else {
