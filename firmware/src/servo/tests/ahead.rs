@@ -63,6 +63,27 @@ fn what_is_latched_is_what_would_have_been_computed_in_time() {
     ];
 }
 
+/// So is what is behind a coupling that remembers torques.
+#[test]
+fn what_is_latched_behind_a_lag_is_what_would_have_been_computed_in_time() {
+    let wall = DamperWall::<1> { stiffness: 8.0, damping: 0.005 };
+    let latency = Latency::NONE.with_actuator_lag(3e-4);
+    let behind = |coupling, latency| {
+        let environment = Matched::<_, 0, 1> { environment: wall };
+        Scene { coupling, latency, torque_limit: Some(0.5), ..scene(environment) }
+    };
+    let lagging = behind(Coupling::Matched, latency);
+    ahead!(@ lagging, f32);
+    ahead!(@ lagging, FixedI32<U20>);
+    // Without what it remembers the codes are others.
+    let prompt = behind(Coupling::Matched, Latency::NONE);
+    let codes = |scene: &Scene<_>| {
+        let mut servo = Servo::<_, f32>::build(scene, &TRANSDUCERS).unwrap();
+        hand().map(|count| servo.tick(RawCount::from(count)).code).collect::<Vec<_>>()
+    };
+    assert_ne!(codes(&lagging), codes(&prompt));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
     #[test]
