@@ -45,7 +45,7 @@ impl TimeRange {
 
     /// Whether it is certainly no time.
     pub const fn is_zero(self) -> bool {
-        self.least == 0.0 && self.most == 0.0
+        is_zero(self.least) && is_zero(self.most)
     }
 
     /// Whether it is known.
@@ -57,6 +57,11 @@ impl TimeRange {
     pub const fn middle(self) -> f64 {
         if self.is_exact() { self.least } else { 0.5 * (self.least + self.most) }
     }
+}
+
+/// Whether a number is zero, by its bits: a board compares doubles in software, and asks this of every scene.
+const fn is_zero(number: f64) -> bool {
+    number.to_bits() << 1 == 0
 }
 
 /// Delays and lags between the instant of a count and that of its torque.
@@ -120,7 +125,7 @@ impl Latency {
     /// Whether there is none of it.
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()
-            && self.output_jitter == 0.0
+            && is_zero(self.output_jitter)
             && self.actuator_lag.is_zero()
             && self.sensor_lag.is_zero()
             && self.actuator_response.is_zero()

@@ -122,6 +122,7 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
         Parameter::Delay if value == 0.0 && !scene.environment.has_transfer() => {
             ("at least 1 where no transfer function is stated", None)
         }
+        _ if scene.latency.is_none() => return None,
         _ => return latency_conflict(scene, parameter, value),
     };
     Some(InvalidParameter { parameter, value, bound, limit })

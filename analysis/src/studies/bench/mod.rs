@@ -2,6 +2,7 @@
 
 pub mod at_rest;
 pub mod live;
+pub mod matched;
 pub mod parts;
 pub mod steps;
 
