@@ -47,8 +47,8 @@ impl Quantity {
             Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
             Self::OutputDelay => {
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
-                // No torque comes before its count.
-                delayed.latency.output_jitter = delayed.latency.output_jitter.min(value);
+                delayed.latency.output_jitter =
+                    delayed.latency.output_jitter.min(delayed.largest_jitter());
                 Some(delayed)
             }
         }

@@ -46,7 +46,7 @@ impl ExtremeSlopes {
     }
 }
 
-/// Upper bound on the index of a profile (equations 43 and 44): `T L/2` for a torque that is a sample
+/// Upper bound on the index of a profile (equations 46 and 47): `T L/2` for a torque that is a sample
 /// late and rises by up to `L`, `T M` for each sample more, where `M` is the steepest slope. One that is not
 /// late has `T/2` times the steepest fall.
 ///
@@ -99,7 +99,7 @@ const fn around(value: f64) -> Interval {
     Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
 }
 
-/// Upper bound on the index at the device's port, without a coupling (equation 45): for a torque that is
+/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is
 /// late by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below
 /// `delta`. `None` where none is known: beside a damper or a lag, and where updates are missed.
 pub(super) const fn profile_bound_at_port(
@@ -109,12 +109,10 @@ pub(super) const fn profile_bound_at_port(
     let delay = match &n.latency {
         None => Interval::ZERO,
         Some(lagging) => {
-            let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, .. } =
-                lagging.latency;
-            if output_jitter != 0.0 || !actuator_lag.is_zero() || !sensor_lag.is_zero() {
+            let TimeRange { least, most } = lagging.latency.output_delay;
+            if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
                 return None;
             }
-            let TimeRange { least, most } = output_delay;
             Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi()).div(n.period)
         }
     };

@@ -19,6 +19,7 @@ use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
 use crate::environment::Rational;
+use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
@@ -150,9 +151,9 @@ struct Peak {
 /// The l1 norm of the controller's impulse response (theory, section 6).
 ///
 /// A wall in and out of contact and a torque limit make the response vary. Then, for an
-/// environment of norm `e` behind a compliance `V`, no torque is more than `e + V e` times the last
-/// one, which for `V e < 1` adds up to `e / (1 - V e)`; where that is not so, the norm is the one
-/// in contact.
+/// environment of norm `e` behind a coupling whose compliances add up to `V`, no torque is more than `e`
+/// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
+/// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     let LoopTransfers { controller, environment, .. } =
         LoopTransfers::in_format(scene, format).ok()?;
@@ -170,8 +171,15 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     })
 }
 
+/// Most deflection of the coupling in rad for torques of up to 1 N m each.
 fn compliance(scene: &Scene, format: Format) -> f64 {
-    LoopIntervals::of(scene, format).compliance.hi()
+    let n = LoopIntervals::of(scene, format);
+    matched(&n).map_or_else(|| n.compliance.hi(), |coupling| coupling.largest_deflection())
+}
+
+/// The matched coupling, where a scene has that.
+fn matched(n: &LoopIntervals) -> Option<MatchedCoupling> {
+    n.latency.and_then(|lagging| lagging.matched)
 }
 
 /// Roundings of one kind in a tick: fixed point rounds products, floating point also sums.
@@ -185,13 +193,13 @@ fn roundings(format: Format, products: f64, sums: f64) -> f64 {
 /// The most by which the servo's arithmetic moves the torque: each rounding in a tick times the
 /// norm from where it happens to the torque.
 ///
-/// Positions are rounded as the count becomes an angle and behind the coupling, and differ from a
-/// face and from a state; torques by stiffness, damper and the two gains of the coupling. These
+/// Positions are rounded as the count becomes an angle and behind the coupling and its
+/// [memory](deflection), and differ from a face and from a state; torques by stiffness, damper and the two gains of the coupling. These
 /// come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times the controller's.
 fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Option<f64> {
     // Torques where none is stated are small beside the positions that they come from.
-    let torque = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
-    let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(torque));
+    let limit = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
+    let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(limit));
     let at_torque = match scene.environment.rational() {
         // Its sums may cancel: they are as large as the torque of a turn.
         Some(rational) => {
@@ -200,8 +208,29 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         }
         None => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
     };
-    let at_position = angle * roundings(format, 2.0, 3.0);
+    let at_position = angle * roundings(format, 2.0, 3.0) + deflection(scene, format, limit);
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
+}
+
+/// Position error in rad by which a matched coupling rounds the deflection that past torques leave, and the
+/// device's position less that deflection, for torques of up to `limit` N m.
+///
+/// It multiplies and adds a torque for the part of a sample, the sum of those that are on their way, and a
+/// state for each lag. Such a state decays, and keeps a part of its own rounding.
+fn deflection(scene: &Scene, format: Format, limit: f64) -> f64 {
+    let Some(coupling) = matched(&LoopIntervals::of(scene, format)) else { return 0.0 };
+    let whole = coupling.whole as f64;
+    let lags = coupling.trails.iter().filter(|trail| trail.gain != 0.0);
+    let terms = 2.0 + lags.clone().count() as f64;
+    let at_position = format.rounding_error(TAU) * roundings(format, terms, terms);
+    let at_sum =
+        coupling.held * format.rounding_error(whole * limit) * roundings(format, 0.0, whole);
+    let at_state = |trail: &Trail| {
+        let left = 1.0 - trail.decay;
+        let rounding = format.rounding_error(limit / left) * roundings(format, 1.0, 1.0);
+        trail.gain.abs() * rounding / left
+    };
+    at_position + at_sum + lags.map(at_state).sum::<f64>()
 }
 
 /// Torque error in N m of the states of filter and canceller: each moves by a share of its

@@ -152,6 +152,12 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
     }
 
     #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        // A negative number has more bits than any other.
+        self.to_bits().cast_unsigned() <= bound.to_bits().cast_unsigned()
+    }
+
+    #[inline(always)]
     fn positive_part(self) -> Self {
         self.max(Self::ZERO)
     }

@@ -61,6 +61,13 @@ macro_rules! floating_point {
             }
 
             #[inline(always)]
+            fn is_from_zero_to(self, bound: Self) -> bool {
+                // The bits of a float are in the order of its magnitude, and above those of all numbers
+                // that are not negative come a NaN's and whatever has a sign.
+                self.to_bits() <= bound.to_bits()
+            }
+
+            #[inline(always)]
             fn positive_part(self) -> Self {
                 // Clears all bits where the sign is set: three integer instructions in place of
                 // five for a comparison and a choice.

@@ -56,6 +56,12 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     fn negated(self) -> Self;
     /// Whether the magnitude is at most `bound`; never true of a NaN.
     fn within(self, bound: Self) -> bool;
+    /// Whether the number is at least zero and at most `bound`, which is not negative; never true of a NaN,
+    /// and of a negative zero in some formats.
+    #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        self >= Self::ZERO && self <= bound
+    }
     /// The number where it is positive, else zero. Of a NaN: by its sign, itself or zero.
     fn positive_part(self) -> Self;
     /// The smaller of two; `self` where one is a NaN.

@@ -67,6 +67,11 @@ impl<Frac: LeEqU32 + 'static> Number for Truncated<FixedI32<Frac>> {
     }
 
     #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        self.0.is_from_zero_to(bound.0)
+    }
+
+    #[inline(always)]
     fn positive_part(self) -> Self {
         Self(self.0.positive_part())
     }

@@ -143,7 +143,7 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw, action);
-        let x = x.minus(self.law.lasting_deflection());
+        let x = x.minus(self.law.deflection_after(self.torque));
         let offer = action.add_to(self.law.evaluate(x));
         let output = self.solve_to_code(offer, fits);
         self.update_environment(x, action);
@@ -156,7 +156,9 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
         let (x, fits) = self.angle(raw, action);
+        let x = x.minus(self.law.lasting_deflection());
         // The torque of this tick was computed in the one before.
+        self.law.remember(self.torque);
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
         self.solve_to_code(offer, fits)
@@ -170,7 +172,8 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
         let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
-        let x = N::from_f64(angle)?.minus(self.law.lasting_deflection());
+        let x = N::from_f64(angle)?;
+        let x = x.minus(self.law.deflection_after(self.torque));
         self.solve_to_code(self.law.evaluate(x), true);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
@@ -181,7 +184,6 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     fn update_environment(&mut self, x: N, action: &mut impl Action<N>) {
         let x_e = self.solver.environment_position(x, self.torque);
         self.law.update(x_e);
-        self.law.remember(self.torque);
         action.update(x_e);
     }
 
@@ -208,13 +210,25 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// Solves coupling and environment with the limited torque, which is then that of this tick.
     #[inline(always)]
     fn solve_to_code(&mut self, offer: Response<N>, fits: bool) -> Output {
-        let wanted = self.solver.torque(offer);
         let standing_still = if fits { LimitReason::None } else { LimitReason::Angle };
-        let (torque, limit) = self.limiter.limit(wanted, standing_still);
+        let (torque, limit) = self.limited(offer, standing_still);
         self.torque = torque;
         // The motor pushes against the coupling's deflection.
         let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);
         Output { code: DacCode::from_low_bits(code), limit }
+    }
+
+    /// The torque of coupling and environment within its limit, and the reason if it was limited;
+    /// `otherwise` if not.
+    #[inline(always)]
+    fn limited(&self, offer: Response<N>, otherwise: LimitReason) -> (N, LimitReason) {
+        match offer {
+            Response::Wall(wall) if E::Law::IS_COMPLIANT || !self.solver.is_rigid() => {
+                let wanted = self.solver.wall_or_face(wall.torque, wall.depth);
+                self.limiter.limit_push(wanted, otherwise)
+            }
+            _ => self.limiter.limit(self.solver.torque(offer), otherwise),
+        }
     }
 
     /// One tick between an encoder and a DAC that are at hand.

@@ -178,7 +178,7 @@ fn the_steepest_rise_decides_where_the_torque_is_a_sample_late() {
         certify(&scene(profile.as_data())).is_ok()
     };
     assert!(late(0.999 * limit / 3.0) && !late(1.001 * limit / 3.0));
-    // Without a coupling and a sample late, L/2 + M again (equation 45).
+    // Without a coupling and a sample late, L/2 + M again (equation 48).
     let rigid = |torque: f64| {
         let profile = Profile::<64, 1> { torque, ..Profile::of(&DETENTS) };
         certify(&Scene { coupling: Coupling::Rigid, ..scene(profile.as_data()) }).is_ok()
