@@ -26,6 +26,7 @@ impl HandTrajectory {
     pub fn for_environment(environment: &Environment) -> Self {
         match environment {
             Environment::FreeMode { .. } => Self::swing_and_let_go(),
+            Environment::Profile(_) => Self::turn_and_let_go(),
             _ => Self::push_and_let_go(),
         }
     }
@@ -47,6 +48,12 @@ impl HandTrajectory {
         let swing = |n: i32| (0.25 + 0.5 * f64::from(n), if n % 2 == 0 { -0.3 } else { 0.3 });
         let path = std::iter::once((0.0, 0.0)).chain((0..8).map(swing)).collect();
         Self { description: "a hand swings it and lets go", hand: TYPICAL_HAND, path, release: 3.5 }
+    }
+
+    /// Turns slowly through three detents of fifteen degrees, back through them, and lets go.
+    pub fn turn_and_let_go() -> Self {
+        let path = vec![(0.25, 0.0), (1.75, 0.8), (2.0, 0.8), (3.25, 0.1), (3.75, 0.1)];
+        Self { description: "a hand turns it and lets go", hand: TYPICAL_HAND, path, release: 3.75 }
     }
 
     /// The same trajectory repeated for `until` seconds, without letting go.

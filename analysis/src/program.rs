@@ -1,4 +1,4 @@
-//! The scenes with a program for the board, from that program's own file: three, and one more in the
+//! The scenes with a program for the board, from that program's own file: four, and one more in the
 //! build of `haptic` that the package `haptic-scene` makes for it.
 
 #[path = "../../firmware/src/bin/damper_wall.rs"]
@@ -12,6 +12,8 @@ pub mod free_mode;
 // No scene, and so not among them: what a device is measured with.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
+#[path = "../../firmware/src/bin/knob.rs"]
+pub mod knob;
 #[path = "../../firmware/src/bin/supervised_spring.rs"]
 pub mod supervised_spring;
 #[path = "../../firmware/src/bin/undelayed_spring.rs"]
@@ -186,7 +188,7 @@ macro_rules! programs {
     };
 }
 
-programs!(delayed_spring, damper_wall, free_mode);
+programs!(delayed_spring, damper_wall, free_mode, knob);
 
 /// What the options do. Not among the others: it lets the device go where no host is heard, as in a
 /// simulation there is none.

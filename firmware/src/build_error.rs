@@ -56,6 +56,13 @@ pub enum BuildError {
     CouplingMemory,
     /// There is no matched coupling for the scene's latency.
     NoMatchedCoupling,
+    /// A turn has no whole number of encoder counts, and the environment repeats in each of them.
+    Turn {
+        /// How many it has.
+        counts: f64,
+        /// The most that it may have.
+        largest: f64,
+    },
     /// The environment is known by its bounds alone, and its law is in another crate.
     LawElsewhere,
     /// A numerator of higher degree than its denominator, or a denominator that is zero.
@@ -172,6 +179,16 @@ impl BuildError {
                     "there is no matched coupling for this latency: actuator lag and sensor lag are too \
                      much alike, the jitter is a whole period, or a number is out of range",
                 );
+            }
+            Self::Turn { counts, largest } => {
+                t.push("a turn has ");
+                t.push_number(*counts);
+                t.push(
+                    " encoder counts, and a torque profile that repeats for ever needs a whole number of \
+                     them, up to ",
+                );
+                t.push_number(*largest);
+                t.push(": give it end stops, or count at the shaft that it is on");
             }
             Self::LawElsewhere => {
                 t.push(

@@ -107,13 +107,18 @@ parameters! {
     ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
     SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
     ActuatorResponse: "device.actuator_response", "actuator response", "s", Range::NotNegative;
+    ProfileTorque: "environment.torque", "profile torque", "N m", Range::Positive;
+    Count: "environment.count", "number of repetitions in a turn", "", Range::Positive;
+    Centre: "environment.centre", "profile centre", "rad", Range::Finite;
+    From: "environment.from", "lower end stop", "rad", Range::Finite;
+    To: "environment.to", "upper end stop", "rad", Range::Finite;
 }
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
 /// No message can change the device; period and delay are fixed when the program is compiled and
 /// its board is set up.
-pub const TUNABLE: [(&str, Parameter); 7] = [
+pub const TUNABLE: [(&str, Parameter); 10] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
     ("filter", Parameter::Filter),
@@ -121,6 +126,9 @@ pub const TUNABLE: [(&str, Parameter); 7] = [
     ("residual", Parameter::Residual),
     ("coupling.stiffness", Parameter::CouplingStiffness),
     ("torque_limit", Parameter::TorqueLimit),
+    ("torque", Parameter::ProfileTorque),
+    ("count", Parameter::Count),
+    ("centre", Parameter::Centre),
 ];
 
 /// Something with numbers that have names.

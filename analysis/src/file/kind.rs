@@ -96,7 +96,7 @@ impl Kind {
             Environment::FreeMode { .. } => "free-mode",
             Environment::FreeModeWall { .. } => "free-mode-wall",
             Environment::Rational(_) => "rational",
-            Environment::Stated(_) => return None,
+            Environment::Stated(_) | Environment::Profile(_) => return None,
         };
         Self::find(name)
     }

@@ -121,6 +121,7 @@ fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
         Environment::FreeModeWall { .. }
         | Environment::FreeMode { .. }
         | Environment::Stated(_)
+        | Environment::Profile(_)
         | Environment::Rational(_) => None,
     }
 }

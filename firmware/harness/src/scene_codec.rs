@@ -55,6 +55,7 @@ pub fn encode(scene: &Scene) -> SceneWords {
         Environment::FreeModeWall { .. } => 3,
         Environment::Rational(_) => 4,
         Environment::Stated(_) => 5,
+        Environment::Profile(_) => 6,
     });
     words.push(matches!(scene.coupling, Coupling::Matched).into());
     for parameter in Parameter::ALL {
@@ -88,7 +89,7 @@ const BLANK: Scene = Scene {
 };
 
 /// The scene of the words; `None` if they are none. Of what a type of environment only states, no board
-/// here knows a law.
+/// here knows a law, and a table of knots does not go with the words.
 pub fn decode(words: &SceneWords) -> Option<Scene> {
     let mut words = Cursor { words: *words, next: 0 };
     let kind = words.take();

@@ -36,6 +36,7 @@ mod margin;
 mod model;
 mod port;
 mod problem;
+mod profile;
 mod quantization;
 mod rejection;
 mod remedy;
@@ -252,7 +253,7 @@ impl<E: Copy> Certified<Scene<E>> {
 }
 
 macro_rules! certify_for {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident, $knots:literal;)*) => {$(
         certify_for! { @ [$($generics)*] $environment }
         certify_for! { @
             [const WHOLE: usize, const LAGS: usize, $($generics)*]

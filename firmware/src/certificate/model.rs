@@ -5,6 +5,7 @@
 //! in the number format, and the transfer function is built from these. For [`Format::F64`] the
 //! coefficients are the scene's, as doubles.
 
+use super::profile::{profile_bound, profile_gain};
 use super::validity::first_invalid;
 use crate::environment::{
     Environment, EnvironmentModel, MAX_DEGREE, Memory, Rational, StatedModel, Wall,
@@ -40,6 +41,8 @@ pub(super) struct LoopIntervals {
     pub format: Format,
     /// Whether the worst period is another one than the period.
     pub misses_updates: bool,
+    /// Whether the index is that at the device's port: of a torque profile without a coupling.
+    pub is_at_port: bool,
     /// Whether the coupling is the matched one.
     pub is_matched: bool,
     /// Delays and lags; `None`: none at all, and a coupling without memory.
@@ -181,6 +184,9 @@ impl LoopIntervals {
                 scene.timing.worst_period,
                 Some(worst) if worst != scene.timing.period
             ),
+            is_at_port: E::HAS_KNOTS
+                && matches!(scene.coupling, Coupling::Rigid)
+                && scene.environment.profile().is_some(),
             is_matched: matches!(scene.coupling, Coupling::Matched),
             latency: None,
         };
@@ -213,7 +219,7 @@ impl LoopIntervals {
     }
 
     /// The coefficient that a servo makes of a value.
-    const fn coefficient(&self, value: Interval) -> Interval {
+    pub(super) const fn coefficient(&self, value: Interval) -> Interval {
         rounded(value, self.format, Rounding::Nearest)
     }
 
@@ -484,6 +490,10 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
+    if E::HAS_KNOTS && environment.profile().is_some() {
+        // It is solved in front of the coupling, without a gain.
+        return Some(Interval::ONE);
+    }
     let Some(contact) = scale::<E>(environment, n) else { return None };
     Some(match environment {
         Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
@@ -535,6 +545,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
         Environment::Stated(StatedModel::Bounded { bound, .. }) => {
             Some(Interval::decimal(bound.index))
         }
+        Environment::Profile(profile) if E::HAS_KNOTS => profile_bound(profile, n),
         _ => None,
     }
 }
@@ -564,6 +575,10 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
             }
         }
         Environment::Stated(StatedModel::Bounded { bound, .. }) => Interval::decimal(bound.gain),
+        Environment::Profile(profile) if E::HAS_KNOTS => match profile_gain(profile, n) {
+            Some(gain) => gain,
+            None => return None,
+        },
         _ => return None,
     };
     Some(gain.mul(solved))

@@ -1,11 +1,12 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
 use super::model::{LoopIntervals, largest_solved, nonlinear_bound, transfer};
+use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited, profile_bound_at_port};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
 use super::validity::first_invalid;
-use crate::environment::Environment;
+use crate::environment::{AnyProfile, Environment, FULL_SCALE};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
@@ -85,6 +86,11 @@ impl PassivityProblem {
         if !numbers.delta.is_positive() {
             return Err(Rejection::NoPassivity { delta: numbers.delta });
         }
+        if let Some(profile) = scene.environment.profile()
+            && let Some(rejection) = profile_rejection(profile, scene, &numbers)
+        {
+            return Err(rejection);
+        }
         let environment = match transfer(&scene.environment, &numbers) {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
@@ -98,11 +104,12 @@ impl PassivityProblem {
         let (rule, bound, solvable) = if is_nonlinear(scene) {
             // A clipped or one-sided law has one solution with the coupling only if both slopes
             // agree.
-            let bound = match largest_solved::<Environment>(&scene.environment, &numbers) {
-                Some(solved) => {
-                    nonlinear_bound::<Environment>(&scene.environment, solved, &numbers)
-                }
-                None => None,
+            let bound = match (&scene.environment, numbers.is_at_port) {
+                (Environment::Profile(profile), true) => profile_bound_at_port(profile, &numbers),
+                (environment, _) => match largest_solved::<Environment>(environment, &numbers) {
+                    Some(solved) => nonlinear_bound::<Environment>(environment, solved, &numbers),
+                    None => None,
+                },
             };
             (Rule::Nonlinear, bound, loop_gain.is_positive())
         } else {
@@ -387,6 +394,26 @@ impl PassivityProblem {
     const fn controller(&self, compliance: Interval) -> Result<Transfer, Unbuildable> {
         cancelled(&self.environment).behind(compliance)
     }
+}
+
+/// What stands against a torque profile, whatever its device.
+const fn profile_rejection(
+    profile: &AnyProfile,
+    scene: &Scene,
+    n: &LoopIntervals,
+) -> Option<Rejection> {
+    let outline = profile.outline();
+    if is_motor(profile) {
+        let units = outline.sum as f64 / (outline.knots as f64 * FULL_SCALE as f64);
+        return Some(Rejection::Motor { mean: units * profile.torque });
+    }
+    if scene.torque_limit.is_some() && is_motor_where_limited(profile) {
+        return Some(Rejection::Uneven);
+    }
+    if profile.delay > 0 || ExtremeSlopes::of(profile, n).is_some() {
+        return None;
+    }
+    Some(Rejection::Steep { coupling: Interval::ONE.div(n.compliance) })
 }
 
 /// Enough to decide on which side of `limit` an index is.

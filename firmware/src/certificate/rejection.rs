@@ -28,6 +28,18 @@ pub enum Rejection {
         /// Its output strict passivity.
         delta: Interval,
     },
+    /// A torque profile that is not zero in the mean, or that nothing keeps within its ends.
+    Motor {
+        /// Its mean torque in N m.
+        mean: f64,
+    },
+    /// A torque profile that a torque limit would make a motor of.
+    Uneven,
+    /// A torque profile without delay that is steeper than its coupling.
+    Steep {
+        /// Stiffness of the coupling in N m/rad, for the torque of the same tick.
+        coupling: Interval,
+    },
     /// A pole outside the unit circle.
     UnstablePole {
         /// Schur-Cohn reflection coefficient that shows it: at least 1.
@@ -114,13 +126,13 @@ impl Rejection {
     /// The reason as a word for programs.
     pub const fn reason(&self) -> &'static str {
         match self {
-            Self::Invalid(_) | Self::IllPosed { .. } => "ill_posed",
+            Self::Invalid(_) | Self::IllPosed { .. } | Self::Steep { .. } => "ill_posed",
             Self::Improper => "improper",
             Self::NoPassivity { .. } | Self::Shortage { .. } | Self::Missed { .. } => "shortage",
             Self::UnstablePole { .. } => "unstable_pole",
             Self::RepeatedUnitPole { .. } => "repeated_unit_pole",
             Self::ResidueAngle { .. } | Self::HiddenMode { .. } => "residue_angle",
-            Self::NegativeResidue { .. } => "negative_residue",
+            Self::NegativeResidue { .. } | Self::Motor { .. } | Self::Uneven => "negative_residue",
             Self::Coupling { .. } | Self::CouplingMemory => "coupling",
             Self::Undecided { .. } => "undecided",
         }
@@ -173,6 +185,22 @@ impl Rejection {
                 t.push("the device's passivity delta = ");
                 t.push_number(delta.midpoint());
                 t.push(" N m s/rad must be greater than 0");
+            }
+            Self::Motor { mean } if *mean == 0.0 => t.push(
+                "nothing pushes back beyond the ends of the torque profile: the stiffness of its end stops must be greater than 0",
+            ),
+            Self::Motor { mean } => {
+                t.push("the torque profile repeats for ever, and its mean is ");
+                t.push_number(*mean);
+                t.push(" N m instead of 0: it would turn the device as a motor does");
+            }
+            Self::Uneven => t.push(
+                "a torque limit would clip this torque profile on one side more than on the other, and what is left turns the device as a motor does: make it odd about its centre, or give it end stops",
+            ),
+            Self::Steep { coupling } => {
+                t.push("without delay a torque profile must rise by less than the coupling's ");
+                t.push_number(coupling.lo());
+                t.push(" N m/rad everywhere");
             }
             Self::UnstablePole { reflection, of_coupling, .. } => {
                 t.push(if *of_coupling { "behind this coupling " } else { "" });

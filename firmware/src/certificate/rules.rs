@@ -57,6 +57,9 @@ pub(super) const fn is_nonlinear(scene: &Scene) -> bool {
 /// Where torques lag, condition 18 is that of the coupling's excess over the matched one
 /// ([`crate::matched`]).
 pub(super) const fn paper_limit(n: &LoopIntervals) -> Option<Interval> {
+    if n.is_at_port {
+        return Some(n.delta);
+    }
     if let Some(lagging) = &n.latency {
         return lagging.limit;
     }

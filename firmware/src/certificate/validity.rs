@@ -1,5 +1,6 @@
 //! The range in which each number of a scene makes sense at all.
 
+use crate::environment::{AnyProfile, Environment, StatedModel};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
@@ -112,6 +113,11 @@ const fn first_of(scene: &Scene, numbers: &[(Parameter, Option<f64>)]) -> Option
 
 /// A number in its range that conflicts with another one of the scene.
 const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
+    if let Some(profile) = scene.environment.profile()
+        && let Some(invalid) = profile_conflict(profile, parameter, value)
+    {
+        return Some(invalid);
+    }
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
             (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
@@ -119,7 +125,13 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
         Parameter::WorstPeriod if value < scene.timing.period => {
             ("finite and not below the period", None)
         }
-        Parameter::Delay if value == 0.0 && !scene.environment.has_transfer() => {
+        Parameter::Delay
+            if value == 0.0
+                && matches!(
+                    scene.environment,
+                    Environment::Stated(StatedModel::Bounded { .. })
+                ) =>
+        {
             ("at least 1 where no transfer function is stated", None)
         }
         _ if scene.latency.is_none() => return None,
@@ -127,6 +139,57 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
     };
     Some(InvalidParameter { parameter, value, bound, limit })
 }
+
+/// The same of a number of a torque profile.
+const fn profile_conflict(
+    profile: &AnyProfile,
+    parameter: Parameter,
+    value: f64,
+) -> Option<InvalidParameter> {
+    let outline = profile.outline();
+    let cell = 1.0 / profile.knots_per_rad();
+    let most = MOST_KNOTS / outline.knots as f64;
+    let (bound, limit) = match (parameter, profile.ends) {
+        (Parameter::Count, _) if value > most => ("finite, greater than 0 and at most", Some(most)),
+        (Parameter::Count, None) if value as u32 as f64 != value => {
+            ("a whole number where the profile has no end stops", None)
+        }
+        (Parameter::Centre, _) if value.abs() > LARGEST_ANGLE => {
+            ("of a magnitude up to", Some(LARGEST_ANGLE))
+        }
+        (Parameter::From | Parameter::To, _)
+            if (value - profile.centre).abs() > MOST_KNOTS * cell =>
+        {
+            ("no farther from the profile's centre than, in rad,", Some(MOST_KNOTS * cell))
+        }
+        (Parameter::From, Some(ends)) if value >= ends.to => {
+            ("below the upper end stop:", Some(ends.to))
+        }
+        (Parameter::From, Some(_)) if !outline.wraps && value < profile.centre + 0.5 * cell => {
+            ("within the table of the profile: at least", Some(profile.centre + 0.5 * cell))
+        }
+        (Parameter::To, Some(_)) if !outline.wraps => {
+            let last = profile.centre + (outline.knots as f64 - 1.5) * cell;
+            if value <= last {
+                return None;
+            }
+            ("within the table of the profile: at most", Some(last))
+        }
+        (Parameter::Stiffness, Some(_)) if value <= 0.0 => {
+            ("greater than 0 beyond end stops", None)
+        }
+        (Parameter::Damping, _) if value != 0.0 && profile.delay == 0 => {
+            ("0 beside a torque profile that is not late", None)
+        }
+        _ => return None,
+    };
+    Some(InvalidParameter { parameter, value, bound, limit })
+}
+
+/// Knots that a place of a profile may be away from its centre.
+const MOST_KNOTS: f64 = 65536.0;
+/// In rad: beyond a few turns, a centre is another one of the same profile.
+const LARGEST_ANGLE: f64 = 100.0;
 
 /// The same of a time between count and torque.
 const fn latency_conflict(

@@ -116,6 +116,8 @@ pub(crate) trait Action<N: Number> {
     fn add_to(&self, offer: Response<N>) -> Response<N>;
     /// Ends the tick with the environment at `x_e` (rad).
     fn update(&mut self, x_e: N);
+    /// Moves the positions that it remembers by so many rad.
+    fn shift(&mut self, by: N);
 }
 
 /// No action: costs nothing.
@@ -129,6 +131,9 @@ impl<N: Number> Action<N> for NoAction {
 
     #[inline(always)]
     fn update(&mut self, _: N) {}
+
+    #[inline(always)]
+    fn shift(&mut self, _: N) {}
 }
 
 /// A damper on the environment's velocity of the previous two samples, switched on and off at
@@ -178,6 +183,10 @@ impl<N: Number> Action<N> for Injector<N> {
     fn update(&mut self, x_e: N) {
         self.movement = x_e.minus(self.last);
         self.last = x_e;
+    }
+
+    fn shift(&mut self, by: N) {
+        self.last = self.last.plus(by);
     }
 }
 

@@ -4,8 +4,10 @@ use super::delay_line::VariableDelay;
 use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
 use super::law::{Discretize, Law, LawContext};
 use super::matched::CouplingMemory;
+use super::profile::AnyProfile;
 use super::rational::{Rational, RationalLaw};
 use super::stated::StatedModel;
+use super::turn::Turn;
 use super::velocity::{AnyVelocity, Difference, NoDamping, Washout};
 use super::wall_law::{AnySide, WallLaw};
 use crate::build_error::BuildError;
@@ -55,6 +57,8 @@ pub enum Environment {
     },
     /// One of another crate.
     Stated(StatedModel),
+    /// [`Profile`](super::Profile) or [`DampedProfile`](super::DampedProfile).
+    Profile(AnyProfile),
     /// [`Rational`].
     // No board renders one, so it is not on the wire.
     #[cfg_attr(feature = "wire", serde(skip))]
@@ -67,7 +71,7 @@ impl Environment {
         match self {
             Self::DelayedSpring(wall) => Some(Wall { damping: 0.0, filter: None, ..*wall }),
             Self::DamperWall(wall) | Self::FreeModeWall { wall, .. } => Some(*wall),
-            Self::FreeMode { .. } | Self::Stated(_) | Self::Rational(_) => None,
+            Self::FreeMode { .. } | Self::Stated(_) | Self::Profile(_) | Self::Rational(_) => None,
         }
     }
 
@@ -77,7 +81,15 @@ impl Environment {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => Some(wall),
-            Self::FreeMode { .. } | Self::Stated(_) | Self::Rational(_) => None,
+            Self::FreeMode { .. } | Self::Stated(_) | Self::Profile(_) | Self::Rational(_) => None,
+        }
+    }
+
+    /// The torque profile, if it is one.
+    pub const fn profile(&self) -> Option<&AnyProfile> {
+        match self {
+            Self::Profile(profile) => Some(profile),
+            _ => None,
         }
     }
 
@@ -102,7 +114,7 @@ impl Environment {
 
     /// Whether it is linear with neither face nor torque limit counted.
     pub const fn has_transfer(&self) -> bool {
-        !matches!(self, Self::Stated(StatedModel::Bounded { .. }))
+        !matches!(self, Self::Stated(StatedModel::Bounded { .. }) | Self::Profile(_))
     }
 
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
@@ -121,6 +133,7 @@ impl Environment {
             Self::FreeMode { delay, .. } | Self::Stated(StatedModel::Bounded { delay, .. }) => {
                 *delay
             }
+            Self::Profile(profile) => profile.delay,
             Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
                 rational.whole_delay()
             }
@@ -136,6 +149,7 @@ impl Environment {
             Self::FreeMode { delay, .. } | Self::Stated(StatedModel::Bounded { delay, .. }) => {
                 delay
             }
+            Self::Profile(profile) => &mut profile.delay,
             Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
                 &mut rational.delay
             }
@@ -153,6 +167,9 @@ impl Wall {
 /// The law of any wall. It is put together from the parts of the typed walls, and so gives the
 /// same torques to the bit.
 type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
+
+/// The law of any torque profile.
+type AnyProfileLaw<N> = <AnyProfile as Discretize<N>>::Law;
 
 impl<N: Number> Discretize<N> for Wall {
     type Law = AnyWallLaw<N>;
@@ -181,6 +198,8 @@ pub enum EnvironmentLaw<N: Number> {
     FreeModeWall(FreeModeWallLaw<N, AnyWallLaw<N>>),
     /// Of a rational environment.
     Rational(RationalLaw<N>),
+    /// Of a torque profile.
+    Profile(AnyProfileLaw<N>),
 }
 
 impl<N: Number> Law<N> for EnvironmentLaw<N> {
@@ -190,6 +209,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeMode(law) => law.evaluate(x),
             Self::FreeModeWall(law) => law.evaluate(x),
             Self::Rational(law) => law.evaluate(x),
+            Self::Profile(law) => law.evaluate(x),
         }
     }
 
@@ -199,6 +219,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeMode(law) => law.update(x_e),
             Self::FreeModeWall(law) => law.update(x_e),
             Self::Rational(law) => law.update(x_e),
+            Self::Profile(law) => law.update(x_e),
         }
     }
 
@@ -208,6 +229,20 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeMode(law) => law.rest_at(x_e),
             Self::FreeModeWall(law) => law.rest_at(x_e),
             Self::Rational(law) => law.rest_at(x_e),
+            Self::Profile(law) => law.rest_at(x_e),
+        }
+    }
+
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        match self {
+            Self::Profile(law) => law.turn(),
+            _ => None,
+        }
+    }
+
+    fn shift(&mut self, by: N) {
+        if let Self::Profile(law) = self {
+            law.shift(by);
         }
     }
 
@@ -217,6 +252,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeMode(law) => law.slopes(),
             Self::FreeModeWall(law) => law.slopes(),
             Self::Rational(law) => law.slopes(),
+            Self::Profile(law) => law.slopes(),
         }
     }
 }
@@ -242,6 +278,14 @@ impl<N: Number> Law<N> for DataLaw<N> {
         if let Some(memory) = &mut self.memory {
             memory.rest();
         }
+    }
+
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        self.law.turn()
+    }
+
+    fn shift(&mut self, by: N) {
+        self.law.shift(by);
     }
 
     fn slopes(&self) -> Slopes {
@@ -311,6 +355,7 @@ impl Environment {
                 })
             }
             Self::Rational(rational) => EnvironmentLaw::Rational(rational.law(setting)?),
+            Self::Profile(profile) => EnvironmentLaw::Profile(profile.law(setting)?),
         })
     }
 }

@@ -34,6 +34,20 @@ impl<const N: usize> FreeMode<N> {
     }
 }
 
+impl<const KNOTS: usize, const N: usize> Profile<KNOTS, N> {
+    /// As data.
+    pub const fn as_data(&self) -> Environment {
+        Environment::Profile(self.as_any())
+    }
+}
+
+impl<const KNOTS: usize, const N: usize> DampedProfile<KNOTS, N> {
+    /// As data.
+    pub const fn as_data(&self) -> Environment {
+        Environment::Profile(self.as_any())
+    }
+}
+
 impl Rational {
     /// As data.
     pub const fn as_data(&self) -> Environment {

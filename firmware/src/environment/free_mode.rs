@@ -2,6 +2,7 @@
 
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Discretize, Law, LawContext};
+use super::turn::Turn;
 use super::velocity::{Velocity, Washout};
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
@@ -83,6 +84,10 @@ impl<N: Number, D: DelayLine<N>> Law<N> for FreeModeLaw<N, D> {
         self.delay.fill(N::ZERO);
     }
 
+    fn shift(&mut self, by: N) {
+        self.canceller.shift(by);
+    }
+
     fn slopes(&self) -> Slopes {
         match self.delay.due() {
             Some(_) => Slopes::default(),
@@ -127,6 +132,16 @@ impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
     fn rest_at(&mut self, x_e: N) {
         self.canceller.rest_at(x_e);
         self.wall.rest_at(x_e);
+    }
+
+    #[inline(always)]
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        self.wall.turn()
+    }
+
+    fn shift(&mut self, by: N) {
+        self.canceller.shift(by);
+        self.wall.shift(by);
     }
 
     fn slopes(&self) -> Slopes {

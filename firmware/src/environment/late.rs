@@ -1,8 +1,8 @@
 //! What an environment must be to stand the time that a torque takes to the motor.
 
 use super::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched, OneSided, Placed,
-    Rational,
+    DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
+    OneSided, Placed, Profile, Rational,
 };
 use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
@@ -20,7 +20,11 @@ macro_rules! delayed {
         DamperWall<$delay>, Placed<DamperWall<$delay>>, OneSided<DamperWall<$delay>>,
         FilteredWall<$delay>, Placed<FilteredWall<$delay>>, OneSided<FilteredWall<$delay>>,
         FreeMode<$delay>,
-    })*};
+    } delayed! { knots $delay })*};
+    (knots $delay:literal) => {
+        impl<const KNOTS: usize> Delayed for Profile<KNOTS, $delay> {}
+        impl<const KNOTS: usize> Delayed for DampedProfile<KNOTS, $delay> {}
+    };
     (@ $($environment:ty,)*) => {$(
         impl Delayed for $environment {}
     )*};

@@ -1,5 +1,6 @@
 //! What every environment is to the servo: an affine law, whose state advances once a tick.
 
+use super::turn::Turn;
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
 use crate::latency::Latency;
@@ -37,6 +38,13 @@ pub trait Law<N: Number> {
     /// Ends such a tick for the coupling, with this torque in N m.
     #[inline(always)]
     fn remember(&mut self, _torque: N) {}
+    /// The turn within which its angles are, for a law that repeats for ever.
+    #[inline(always)]
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        None
+    }
+    /// Moves all positions that it remembers by so many rad.
+    fn shift(&mut self, _by: N) {}
     /// Slopes of the lines that are offered, in N m/rad, of the coefficients as rounded.
     fn slopes(&self) -> Slopes;
 }

@@ -2,6 +2,7 @@
 
 use super::delay_line::{DelayLine, FixedDelay};
 use super::law::{Discretize, Law, LawContext};
+use super::turn::Turn;
 use crate::build_error::BuildError;
 use crate::coupling::{Coupling, Response, Slopes};
 use crate::matched::{MatchedCoupling, Trail};
@@ -152,6 +153,15 @@ impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
     fn rest_at(&mut self, x_e: N) {
         self.law.rest_at(x_e);
         self.memory.rest();
+    }
+
+    #[inline(always)]
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        self.law.turn()
+    }
+
+    fn shift(&mut self, by: N) {
+        self.law.shift(by);
     }
 
     fn slopes(&self) -> Slopes {

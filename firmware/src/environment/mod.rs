@@ -9,29 +9,31 @@
 //! [`StatedEnvironment`] of another crate runs beside them.
 
 /// Gives a macro all environments, each with its generic parameters, with whether it may cancel the
-/// device's damping, and with what its law remembers for a coupling: the one list of them. Each is there
-/// as [`Matched`], too.
+/// device's damping, with what its law remembers for a coupling, and with whether it may be a torque profile:
+/// the one list of them. Each is there as [`Matched`], too.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
-            [const N: usize] DelayedSpring<N>: false, None;
-            [const N: usize] Placed<DelayedSpring<N>>: false, None;
-            [const N: usize] OneSided<DelayedSpring<N>>: false, None;
-            [const N: usize] DamperWall<N>: false, None;
-            [const N: usize] Placed<DamperWall<N>>: false, None;
-            [const N: usize] OneSided<DamperWall<N>>: false, None;
-            [const N: usize] FilteredWall<N>: false, None;
-            [const N: usize] Placed<FilteredWall<N>>: false, None;
-            [const N: usize] OneSided<FilteredWall<N>>: false, None;
-            [const N: usize] FreeMode<N>: true, None;
-            [const N: usize] FreeModeWall<DelayedSpring<N>>: true, None;
-            [const N: usize] FreeModeWall<DamperWall<N>>: true, None;
-            [const N: usize] FreeModeWall<FilteredWall<N>>: true, None;
-            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true, None;
-            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true, None;
-            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None;
-            [] Rational: false, None;
-            [] Environment: true, Any;
+            [const N: usize] DelayedSpring<N>: false, None, false;
+            [const N: usize] Placed<DelayedSpring<N>>: false, None, false;
+            [const N: usize] OneSided<DelayedSpring<N>>: false, None, false;
+            [const N: usize] DamperWall<N>: false, None, false;
+            [const N: usize] Placed<DamperWall<N>>: false, None, false;
+            [const N: usize] OneSided<DamperWall<N>>: false, None, false;
+            [const N: usize] FilteredWall<N>: false, None, false;
+            [const N: usize] Placed<FilteredWall<N>>: false, None, false;
+            [const N: usize] OneSided<FilteredWall<N>>: false, None, false;
+            [const N: usize] FreeMode<N>: true, None, false;
+            [const N: usize] FreeModeWall<DelayedSpring<N>>: true, None, false;
+            [const N: usize] FreeModeWall<DamperWall<N>>: true, None, false;
+            [const N: usize] FreeModeWall<FilteredWall<N>>: true, None, false;
+            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true, None, false;
+            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true, None, false;
+            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None, false;
+            [const KNOTS: usize, const N: usize] Profile<KNOTS, N>: false, None, true;
+            [const KNOTS: usize, const N: usize] DampedProfile<KNOTS, N>: false, None, true;
+            [] Rational: false, None, false;
+            [] Environment: true, Any, true;
         }
     };
 }
@@ -51,8 +53,10 @@ mod law;
 mod matched;
 mod model;
 mod numbers;
+mod profile;
 mod rational;
 mod stated;
+mod turn;
 mod velocity;
 mod wall_law;
 mod walls;
@@ -64,8 +68,14 @@ pub use late::{Delayed, SupportsTiming};
 pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
+pub(crate) use profile::Scale;
+pub use profile::{
+    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, Outline, Profile,
+    ProfileLaw, Shape, ShapeError,
+};
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};
+pub use turn::Turn;
 pub use velocity::{AnyVelocity, Difference, NoDamping, Velocity, Washout};
 pub use wall_law::{AnySide, Centred, Displaced, Face, Side, WallLaw};
 pub use walls::{DamperWall, DelayedSpring, FilteredWall, OneSided, Placed, Spring};

@@ -63,6 +63,9 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// code that certifies cancelled damping.
     const CANCELS_DAMPING: bool;
 
+    /// Whether it may be a torque profile. If not, the program omits the code that certifies one.
+    const HAS_KNOTS: bool;
+
     /// What its law remembers for a coupling.
     const MEMORY: Memory;
 
@@ -74,6 +77,7 @@ impl<E: StatedEnvironment> sealed::Sealed for E {}
 
 impl<E: StatedEnvironment> EnvironmentModel for E {
     const CANCELS_DAMPING: bool = false;
+    const HAS_KNOTS: bool = false;
     const MEMORY: Memory = Memory::None;
 
     fn as_data(&self, context: &LawContext) -> Environment {
@@ -82,7 +86,7 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 }
 
 macro_rules! known_models {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident;)*) => {$(
+    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident, $knots:literal;)*) => {$(
         impl<const WHOLE: usize, const LAGS: usize, $($generics)*> sealed::Sealed
             for Matched<$environment, WHOLE, LAGS>
         {
@@ -92,6 +96,7 @@ macro_rules! known_models {
             for Matched<$environment, WHOLE, LAGS>
         {
             const CANCELS_DAMPING: bool = $cancels;
+            const HAS_KNOTS: bool = $knots;
             const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS };
 
             fn as_data(&self, _: &LawContext) -> Environment {
@@ -112,6 +117,7 @@ macro_rules! known_models {
 
         impl<$($generics)*> EnvironmentModel for $environment {
             const CANCELS_DAMPING: bool = $cancels;
+            const HAS_KNOTS: bool = $knots;
             const MEMORY: Memory = Memory::$memory;
 
             fn as_data(&self, _: &LawContext) -> Environment {

@@ -1,6 +1,7 @@
 //! The numbers of any environment by name.
 
 use super::any::{Environment, Wall};
+use super::profile::{AnyProfile, Ends};
 use super::stated::{StatedBound, StatedModel};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
@@ -45,11 +46,13 @@ impl Environment {
         Stiffness:
             Self::DelayedSpring(Wall { stiffness: value, .. })
             | Self::DamperWall(Wall { stiffness: value, .. })
-            | Self::FreeModeWall { wall: Wall { stiffness: value, .. }, .. },
+            | Self::FreeModeWall { wall: Wall { stiffness: value, .. }, .. }
+            | Self::Profile(AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. }),
         // A spring ignores its wall's damping.
         Damping:
             Self::DamperWall(Wall { damping: value, .. })
-            | Self::FreeModeWall { wall: Wall { damping: value, .. }, .. },
+            | Self::FreeModeWall { wall: Wall { damping: value, .. }, .. }
+            | Self::Profile(AnyProfile { damping: value, .. }),
         Filter:
             Self::DamperWall(Wall { filter: Some(value), .. })
             | Self::FreeModeWall { wall: Wall { filter: Some(value), .. }, .. },
@@ -60,6 +63,11 @@ impl Environment {
         Residual: Self::FreeMode { residual: value, .. } | Self::FreeModeWall { residual: value, .. },
         StatedIndex:
             Self::Stated(StatedModel::Bounded { bound: StatedBound { index: value, .. }, .. }),
+        ProfileTorque: Self::Profile(AnyProfile { torque: value, .. }),
+        Count: Self::Profile(AnyProfile { count: value, .. }),
+        Centre: Self::Profile(AnyProfile { centre: value, .. }),
+        From: Self::Profile(AnyProfile { ends: Some(Ends { from: value, .. }), .. }),
+        To: Self::Profile(AnyProfile { ends: Some(Ends { to: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

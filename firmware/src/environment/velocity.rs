@@ -15,6 +15,8 @@ pub trait Velocity<N: Number>: Clone + core::fmt::Debug {
     fn update(&mut self, x_e: N);
     /// As if the environment had always been at `x_e` (rad).
     fn rest_at(&mut self, x_e: N);
+    /// Moves the positions that it remembers by so many rad.
+    fn shift(&mut self, by: N);
     /// Torque a position in this tick, in N m/rad.
     fn slope(&self) -> f64;
 }
@@ -33,6 +35,8 @@ impl<N: Number> Velocity<N> for NoDamping {
     fn update(&mut self, _: N) {}
 
     fn rest_at(&mut self, _: N) {}
+
+    fn shift(&mut self, _: N) {}
 
     fn slope(&self) -> f64 {
         0.0
@@ -67,6 +71,10 @@ impl<N: Number> Velocity<N> for Difference<N> {
 
     fn rest_at(&mut self, x_e: N) {
         self.previous = x_e;
+    }
+
+    fn shift(&mut self, by: N) {
+        self.previous = self.previous.plus(by);
     }
 
     fn slope(&self) -> f64 {
@@ -119,6 +127,10 @@ impl<N: Number> Velocity<N> for Washout<N> {
         self.state = x_e;
     }
 
+    fn shift(&mut self, by: N) {
+        self.state = self.state.plus(by);
+    }
+
     fn slope(&self) -> f64 {
         N::coefficient_to_f64(self.gain)
     }
@@ -157,6 +169,14 @@ impl<N: Number> Velocity<N> for AnyVelocity<N> {
             Self::None(velocity) => velocity.rest_at(x_e),
             Self::Difference(velocity) => velocity.rest_at(x_e),
             Self::Filtered(velocity) => velocity.rest_at(x_e),
+        }
+    }
+
+    fn shift(&mut self, by: N) {
+        match self {
+            Self::None(velocity) => velocity.shift(by),
+            Self::Difference(velocity) => velocity.shift(by),
+            Self::Filtered(velocity) => velocity.shift(by),
         }
     }
 

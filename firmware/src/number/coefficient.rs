@@ -19,6 +19,28 @@ impl Format {
         }
     }
 
+    /// What [`Number::parts_scale`](super::Number::parts_scale) makes of parts in a rad.
+    pub(crate) const fn parts_per_rad(self, value: f64) -> f64 {
+        let steps = self.steps_per_unit();
+        self.coefficient(value / steps, Rounding::Nearest) * steps
+    }
+
+    /// What [`Number::part_scale`](super::Number::part_scale) makes of the torque in N m of a part.
+    pub(crate) const fn torque_of_part(self, value: f64) -> f64 {
+        let steps = self.steps_per_unit();
+        self.coefficient(value * steps, Rounding::Nearest) / steps
+    }
+
+    /// Steps of a fixed-point format in a rad or a N m, a power of two; 1 in floating point.
+    const fn steps_per_unit(self) -> f64 {
+        match self {
+            Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
+                (1_u64 << fraction_bits) as f64
+            }
+            Self::F32 | Self::F64 => 1.0,
+        }
+    }
+
     /// The most by which a number of this magnitude is off when it is rounded, half a step, or cut
     /// off, a whole one.
     pub fn rounding_error(self, magnitude: f64) -> f64 {

@@ -173,6 +173,26 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
         (Self::from_bits(bits), fits)
     }
 
+    fn parts_scale(parts_per_rad: f64) -> Result<Scaled, OutOfRange> {
+        let parts = parts_per_rad * Self::DELTA.to_num::<f64>();
+        Scaled::new(parts, Self::FORMAT)
+    }
+
+    #[inline(always)]
+    fn parts(self, scale: Scaled) -> i32 {
+        scale.scale(self.to_bits()).0
+    }
+
+    fn part_scale(torque: f64) -> Result<Scaled, OutOfRange> {
+        let steps = torque * Self::DELTA.to_num::<f64>().recip();
+        Scaled::new(steps, Self::FORMAT)
+    }
+
+    #[inline(always)]
+    fn of_parts(parts: i32, scale: Scaled) -> Self {
+        Self::from_bits(scale.scale(parts).0)
+    }
+
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {
         let codes = codes_per_torque * Self::DELTA.to_num::<f64>();
         Scaled::inward(codes, Self::FORMAT)

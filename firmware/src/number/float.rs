@@ -84,6 +84,24 @@ macro_rules! floating_point {
                 (count as $float * scale, true)
             }
 
+            fn parts_scale(parts_per_rad: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(parts_per_rad)
+            }
+
+            #[inline(always)]
+            fn parts(self, scale: Self) -> i32 {
+                (self * scale) as i32
+            }
+
+            fn part_scale(torque: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(torque)
+            }
+
+            #[inline(always)]
+            fn of_parts(parts: i32, scale: Self) -> Self {
+                parts as $float * scale
+            }
+
             fn code_scale(codes_per_torque: f64) -> Result<Self, OutOfRange> {
                 Self::from_f64($format.coefficient(codes_per_torque, Rounding::Inward))
             }

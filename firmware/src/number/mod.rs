@@ -80,6 +80,14 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
     /// the format's range.
     fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
+    /// The factor for [`Number::parts`] from parts in a rad.
+    fn parts_scale(parts_per_rad: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// The angle in whole parts, cut off or rounded; the nearest `i32` where it is out of range.
+    fn parts(self, scale: Self::Coefficient) -> i32;
+    /// The factor for [`Number::of_parts`] from the torque in N m of a part.
+    fn part_scale(torque: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// The torque in N m of so many parts.
+    fn of_parts(parts: i32, scale: Self::Coefficient) -> Self;
     /// The factor for [`Number::codes_below`] from the DAC's codes per N m, rounded
     /// [`Rounding::Inward`].
     fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;

@@ -87,6 +87,26 @@ impl<Frac: LeEqU32 + 'static> Number for Truncated<FixedI32<Frac>> {
         (Self(FixedI32::from_bits(bits)), fits)
     }
 
+    fn parts_scale(parts_per_rad: f64) -> Result<Scaled, OutOfRange> {
+        let out_of_range = |error| OutOfRange { format: Self::FORMAT, ..error };
+        FixedI32::<Frac>::parts_scale(parts_per_rad).map_err(out_of_range)
+    }
+
+    #[inline(always)]
+    fn parts(self, scale: Scaled) -> i32 {
+        scale.scale_down(self.0.to_bits()).0
+    }
+
+    fn part_scale(torque: f64) -> Result<Scaled, OutOfRange> {
+        let out_of_range = |error| OutOfRange { format: Self::FORMAT, ..error };
+        FixedI32::<Frac>::part_scale(torque).map_err(out_of_range)
+    }
+
+    #[inline(always)]
+    fn of_parts(parts: i32, scale: Scaled) -> Self {
+        Self(FixedI32::from_bits(scale.scale_down(parts).0))
+    }
+
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {
         let out_of_range = |error| OutOfRange { format: Self::FORMAT, ..error };
         FixedI32::<Frac>::code_scale(codes_per_torque).map_err(out_of_range)

@@ -11,6 +11,8 @@ pub use crate::output_timing::{AtPhase, Latched, OutputMode, OutputTiming, Simul
 pub use crate::step::Step;
 pub use crate::transducers::Transducers;
 
+use core::hint::cold_path;
+
 use crate::certificate::{Certified, certify_scene};
 use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
@@ -90,7 +92,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     pub(crate) fn build(scene: &Scene<E>, transducers: &Transducers) -> Result<Self, BuildError> {
         let radians_per_count = transducers.radians_per_count()?;
         let codes_per_torque = transducers.codes_per_torque()?;
-        let law = scene.environment.law(&scene.setting()?)?;
+        let mut law = scene.environment.law(&scene.setting()?)?;
+        if let Some(turn) = law.turn() {
+            turn.set_counts(transducers.counts_per_turn)?;
+        }
         let compliance = scene.coupling.compliance(law.matched_compliance())?;
         Ok(Self {
             position: Position::new(transducers.counter),
@@ -137,10 +142,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The code that belongs to the same instant as the count.
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw);
+        let (x, standing_still) = self.angle(raw, action);
         let x = x.minus(self.law.deflection_after(self.torque));
         let offer = action.add_to(self.law.evaluate(x));
-        let output = self.solve_to_code(offer, fits);
+        let output = self.solve_to_code(offer, standing_still);
         self.update_environment(x, action);
         output
     }
@@ -150,13 +155,13 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// [`Servo::tick_zero_delay`] would give in the tick after this one.
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw);
+        let (x, standing_still) = self.angle(raw, action);
         let x = x.minus(self.law.lasting_deflection());
         // The torque of this tick was computed in the one before.
         self.law.remember(self.torque);
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
-        self.solve_to_code(offer, fits)
+        self.solve_to_code(offer, standing_still)
     }
 
     /// One tick at an angle in rad that no encoder has counted: what the number format alone does to
@@ -166,9 +171,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
         let x = N::from_f64(angle)?;
         let x = x.minus(self.law.deflection_after(self.torque));
-        self.solve_to_code(self.law.evaluate(x), true);
+        self.solve_to_code(self.law.evaluate(x), LimitReason::None);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
     }
@@ -181,18 +187,38 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         action.update(x_e);
     }
 
-    /// The device's angle in rad, and whether the number format holds it.
+    /// The device's angle in rad, and the reason if it stands still at the end of its range.
     #[inline(always)]
-    fn angle(&mut self, raw: RawCount) -> (N, bool) {
-        let reading = self.position.update(raw);
-        let (x, fits) = N::angle(reading.count, self.angle_scale);
-        (x, fits && !reading.saturated)
+    fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, LimitReason) {
+        self.position.follow(raw);
+        if let Some(turn) = self.law.turn() {
+            if let Some((count, turns)) = turn.within(self.position.low()) {
+                if turns != 0 {
+                    cold_path();
+                    let by = turn.left(turns);
+                    self.law.shift(by);
+                    action.shift(by);
+                }
+                return self.angle_of(count);
+            }
+        }
+        let reading = self.position.reading();
+        if reading.saturated {
+            cold_path();
+            return (self.angle_of(reading.count).0, LimitReason::Angle);
+        }
+        self.angle_of(reading.count)
+    }
+
+    #[inline(always)]
+    fn angle_of(&self, count: i32) -> (N, LimitReason) {
+        let (x, fits) = N::angle(count, self.angle_scale);
+        (x, if fits { LimitReason::None } else { LimitReason::Angle })
     }
 
     /// Solves coupling and environment with the limited torque, which is then that of this tick.
     #[inline(always)]
-    fn solve_to_code(&mut self, offer: Response<N>, fits: bool) -> Output {
-        let standing_still = if fits { LimitReason::None } else { LimitReason::Angle };
+    fn solve_to_code(&mut self, offer: Response<N>, standing_still: LimitReason) -> Output {
         let (torque, limit) = self.limited(offer, standing_still);
         self.torque = torque;
         // The motor pushes against the coupling's deflection.

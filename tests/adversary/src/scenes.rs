@@ -520,7 +520,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
             // What is cancelled is scaled.
             *residual = damping - (damping - *residual) * by;
         }
-        Environment::FreeMode { .. } | Environment::Stated(_) => {}
+        Environment::FreeMode { .. } | Environment::Stated(_) | Environment::Profile(_) => {}
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => match knob {
@@ -616,7 +616,7 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
             other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
         }
         Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
-        Environment::Stated(_) => {}
+        Environment::Stated(_) | Environment::Profile(_) => {}
     }
     passes(&other, format.format()).then_some(other)
 }

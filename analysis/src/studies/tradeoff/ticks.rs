@@ -124,6 +124,7 @@ fn type_of(environment: &Environment) -> String {
             format!("free mode and {}, {}", wall_type(wall), delay(wall.delay))
         }
         Environment::Stated(_) => "of another crate".to_owned(),
+        Environment::Profile(profile) => format!("torque profile, {}", delay(profile.delay)),
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
             format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))

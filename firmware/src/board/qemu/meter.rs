@@ -9,6 +9,7 @@ use core::arch::{asm, naked_asm};
 use core::sync::atomic::{Ordering, compiler_fence};
 
 pub use super::tick_timer::now;
+use super::tick_timer::{COUNTER, now_at};
 
 use crate::environment::Discretize;
 use crate::number::Number;
@@ -109,7 +110,12 @@ fn loop_time(turns: u32) -> u32 {
 #[inline(always)]
 pub fn measure(number: u32, what: impl FnOnce(u32) -> (u32, u32)) -> u32 {
     cortex_m::interrupt::free(|_| {
-        let start = now();
+        let mut counter = COUNTER;
+        // SAFETY: no instruction; the operand is unchanged. The compiler does not know that it is a
+        // constant, which it would otherwise make again within the measured stretch.
+        unsafe { asm!("/* {0} */", inout(reg) counter) };
+        // SAFETY: the address is unchanged.
+        let start = unsafe { now_at(counter) };
         let mut number = number;
         // SAFETY: no instruction; the operand is unchanged. It may touch memory as far as the
         // compiler knows, which keeps what the work needs where it is.
@@ -117,7 +123,8 @@ pub fn measure(number: u32, what: impl FnOnce(u32) -> (u32, u32)) -> u32 {
         let (one, other) = what(number);
         // SAFETY: no instruction; as above, with the results as inputs.
         unsafe { asm!("/* {0} {1} */", in(reg) one, in(reg) other) };
-        let end = now();
+        // SAFETY: the address is unchanged.
+        let end = unsafe { now_at(counter) };
         compiler_fence(Ordering::SeqCst);
         end.wrapping_sub(start)
     })

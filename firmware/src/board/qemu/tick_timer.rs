@@ -16,7 +16,7 @@ const CORE_CLOCK: f64 = 168e6;
 /// TIM2's registers, from the F405's memory map: control register 1, counter (of 32 bits), and
 /// reload.
 const CONTROL: *mut u32 = 0x4000_0000 as *mut u32;
-const COUNTER: *const u32 = 0x4000_0024 as *const u32;
+pub const COUNTER: *const u32 = 0x4000_0024 as *const u32;
 const RELOAD: *mut u32 = 0x4000_002C as *mut u32;
 /// Counts of the clock a second: the emulated TIM2 counts nanoseconds, whatever the core does.
 const CLOCK: f64 = 1e9;
@@ -38,6 +38,16 @@ pub fn start_clock() {
 pub fn now() -> u32 {
     // SAFETY: TIM2's counter is a register that may be read at any time and without effect.
     unsafe { COUNTER.read_volatile() }
+}
+
+/// The clock, by its register's address: for a measurement that keeps the address from one reading to the next.
+///
+/// # Safety
+/// The address has to be that of [`COUNTER`].
+#[inline(always)]
+pub unsafe fn now_at(counter: *const u32) -> u32 {
+    // SAFETY: as in `now`.
+    unsafe { counter.read_volatile() }
 }
 
 /// A period as both count it.

@@ -9,6 +9,7 @@ use super::Certified;
 use super::assessment::Assessment;
 use super::margin::Limited;
 use super::model::{LoopIntervals, Missed, has_latency, largest_solved, nonlinear_bound};
+use super::profile::is_motor_where_limited;
 use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;
 use crate::coupling::Coupling;
@@ -315,6 +316,9 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
         }
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
+    if E::HAS_KNOTS && is_uneven(&scene.environment) {
+        return Err(Step::Certificate);
+    }
     let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
         return Err(Step::Certificate);
     };
@@ -430,6 +434,14 @@ const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
     Missed::read_late(n, late).limit(limited.coupling)
 }
 
+/// Whether a torque limit may make a motor of it.
+const fn is_uneven(environment: &Environment) -> bool {
+    match environment.profile() {
+        Some(profile) => is_motor_where_limited(profile),
+        None => false,
+    }
+}
+
 /// The bound on the index of a certified scene whose torque is limited; `bound` is that which the
 /// verdict compared, for one-sided and limited scenes.
 ///
@@ -443,6 +455,9 @@ pub(super) const fn limited_bound(
     bound: Option<Interval>,
     n: &LoopIntervals,
 ) -> Option<Interval> {
+    if is_uneven(&scene.environment) {
+        return None;
+    }
     if matches!(rule, Rule::Nonlinear) {
         return bound;
     }

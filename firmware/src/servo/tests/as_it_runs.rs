@@ -59,6 +59,18 @@ macro_rules! coarse {
             fn angle(count: i32, scale: f64) -> (Self, bool) {
                 (Self(f64::from(count) * scale), true)
             }
+            fn parts_scale(parts_per_rad: f64) -> Result<f64, OutOfRange> {
+                Ok($format.parts_per_rad(parts_per_rad))
+            }
+            fn parts(self, scale: f64) -> i32 {
+                (self.0 * scale).round() as i32
+            }
+            fn part_scale(torque: f64) -> Result<f64, OutOfRange> {
+                Ok($format.torque_of_part(torque))
+            }
+            fn of_parts(parts: i32, scale: f64) -> Self {
+                Self(f64::from(parts) * scale)
+            }
             fn code_scale(codes_per_torque: f64) -> Result<f64, OutOfRange> {
                 Ok(codes_per_torque)
             }

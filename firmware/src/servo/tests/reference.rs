@@ -114,7 +114,9 @@ impl Reference {
             Environment::FreeModeWall { residual, wall: data } => {
                 vec![free(residual, 0), wall(data)]
             }
-            Environment::Stated(_) => panic!("no law is known of it here"),
+            Environment::Stated(_) | Environment::Profile(_) => {
+                panic!("no law is known of it here")
+            }
             Environment::Rational(data) => {
                 let sum = Sum::Linear(rational_response(&data, length));
                 vec![Part { sum, delay: data.delay, given: Vec::new() }]

@@ -1,0 +1,40 @@
+//! A knob of 24 detents a turn between two end stops, one sample late.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod paddle;
+
+use firmware::certificate::Certified;
+use firmware::environment::{Knots, Profile, Shape};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
+pub use paddle::TRANSDUCERS;
+
+/// What the hand feels.
+pub type Environment = Profile<16, 1>;
+
+/// Ten detents either way, and what is beyond them: a table of one detent, which stays in flash.
+static KNOTS: Knots<16> =
+    Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: paddle::DEVICE,
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: Profile::of(&KNOTS),
+    latency: Latency::NONE,
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+pub type Fixed = fixed::types::I8F24;
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: Fixed,
+}

@@ -1,0 +1,139 @@
+//! The index of a torque profile: by its extreme slopes alone (theory, section 14).
+
+use super::model::LoopIntervals;
+use crate::environment::{AnyProfile, Ends, Scale};
+use crate::latency::{Latency, TimeRange};
+use crate::passivity::interval::Interval;
+
+/// The steepest slopes of a profile as a servo has them, in N m/rad, neither of them negative. Of a
+/// profile that is not late they are those behind the coupling.
+#[derive(Clone, Copy)]
+pub(super) struct ExtremeSlopes {
+    /// Of a rising torque, which pushes back.
+    pub rise: Interval,
+    /// Of a falling torque, which pulls on.
+    pub fall: Interval,
+}
+
+impl ExtremeSlopes {
+    /// `None` where there is none: a torque in front of the coupling that rises faster than the coupling's
+    /// own.
+    pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
+        let outline = profile.outline();
+        let Scale { parts_per_rad, torque_of_part } = profile.scale();
+        let parts = around(n.format.parts_per_rad(parts_per_rad));
+        let unit = around(n.format.torque_of_part(torque_of_part)).mul(parts);
+        let inside = unit.mul(Interval::exact(outline.rise as f64));
+        let rise = match profile.ends {
+            Some(Ends { stiffness, .. }) => inside.max(n.coefficient(Interval::decimal(stiffness))),
+            None => inside,
+        };
+        let fall = unit.mul(Interval::exact(outline.fall as f64));
+        if profile.delay > 0 {
+            return Some(Self { rise, fall });
+        }
+        let left = Interval::ONE.sub(rise.mul(n.compliance));
+        if !left.is_positive() {
+            return None;
+        }
+        let fed_back = Interval::ONE.add(fall.mul(n.compliance));
+        Some(Self { rise: rise.div(left), fall: fall.div(fed_back) })
+    }
+
+    /// The steeper of the two.
+    pub const fn steepest(&self) -> Interval {
+        self.rise.max(self.fall)
+    }
+}
+
+/// Upper bound on the index of a profile (equations 46 and 47): `T L/2` for a torque that is a sample
+/// late and rises by up to `L`, `T M` for each sample more, where `M` is the steepest slope. One that is not
+/// late has `T/2` times the steepest fall.
+///
+/// A limit on the torque takes from slopes, and adds none.
+pub(super) const fn profile_bound(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
+    if is_motor(profile) {
+        return None;
+    }
+    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
+    let half = n.period.half();
+    if profile.delay == 0 {
+        return Some(half.mul(slopes.fall));
+    }
+    let more = Interval::exact(profile.delay as f64 - 1.0);
+    let damping = damper(profile, n).mul(n.period).abs();
+    let late = n.period.mul(more).mul(slopes.steepest());
+    Some(half.mul(slopes.rise).add(late).add(damping))
+}
+
+/// The most by which the torque changes for a change of position, times the period: [`super::model::largest_gain`].
+pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
+    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
+    let damping = damper(profile, n).mul(n.period).abs();
+    Some(slopes.steepest().mul(n.period).add(damping.double()))
+}
+
+/// Whether a torque that is not zero in the mean would turn the device for ever.
+pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
+    let outline = profile.outline();
+    match profile.ends {
+        // Nothing but springs that push back beyond them keeps the device within its ends.
+        Some(Ends { stiffness, .. }) => !(stiffness > 0.0),
+        None => outline.sum != 0 || !outline.wraps,
+    }
+}
+
+/// Whether a torque limit may make a motor of it: where it repeats for ever, and its torque is clipped on one
+/// side more than on the other.
+pub(super) const fn is_motor_where_limited(profile: &AnyProfile) -> bool {
+    profile.ends.is_none() && !profile.outline().is_odd
+}
+
+/// `B / T` in N m/rad of the damper beside it.
+const fn damper(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+    n.coefficient(Interval::decimal(profile.damping).div(n.period))
+}
+
+/// Around a number that was computed in a few roundings.
+const fn around(value: f64) -> Interval {
+    Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
+}
+
+/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is
+/// late by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below
+/// `delta`. `None` where none is known: beside a damper or a lag, and where updates are missed.
+pub(super) const fn profile_bound_at_port(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+) -> Option<Interval> {
+    let delay = match &n.latency {
+        None => Interval::ZERO,
+        Some(lagging) => {
+            let TimeRange { least, most } = lagging.latency.output_delay;
+            if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
+                return None;
+            }
+            Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi()).div(n.period)
+        }
+    };
+    if is_motor(profile) || n.misses_updates || profile.damping != 0.0 {
+        return None;
+    }
+    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
+    let (rise, steepest) = (slopes.rise.mul(n.period), slopes.steepest().mul(n.period));
+    let late = Interval::exact(profile.delay as f64).add(delay);
+    let ripple = parted(delay).mul(steepest).mul(steepest).div(n.delta.double().double());
+    Some(rise.half().add(late.mul(steepest)).add(ripple))
+}
+
+/// `eps (1 - eps)` of the part `eps` beside the whole samples of a delay.
+const fn parted(delay: Interval) -> Interval {
+    let quarter = Interval::new(0.0, 0.25);
+    let whole = delay.lo() as u32 as f64;
+    let eps = delay.sub(Interval::exact(whole));
+    if eps.lo() < 0.0 || eps.hi() > 1.0 {
+        return quarter;
+    }
+    let product = eps.mul(Interval::ONE.sub(eps));
+    Interval::new(product.lo().max(0.0), product.hi())
+}

@@ -1,0 +1,122 @@
+//! A torque profile as data.
+
+use super::knots::{Knots, Outline};
+use super::law::ProfileLaw;
+use super::scale::Scale;
+use super::shape::Shape;
+use super::shape_error::ShapeError;
+use super::sum::{Ends, Layout, sampled};
+use super::{DampedProfile, Profile};
+use crate::build_error::BuildError;
+use crate::environment::delay_line::VariableDelay;
+use crate::environment::law::{Discretize, LawContext};
+use crate::environment::velocity::{AnyVelocity, Difference, NoDamping};
+use crate::number::Number;
+
+/// Any torque profile as data.
+///
+/// Over the wire its table does not go, but for what the certificate asks of it: enough to be judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct AnyProfile {
+    #[cfg_attr(feature = "wire", serde(skip))]
+    units: &'static [i16],
+    outline: Outline,
+    /// Torque in N m of a knot at full scale.
+    pub torque: f64,
+    /// How often the table repeats in a turn.
+    pub count: f64,
+    /// Angle in rad of its first knot.
+    pub centre: f64,
+    /// The ends of its range; `None`: it repeats for ever.
+    pub ends: Option<Ends>,
+    /// Damping `B` in N m s/rad beside it.
+    pub damping: f64,
+    /// Delay in whole samples.
+    pub delay: usize,
+}
+
+impl AnyProfile {
+    /// The sum of shapes, sampled into a table that stays for ever: the number of its knots is a power of
+    /// two from 8 on.
+    ///
+    /// # Errors
+    /// Why they are no profile.
+    pub fn sampled(
+        shapes: &[Shape],
+        units: &'static mut [i16],
+        delay: usize,
+    ) -> Result<Self, ShapeError> {
+        let (layout, wraps) = sampled(shapes, units)?;
+        let outline = Outline::of(units, wraps);
+        Ok(Self::of(units, outline, layout, 0.0, delay))
+    }
+
+    const fn of(
+        units: &'static [i16],
+        outline: Outline,
+        layout: Layout,
+        damping: f64,
+        delay: usize,
+    ) -> Self {
+        let Layout { torque, count, centre, ends } = layout;
+        Self { units, outline, torque, count, centre, ends, damping, delay }
+    }
+
+    /// The numbers by which its law multiplies.
+    pub(crate) const fn scale(&self) -> Scale {
+        Scale::of(&self.layout(), &self.outline)
+    }
+
+    /// What the certificate asks of its table.
+    pub const fn outline(&self) -> Outline {
+        self.outline
+    }
+
+    /// Knots in a rad.
+    pub const fn knots_per_rad(&self) -> f64 {
+        self.layout().knots_per_rad(self.outline.knots)
+    }
+
+    /// Where its table is.
+    pub const fn layout(&self) -> Layout {
+        Layout { torque: self.torque, count: self.count, centre: self.centre, ends: self.ends }
+    }
+
+    /// The knots in parts of its torque, [`FULL_SCALE`](super::FULL_SCALE) for all of it; none where it came over the wire.
+    pub const fn units(&self) -> &'static [i16] {
+        self.units
+    }
+}
+
+impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
+    /// The profile as such data.
+    pub const fn as_any(&self) -> AnyProfile {
+        let knots: &'static Knots<KNOTS> = self.knots;
+        AnyProfile::of(knots.units(), knots.outline(), self.layout(), 0.0, DELAY)
+    }
+}
+
+impl<const KNOTS: usize, const DELAY: usize> DampedProfile<KNOTS, DELAY> {
+    /// The profile as such data.
+    pub const fn as_any(&self) -> AnyProfile {
+        AnyProfile { damping: self.damping, ..self.profile.as_any() }
+    }
+}
+
+impl<N: Number> Discretize<N> for AnyProfile {
+    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>>;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        if self.units.len() != self.outline.knots as usize || !self.units.len().is_power_of_two() {
+            return Err(BuildError::LawElsewhere);
+        }
+        let velocity = if self.damping == 0.0 {
+            AnyVelocity::None(NoDamping)
+        } else {
+            AnyVelocity::Difference(Difference::new(self.damping, context.period)?)
+        };
+        let delay = VariableDelay::at_rest(self.delay)?;
+        ProfileLaw::new(self.units, &self.outline, &self.layout(), velocity, delay)
+    }
+}

@@ -1,0 +1,148 @@
+//! A torque profile's knots: a table of equal cells that stays in flash, and all that the certificate
+//! asks of it.
+
+use super::sum::Layout;
+
+/// The largest unit of a knot: it stands for the profile's torque. The step from one knot to the next
+/// fits 16 bits, too.
+pub const FULL_SCALE: i16 = (1 << 14) - 1;
+
+/// Parts of a cell, as a power of two, in which places in a table are counted.
+pub(super) const PART_BITS: u32 = 14;
+
+/// Knots of a torque profile in parts of its torque, [`FULL_SCALE`] for all of it, over cells of equal
+/// width. After the last knot comes the first one again.
+///
+/// Whole numbers, so that the sum over a period is exact in every number format. `KNOTS` is a power of two,
+/// so that a tick finds its cell by leaving bits out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knots<const KNOTS: usize> {
+    units: [i16; KNOTS],
+    cells: [Cell; KNOTS],
+    outline: Outline,
+    layout: Layout,
+}
+
+/// What the certificate asks of a table of knots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Outline {
+    /// Number of knots.
+    pub knots: u32,
+    /// The most by which one knot is above the one before it; not negative.
+    pub rise: i32,
+    /// The most by which one knot is below the one before it; not negative.
+    pub fall: i32,
+    /// Whether the cell from the last knot to the first is one like the others. If not, the profile has
+    /// ends that keep out of it, and its steps count for nothing.
+    pub wraps: bool,
+    /// Sum of all knots: zero, or a profile without ends is a motor.
+    pub sum: i32,
+    /// Whether the profile is odd about its first knot, so that its mean stays zero where a limit clips
+    /// its torque at any level.
+    pub is_odd: bool,
+}
+
+impl<const KNOTS: usize> Knots<KNOTS> {
+    pub(super) const fn new(units: [i16; KNOTS], wraps: bool, layout: Layout) -> Self {
+        const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
+        let mut cells = [Cell::between(0, 0); KNOTS];
+        let mut i = 0;
+        while i < KNOTS {
+            cells[i] = Cell::between(units[i], units[(i + 1) % KNOTS]);
+            i += 1;
+        }
+        Self { units, cells, outline: Outline::of(&units, wraps), layout }
+    }
+
+    /// The cells from each knot to the next.
+    pub(super) const fn cells(&self) -> &[Cell; KNOTS] {
+        &self.cells
+    }
+
+    /// Where they are.
+    pub const fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// The units.
+    pub const fn units(&self) -> &[i16; KNOTS] {
+        &self.units
+    }
+
+    /// What the certificate asks of them.
+    pub const fn outline(&self) -> Outline {
+        self.outline
+    }
+}
+
+impl Outline {
+    /// Of knots; `wraps` says whether the step from the last one to the first is felt.
+    pub const fn of(units: &[i16], wraps: bool) -> Self {
+        let mut out =
+            Self { knots: units.len() as u32, rise: 0, fall: 0, wraps, sum: 0, is_odd: true };
+        let mut i = 0;
+        while i < units.len() {
+            let (here, mirrored) = (units[i] as i32, units[(units.len() - i) % units.len()] as i32);
+            out.sum += here;
+            out.is_odd &= here == -mirrored;
+            if i + 1 < units.len() || wraps {
+                let step = units[(i + 1) % units.len()] as i32 - here;
+                out.rise = if step > out.rise { step } else { out.rise };
+                out.fall = if -step > out.fall { -step } else { out.fall };
+            }
+            i += 1;
+        }
+        out
+    }
+}
+
+/// The straight line from one knot to the next, so that a tick reads both of its numbers at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Units at its beginning, in parts.
+    from: i32,
+    /// Units from there to its end.
+    rise: i32,
+}
+
+impl Cell {
+    const fn between(from: i16, to: i16) -> Self {
+        let (from, to) = (from as i32, to as i32);
+        Self { from: from << PART_BITS, rise: to - from }
+    }
+
+    /// Units at a place in the cell, both in parts.
+    #[inline(always)]
+    const fn at(self, place: i32) -> i32 {
+        let part = place & ((1 << PART_BITS) - 1);
+        // At most 2^28 and 2^29: no overflow.
+        self.from.wrapping_add(self.rise.wrapping_mul(part))
+    }
+}
+
+/// Where a law reads its table.
+pub trait KnotTable: Copy + core::fmt::Debug {
+    /// Units in parts at a place in parts of a cell from the first knot; any number is that of a place.
+    fn units_at(self, place: i32) -> i32;
+}
+
+impl<const KNOTS: usize> KnotTable for &'static [Cell; KNOTS] {
+    #[inline(always)]
+    fn units_at(self, place: i32) -> i32 {
+        let cell = (place >> PART_BITS).cast_unsigned() as usize;
+        // Masked by the length less one, a power of two: the compiler sees that it is there.
+        self[cell & (KNOTS - 1)].at(place)
+    }
+}
+
+/// The knots of a profile that is data.
+impl KnotTable for &'static [i16] {
+    #[inline(always)]
+    fn units_at(self, place: i32) -> i32 {
+        let mask = self.len().wrapping_sub(1);
+        let from = (place >> PART_BITS).cast_unsigned() as usize;
+        let knot = |i: usize| self.get(i & mask).copied().unwrap_or(0);
+        Cell::between(knot(from), knot(from.wrapping_add(1))).at(place)
+    }
+}

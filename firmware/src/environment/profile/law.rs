@@ -1,0 +1,157 @@
+//! The law of a torque profile: one look into its table a tick.
+
+use super::knots::{KnotTable, Outline};
+use super::scale::Scale;
+use super::sum::{Ends, Layout};
+use crate::build_error::BuildError;
+use crate::coupling::{Response, Slopes};
+use crate::environment::delay_line::DelayLine;
+use crate::environment::law::Law;
+use crate::environment::turn::Turn;
+use crate::environment::velocity::Velocity;
+use crate::number::Number;
+
+/// The law of a torque profile.
+#[derive(Clone, Debug)]
+pub struct ProfileLaw<N: Number, K, V, D> {
+    /// Parts of a cell in a rad.
+    parts: N::Coefficient,
+    /// The place of the lower end in parts from the angle of zero.
+    from: i32,
+    /// Parts between the ends; all that there are where there are none.
+    span: u32,
+    /// The place of the first knot.
+    origin: i32,
+    knots: K,
+    /// Torque of a part of a unit.
+    torque: N::Coefficient,
+    /// The lower end, and the upper one.
+    ends: [End<N>; 2],
+    /// Stiffness beyond them.
+    stiffness: N::Coefficient,
+    turn: Turn<N>,
+    velocity: V,
+    delay: D,
+    /// The steepest that it rises in N m/rad.
+    steepest: f64,
+}
+
+/// An end of the range.
+#[derive(Clone, Copy, Debug)]
+struct End<N> {
+    /// Its angle.
+    angle: N,
+    /// The torque there.
+    torque: N,
+}
+
+impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, V, D> {
+    pub(super) fn new(
+        knots: K,
+        outline: &Outline,
+        layout: &Layout,
+        velocity: V,
+        delay: D,
+    ) -> Result<Self, BuildError> {
+        let scale = Scale::of(layout, outline);
+        let unrepresentable = |name| move |reason| BuildError::Unrepresentable { name, reason };
+        let parts =
+            N::parts_scale(scale.parts_per_rad).map_err(unrepresentable("knots per rad"))?;
+        let torque =
+            N::part_scale(scale.torque_of_part).map_err(unrepresentable("profile torque"))?;
+        let centre: N = BuildError::number("profile centre", layout.centre)?;
+        let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
+        let mut law = Self {
+            parts,
+            from: i32::MIN,
+            span: u32::MAX,
+            origin: centre.parts(parts),
+            knots,
+            torque,
+            ends: [End { angle: N::ZERO, torque: N::ZERO }; 2],
+            stiffness: BuildError::coefficient::<N>("stiffness of the end stops", stiffness)?,
+            turn: Turn::none(),
+            velocity,
+            delay,
+            steepest: scale.steepest_rise(outline).max(stiffness).max(f64::MIN_POSITIVE),
+        };
+        match &layout.ends {
+            Some(ends) => law.limit(ends)?,
+            None => law.turn = Turn::endless()?,
+        }
+        Ok(law)
+    }
+
+    /// Gives it ends.
+    fn limit(&mut self, ends: &Ends) -> Result<(), BuildError> {
+        let from: N = BuildError::number("lower end stop", ends.from)?;
+        let to: N = BuildError::number("upper end stop", ends.to)?;
+        self.from = from.parts(self.parts);
+        self.span = to.parts(self.parts).wrapping_sub(self.from).cast_unsigned();
+        self.ends = [from, to].map(|angle| {
+            let torque = self.inside(angle.parts(self.parts));
+            End { angle, torque }
+        });
+        Ok(())
+    }
+
+    /// The torque in N m with the environment at `x` (rad), undelayed.
+    #[inline(always)]
+    fn torque(&self, x: N) -> N {
+        let place = x.parts(self.parts);
+        let torque = if place.wrapping_sub(self.from).cast_unsigned() <= self.span {
+            self.inside(place)
+        } else {
+            // The spring beyond the nearer end, from the torque there.
+            let [lower, upper] = &self.ends;
+            let end = if place < self.from { lower } else { upper };
+            x.minus(end.angle).times(self.stiffness).plus(end.torque)
+        };
+        self.velocity.add_to(torque, x)
+    }
+
+    #[inline(always)]
+    fn inside(&self, place: i32) -> N {
+        N::of_parts(self.knots.units_at(place.wrapping_sub(self.origin)), self.torque)
+    }
+}
+
+impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for ProfileLaw<N, K, V, D> {
+    #[inline(always)]
+    fn evaluate(&self, x: N) -> Response<N> {
+        // The torque of a profile that is not late is that in front of the coupling.
+        Response::Held(self.delay.due().unwrap_or_else(|| self.torque(x)))
+    }
+
+    #[inline(always)]
+    fn update(&mut self, x_e: N) {
+        if self.delay.due().is_some() {
+            let torque = self.torque(x_e);
+            self.delay.push(torque);
+        }
+        self.velocity.update(x_e);
+    }
+
+    fn rest_at(&mut self, x_e: N) {
+        self.velocity.rest_at(x_e);
+        let torque = self.torque(x_e);
+        self.delay.fill(torque);
+    }
+
+    fn slopes(&self) -> Slopes {
+        match self.delay.due() {
+            Some(_) => Slopes::default(),
+            // In front of the coupling, so that there `1 + line V` is what has to be positive.
+            None => Slopes { line: -self.steepest, wall: 0.0 },
+        }
+    }
+
+    #[inline(always)]
+    fn turn(&mut self) -> Option<&mut Turn<N>> {
+        Some(&mut self.turn)
+    }
+
+    fn shift(&mut self, by: N) {
+        self.velocity.shift(by);
+    }
+}

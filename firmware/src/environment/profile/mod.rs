@@ -1,0 +1,124 @@
+//! Torque profiles: torque over angle in straight lines, for detents, end stops, switches and textures.
+//!
+//! A profile is one table of [`Knots`], built from [`Shape`]s in a constant, so that it stays in flash and
+//! a tick reads two knots of it whatever the shapes were. One without ends repeats in whole numbers of times a
+//! turn, and its law counts angles within the turn: nothing is lost after any number of turns.
+//!
+//! The torque of a late profile is that at the environment's position `x_E` some samples ago. The one of a
+//! profile that is not late (`DELAY = 0`) is that at the position in front of the coupling, as the hand
+//! feels it: `F = g(x)`. As long as `V g' < 1` that is a profile `f` of `x_E = x - V g(x)`, of slope
+//! `g' / (1 - V g')`, solved once and for all (theory, section 14).
+
+mod any;
+mod knots;
+mod law;
+mod scale;
+mod shape;
+mod shape_error;
+mod sum;
+
+pub use any::AnyProfile;
+pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
+pub use law::ProfileLaw;
+pub(crate) use scale::Scale;
+pub use shape::Shape;
+pub use shape_error::ShapeError;
+pub use sum::{Ends, Layout};
+
+use super::delay_line::FixedDelay;
+use super::law::{Discretize, LawContext};
+use super::velocity::{Difference, NoDamping};
+use crate::build_error::BuildError;
+use crate::number::Number;
+use crate::parameter::{NamedParameters, Parameter};
+
+/// A torque profile, delayed by whole samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile<const KNOTS: usize, const DELAY: usize> {
+    /// The table.
+    pub knots: &'static Knots<KNOTS>,
+    /// Torque in N m of a knot at full scale.
+    pub torque: f64,
+    /// How often the table repeats in a turn.
+    pub count: f64,
+    /// Angle in rad of its first knot.
+    pub centre: f64,
+    /// The ends of its range; `None`: it repeats for ever.
+    pub ends: Option<Ends>,
+}
+
+/// A [`Profile`] with a backward-difference damper beside it, `damping (z - 1) / (T z)`, late by the same
+/// samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DampedProfile<const KNOTS: usize, const DELAY: usize> {
+    /// The profile.
+    pub profile: Profile<KNOTS, DELAY>,
+    /// Damping `B` in N m s/rad.
+    pub damping: f64,
+}
+
+impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
+    /// The profile of a table, as it was built.
+    pub const fn of(knots: &'static Knots<KNOTS>) -> Self {
+        let Layout { torque, count, centre, ends } = knots.layout();
+        Self { knots, torque, count, centre, ends }
+    }
+
+    /// With a damper beside it, of `damping` N m s/rad.
+    pub const fn damped(self, damping: f64) -> DampedProfile<KNOTS, DELAY> {
+        DampedProfile { profile: self, damping }
+    }
+
+    const fn layout(&self) -> Layout {
+        Layout { torque: self.torque, count: self.count, centre: self.centre, ends: self.ends }
+    }
+}
+
+impl<const KNOTS: usize, const DELAY: usize> NamedParameters for Profile<KNOTS, DELAY> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match (parameter, &mut self.ends) {
+            (Parameter::ProfileTorque, _) => Some(&mut self.torque),
+            // What does not repeat has no number of repetitions to choose.
+            (Parameter::Count, _) if self.knots.outline().wraps => Some(&mut self.count),
+            (Parameter::Centre, _) if self.knots.outline().wraps => Some(&mut self.centre),
+            (Parameter::From, Some(ends)) => Some(&mut ends.from),
+            (Parameter::To, Some(ends)) => Some(&mut ends.to),
+            (Parameter::Stiffness, Some(ends)) => Some(&mut ends.stiffness),
+            _ => None,
+        }
+    }
+}
+
+impl<const KNOTS: usize, const DELAY: usize> NamedParameters for DampedProfile<KNOTS, DELAY> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        match parameter {
+            Parameter::Damping => Some(&mut self.damping),
+            _ => self.profile.value(parameter),
+        }
+    }
+}
+
+impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N> for Profile<KNOTS, DELAY> {
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], NoDamping, FixedDelay<N, DELAY>>;
+
+    fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
+        let (cells, outline) = (self.knots.cells(), self.knots.outline());
+        ProfileLaw::new(cells, &outline, &self.layout(), NoDamping, FixedDelay::at_rest())
+    }
+}
+
+impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N>
+    for DampedProfile<KNOTS, DELAY>
+{
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], Difference<N>, FixedDelay<N, DELAY>>;
+
+    fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
+        let Profile { knots, .. } = self.profile;
+        let velocity = Difference::new(self.damping, context.period)?;
+        let layout = self.profile.layout();
+        ProfileLaw::new(knots.cells(), &knots.outline(), &layout, velocity, FixedDelay::at_rest())
+    }
+}
+
+#[cfg(test)]
+mod tests;

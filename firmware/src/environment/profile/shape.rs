@@ -1,0 +1,310 @@
+//! Named shapes of torque over angle.
+
+use core::f64::consts::TAU;
+
+use super::shape_error::ShapeError;
+
+/// Torque over angle. A positive torque pushes back from a positive angle, as for all environments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Places to rest at, `count` a turn, the first at `centre`: from each the torque rises in a straight
+    /// line to `torque` a quarter of the pitch away, and falls to nothing half-way to the next. No other
+    /// shape of this torque is less steep.
+    Detents {
+        /// Number of them in a turn.
+        count: u32,
+        /// Largest torque in N m.
+        torque: f64,
+        /// Angle of the first one in rad.
+        centre: f64,
+    },
+    /// The same for a pitch in rad instead of a number of them, to be felt rather than to be rested at.
+    Texture {
+        /// Distance of two ridges in rad.
+        pitch: f64,
+        /// Largest torque in N m.
+        amplitude: f64,
+    },
+    /// Nothing between two angles, a spring on either side of them.
+    EndStops {
+        /// Lower end in rad.
+        from: f64,
+        /// Upper end in rad.
+        to: f64,
+        /// Stiffness in N m/rad beyond them.
+        stiffness: f64,
+    },
+    /// A spring that pulls to zero from any angle. Its torque grows up to `width` on either side, where
+    /// its table ends, and in the same way beyond.
+    Centre {
+        /// How far the table reaches in rad.
+        width: f64,
+        /// Stiffness in N m/rad.
+        stiffness: f64,
+    },
+    /// Two places to rest at, `distance` on either side of zero, and a snap between them.
+    Bistable {
+        /// Angle of the upper one in rad.
+        distance: f64,
+        /// Largest torque in N m on the way from one to the other.
+        torque: f64,
+    },
+    /// A place that pulls like a magnet from up to `width` on either side, once a turn.
+    Magnet {
+        /// Its angle in rad.
+        angle: f64,
+        /// How far it reaches in rad.
+        width: f64,
+        /// Largest torque in N m, half-way.
+        torque: f64,
+    },
+    /// Straight lines through knots, each an angle in rad and a torque in N m; the torque of the first and
+    /// of the last one beyond these. To be held between end stops.
+    Table(&'static [(f64, f64)]),
+    /// The same over a period, which the last knot closes with the torque of the first.
+    Periodic(&'static [(f64, f64)]),
+}
+
+/// The angles in rad within which a shape changes, and the stiffness in N m/rad by which it goes on
+/// beyond them; none where it does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub from: f64,
+    pub to: f64,
+    pub stiffness: f64,
+}
+
+impl Shape {
+    /// Detents, the first one at zero.
+    pub const fn detents(count: u32, torque: f64) -> Self {
+        Self::Detents { count, torque, centre: 0.0 }
+    }
+
+    /// Springs beyond two angles.
+    pub const fn end_stops(from: f64, to: f64, stiffness: f64) -> Self {
+        Self::EndStops { from, to, stiffness }
+    }
+
+    /// A spring that pulls to zero.
+    pub const fn centre(width: f64, stiffness: f64) -> Self {
+        Self::Centre { width, stiffness }
+    }
+
+    /// A switch between two places.
+    pub const fn bistable(distance: f64, torque: f64) -> Self {
+        Self::Bistable { distance, torque }
+    }
+
+    /// Ridges.
+    pub const fn texture(pitch: f64, amplitude: f64) -> Self {
+        Self::Texture { pitch, amplitude }
+    }
+
+    /// A place that pulls.
+    pub const fn magnet(angle: f64, width: f64, torque: f64) -> Self {
+        Self::Magnet { angle, width, torque }
+    }
+
+    /// The torque in N m at an angle in rad.
+    pub const fn torque_at(&self, angle: f64) -> f64 {
+        match *self {
+            Self::Detents { count, torque, centre } => {
+                torque * triangle((angle - centre) * count as f64 / TAU)
+            }
+            Self::Texture { pitch, amplitude } => amplitude * triangle(angle / pitch),
+            Self::EndStops { from, to, stiffness } => stiffness * (angle - angle.max(from).min(to)),
+            Self::Centre { stiffness, .. } => stiffness * angle,
+            Self::Bistable { distance, torque } => {
+                let outside = angle.abs() - distance;
+                let slope = 2.0 * torque / distance;
+                let inward =
+                    if outside > -0.5 * distance { slope * outside } else { -slope * angle.abs() };
+                if angle < 0.0 { -inward } else { inward }
+            }
+            Self::Magnet { angle: place, width, torque } => {
+                let turns = (angle - place) / TAU;
+                let away = (turns - nearest(turns)) * TAU;
+                if away.abs() < width { torque * triangle(0.5 * away / width) } else { 0.0 }
+            }
+            Self::Table(knots) => between(knots, angle),
+            Self::Periodic(knots) => {
+                let (first, period) = (knots[0].0, period(knots));
+                let periods = (angle - first) / period;
+                between(knots, first + (periods - down(periods)) * period)
+            }
+        }
+    }
+
+    /// How often it repeats in a turn, as a whole number; `None` where it does not.
+    pub(super) const fn repeats(&self) -> Option<u32> {
+        let repeats = match *self {
+            Self::Detents { count, .. } => return Some(count),
+            Self::Magnet { .. } => return Some(1),
+            Self::Texture { pitch, .. } => TAU / pitch,
+            Self::Periodic(knots) => TAU / period(knots),
+            _ => return None,
+        };
+        // A period is written with a few digits.
+        let whole = nearest(repeats);
+        let is_whole = whole >= 1.0 && (repeats - whole).abs() <= 1e-3 * whole.min(10.0);
+        if is_whole { Some(whole as u32) } else { None }
+    }
+
+    /// Where it changes; `None` where it does so everywhere.
+    pub(super) const fn extent(&self) -> Option<Extent> {
+        Some(match *self {
+            Self::EndStops { from, to, stiffness } => Extent { from, to, stiffness },
+            Self::Centre { width, stiffness } => Extent { from: -width, to: width, stiffness },
+            Self::Bistable { distance, torque } => {
+                let far = 1.5 * distance;
+                Extent { from: -far, to: far, stiffness: 2.0 * torque / distance }
+            }
+            Self::Table(knots) => {
+                Extent { from: knots[0].0, to: knots[knots.len() - 1].0, stiffness: 0.0 }
+            }
+            _ => return None,
+        })
+    }
+
+    /// Width in rad of the narrowest straight piece that a table has to show.
+    pub(super) const fn narrowest(&self) -> f64 {
+        match *self {
+            Self::Detents { count, .. } => 0.25 * TAU / count as f64,
+            Self::Texture { pitch, .. } => 0.25 * pitch,
+            Self::EndStops { .. } | Self::Centre { .. } => f64::INFINITY,
+            Self::Bistable { distance, .. } => 0.5 * distance,
+            Self::Magnet { width, .. } => 0.5 * width,
+            // Its corners are cut, and its slopes are never steeper for that.
+            Self::Table(_) | Self::Periodic(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether its numbers make sense; `shape` is its place among others.
+    pub(super) const fn checked(&self, shape: usize) -> Result<(), ShapeError> {
+        let numbers: [(&'static str, f64, bool); 3] = match *self {
+            Self::Detents { count, torque, centre } => {
+                [("count", count as f64, true), ("torque", torque, true), ("centre", centre, false)]
+            }
+            Self::Texture { pitch, amplitude } => {
+                [("pitch", pitch, true), ("amplitude", amplitude, true), UNUSED]
+            }
+            Self::EndStops { from, to, stiffness } => {
+                if !(from < to) {
+                    let bound = "below `to`";
+                    return Err(ShapeError::Number { shape, name: "from", value: from, bound });
+                }
+                [("stiffness", stiffness, true), ("from", from, false), ("to", to, false)]
+            }
+            Self::Centre { width, stiffness } => {
+                [("width", width, true), ("stiffness", stiffness, true), UNUSED]
+            }
+            Self::Bistable { distance, torque } => {
+                [("distance", distance, true), ("torque", torque, true), UNUSED]
+            }
+            Self::Magnet { angle, width, torque } => {
+                [("angle", angle, false), ("width", width, true), ("torque", torque, true)]
+            }
+            Self::Table(knots) => return knots_checked(shape, knots, false),
+            Self::Periodic(knots) => return knots_checked(shape, knots, true),
+        };
+        let mut i = 0;
+        while i < numbers.len() {
+            let (name, value, is_positive) = numbers[i];
+            if !value.is_finite() || value.abs() > LARGEST {
+                let bound = "finite, and of a magnitude up to a million";
+                return Err(ShapeError::Number { shape, name, value, bound });
+            }
+            if is_positive && value <= 0.0 {
+                return Err(ShapeError::Number { shape, name, value, bound: "greater than 0" });
+            }
+            i += 1;
+        }
+        if let Self::Magnet { width, .. } = *self
+            && width > 0.5 * TAU
+        {
+            let bound = "at most half a turn";
+            return Err(ShapeError::Number { shape, name: "width", value: width, bound });
+        }
+        Ok(())
+    }
+}
+
+/// Angles and torques beyond that are no knob's.
+const LARGEST: f64 = 1e6;
+const UNUSED: (&str, f64, bool) = ("", 0.0, false);
+
+const fn knots_checked(
+    shape: usize,
+    knots: &[(f64, f64)],
+    is_periodic: bool,
+) -> Result<(), ShapeError> {
+    if knots.len() < 2 {
+        let (value, bound) = (knots.len() as f64, "two knots at the least");
+        return Err(ShapeError::Knot { shape, knot: 0, value, bound, limit: None });
+    }
+    let mut knot = 0;
+    while knot < knots.len() {
+        let (angle, torque) = knots[knot];
+        if !(angle.abs() <= LARGEST && torque.abs() <= LARGEST) {
+            let value = if angle.abs() <= LARGEST { torque } else { angle };
+            let bound = "finite, and of a magnitude up to a million";
+            return Err(ShapeError::Knot { shape, knot, value, bound, limit: None });
+        }
+        if knot > 0 && angle <= knots[knot - 1].0 {
+            let limit = Some(knots[knot - 1].0);
+            let bound = "above the angle of the knot before, which is";
+            return Err(ShapeError::Knot { shape, knot, value: angle, bound, limit });
+        }
+        knot += 1;
+    }
+    let (first, last) = (knots[0].1, knots[knots.len() - 1].1);
+    if is_periodic && first != last {
+        let (knot, limit) = (knots.len() - 1, Some(first));
+        let bound = "the torque of the first knot, which closes the period:";
+        return Err(ShapeError::Knot { shape, knot, value: last, bound, limit });
+    }
+    Ok(())
+}
+
+const fn period(knots: &[(f64, f64)]) -> f64 {
+    knots[knots.len() - 1].0 - knots[0].0
+}
+
+/// Straight lines through knots, and level beyond them.
+const fn between(knots: &[(f64, f64)], angle: f64) -> f64 {
+    if angle <= knots[0].0 {
+        return knots[0].1;
+    }
+    let mut i = 1;
+    while i < knots.len() {
+        let ((from, below), (to, above)) = (knots[i - 1], knots[i]);
+        if angle <= to {
+            return below + (above - below) * ((angle - from) / (to - from));
+        }
+        i += 1;
+    }
+    knots[knots.len() - 1].1
+}
+
+/// A wave of height 1 in straight lines, zero at all whole numbers and rising there.
+const fn triangle(periods: f64) -> f64 {
+    let part = periods - nearest(periods);
+    if part.abs() <= 0.25 {
+        4.0 * part
+    } else if part > 0.0 {
+        2.0 - 4.0 * part
+    } else {
+        -2.0 - 4.0 * part
+    }
+}
+
+/// The largest whole number that is not above `x`, for magnitudes below 2^62.
+const fn down(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
+/// The nearest whole number.
+pub(super) const fn nearest(x: f64) -> f64 {
+    down(x + 0.5)
+}

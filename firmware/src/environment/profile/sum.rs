@@ -1,0 +1,278 @@
+//! Shapes added up, as one table of knots.
+
+use core::f64::consts::TAU;
+
+use super::knots::{FULL_SCALE, Knots, Outline};
+use super::shape::{Shape, nearest};
+use super::shape_error::ShapeError;
+
+/// The ends of a range, and the springs beyond them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct Ends {
+    /// Lower end in rad.
+    pub from: f64,
+    /// Upper end in rad.
+    pub to: f64,
+    /// Stiffness in N m/rad beyond them.
+    pub stiffness: f64,
+}
+
+/// Where a table of knots is, and how strong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// Torque in N m of a knot at full scale.
+    pub torque: f64,
+    /// How often the table repeats in a turn.
+    pub count: f64,
+    /// Angle in rad of the first knot.
+    pub centre: f64,
+    /// The ends of its range; `None`: it repeats for ever.
+    pub ends: Option<Ends>,
+}
+
+impl Layout {
+    /// Knots in a rad, of a table of so many, as a law has them.
+    pub const fn knots_per_rad(&self, knots: u32) -> f64 {
+        self.count * knots as f64 / TAU
+    }
+}
+
+impl<const KNOTS: usize> Knots<KNOTS> {
+    /// The sum of shapes.
+    ///
+    /// Knots of a table lie on these cells: where its corners do not, they are cut off, and the slopes are
+    /// no steeper for it.
+    ///
+    /// # Errors
+    /// Why they are no profile.
+    pub const fn sampled(shapes: &[Shape]) -> Result<Self, ShapeError> {
+        let mut units = [0; KNOTS];
+        match sampled(shapes, &mut units) {
+            Ok((layout, wraps)) => Ok(Self::new(units, wraps, layout)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// For constants: the same, or a compile error that says why not.
+    ///
+    /// # Panics
+    /// Where the shapes are no profile; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn of(shapes: &[Shape]) -> Self {
+        match Self::sampled(shapes) {
+            Ok(knots) => knots,
+            Err(error) => panic!("{}", error.sentence().as_str()),
+        }
+    }
+}
+
+/// Writes the sum of shapes into the units of knots, of which there has to be a power of two from 8 on:
+/// where they are, and whether the cell after the last one is felt.
+///
+/// # Errors
+/// Why they are no profile.
+pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, bool), ShapeError> {
+    let frame = match Frame::of(shapes, units.len()) {
+        Ok(frame) => frame,
+        Err(error) => return Err(error),
+    };
+    let mut torque: f64 = 0.0;
+    let mut i = 0;
+    while i < units.len() {
+        torque = torque.max(frame.torque_at(shapes, i).abs());
+        i += 1;
+    }
+    if torque == 0.0 {
+        return Err(ShapeError::Flat);
+    }
+    let mut i = 0;
+    while i < units.len() {
+        let part = frame.torque_at(shapes, i) / torque;
+        units[i] = nearest(part.abs() * FULL_SCALE as f64) as i16;
+        if part < 0.0 {
+            units[i] = -units[i];
+        }
+        i += 1;
+    }
+    if frame.ends.is_none() {
+        let mean = mean(shapes);
+        // Less than that is no unit of a knot.
+        if mean.abs() > 0.5 * torque / FULL_SCALE as f64 {
+            return Err(ShapeError::Mean { mean });
+        }
+        if !make_odd(units) {
+            balance(units);
+        }
+    }
+    let Frame { count, centre, ends, wraps, .. } = frame;
+    Ok((Layout { torque, count, centre, ends }, wraps))
+}
+
+/// Makes the knots odd about the first one, where they are but for rounding; gives whether they are.
+const fn make_odd(units: &mut [i16]) -> bool {
+    let mut i = 0;
+    while i < units.len() {
+        let mirrored = units[(units.len() - i) % units.len()] as i32;
+        if (units[i] as i32 + mirrored).abs() > 1 {
+            return false;
+        }
+        i += 1;
+    }
+    let half = units.len() / 2;
+    (units[0], units[half]) = (0, 0);
+    let mut i = 1;
+    while i < half {
+        units[units.len() - i] = -units[i];
+        i += 1;
+    }
+    true
+}
+
+/// Takes from the knots, a unit at a time, what rounding and cut corners leave of their sum.
+const fn balance(units: &mut [i16]) {
+    let mut sum = Outline::of(units, true).sum;
+    let mut i = 0;
+    while sum != 0 {
+        let unit = units[i % units.len()] as i32 - sum.signum();
+        // None goes beyond full scale, and there are others.
+        if unit.abs() <= FULL_SCALE as i32 {
+            units[i % units.len()] = unit as i16;
+            sum -= sum.signum();
+        }
+        i += 1;
+    }
+}
+
+/// The mean torque in N m of periodic tables, by their own knots; other shapes have none.
+const fn mean(shapes: &[Shape]) -> f64 {
+    let mut mean = 0.0;
+    let mut i = 0;
+    while i < shapes.len() {
+        if let Shape::Periodic(knots) = shapes[i] {
+            let mut area = 0.0;
+            let mut k = 1;
+            while k < knots.len() {
+                let ((from, below), (to, above)) = (knots[k - 1], knots[k]);
+                area += 0.5 * (below + above) * (to - from);
+                k += 1;
+            }
+            mean += area / (knots[knots.len() - 1].0 - knots[0].0);
+        }
+        i += 1;
+    }
+    mean
+}
+
+/// Where the cells of a table are.
+struct Frame {
+    /// Width of a cell in rad.
+    cell: f64,
+    count: f64,
+    centre: f64,
+    ends: Option<Ends>,
+    /// The shape whose springs are the ends.
+    outermost: Option<usize>,
+    wraps: bool,
+}
+
+impl Frame {
+    const fn of(shapes: &[Shape], knots: usize) -> Result<Self, ShapeError> {
+        if shapes.is_empty() {
+            return Err(ShapeError::Empty);
+        }
+        let mut repeats: u32 = 0;
+        let mut centre = 0.0;
+        let mut narrowest = f64::INFINITY;
+        let mut ends: Option<Ends> = None;
+        let mut outermost = None;
+        let mut single = None;
+        let mut i = 0;
+        while i < shapes.len() {
+            if let Err(error) = shapes[i].checked(i) {
+                return Err(error);
+            }
+            narrowest = narrowest.min(shapes[i].narrowest());
+            if let Some(of_this) = shapes[i].extent() {
+                if of_this.stiffness > 0.0 {
+                    let is_stops = matches!(shapes[i], Shape::EndStops { .. });
+                    let reach =
+                        Ends { from: of_this.from, to: of_this.to, stiffness: of_this.stiffness };
+                    match &mut ends {
+                        Some(widest) => {
+                            if is_stops && (reach.to - reach.from > widest.to - widest.from) {
+                                outermost = Some(i);
+                            }
+                            widest.from = widest.from.min(reach.from);
+                            widest.to = widest.to.max(reach.to);
+                            widest.stiffness = widest.stiffness.max(reach.stiffness);
+                        }
+                        None => {
+                            ends = Some(reach);
+                            outermost = if is_stops { Some(i) } else { None };
+                        }
+                    }
+                }
+            }
+            match (shapes[i].repeats(), &shapes[i]) {
+                (_, Shape::EndStops { .. }) => {}
+                (Some(count), shape) => {
+                    if let (Shape::Detents { centre: of_this, .. }, 0) = (shape, repeats) {
+                        centre = *of_this;
+                    }
+                    repeats = common_divisor(repeats, count);
+                }
+                (None, _) => single = Some(i),
+            }
+            i += 1;
+        }
+        let frame = match (single, ends) {
+            (Some(shape), None) => return Err(ShapeError::Endless { shape }),
+            (Some(_), Some(Ends { from, to, .. })) => {
+                // A level cell at either end keeps clear of the one from the last knot to the first.
+                let cell = (to - from) / (knots - 3) as f64;
+                let (count, centre) = (TAU / (cell * knots as f64), from - cell);
+                Self { cell, count, centre, ends, outermost, wraps: false }
+            }
+            (None, _) if repeats == 0 => return Err(ShapeError::Flat),
+            (None, ends) => {
+                let (count, cell) = (repeats as f64, TAU / repeats as f64 / knots as f64);
+                Self { cell, count, centre, ends, outermost, wraps: true }
+            }
+        };
+        // Narrower ones, so that each straight piece shows.
+        if frame.cell > narrowest {
+            return Err(ShapeError::TooFewKnots {
+                knots,
+                needed: nearest(knots as f64 * frame.cell / narrowest + 0.5),
+            });
+        }
+        Ok(frame)
+    }
+
+    /// The torque in N m of all shapes at a knot.
+    const fn torque_at(&self, shapes: &[Shape], knot: usize) -> f64 {
+        let mut angle = self.centre + knot as f64 * self.cell;
+        if let (Some(Ends { from, to, .. }), false) = (self.ends, self.wraps) {
+            angle = angle.max(from).min(to);
+        }
+        let mut sum = 0.0;
+        let mut i = 0;
+        while i < shapes.len() {
+            // The outermost springs are beyond the table.
+            let is_beyond = match self.outermost {
+                Some(outermost) => outermost == i,
+                None => false,
+            };
+            if !is_beyond {
+                sum += shapes[i].torque_at(angle);
+            }
+            i += 1;
+        }
+        sum
+    }
+}
+
+const fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
