@@ -237,6 +237,9 @@ impl PassivityProblem {
     }
 
     const fn nonlinear_shortage(&self) -> Option<Interval> {
+        if let (Some(bound), true) = (self.bound, self.numbers.is_at_port) {
+            return Some(bound.sub(self.numbers.delta));
+        }
         let (Some(bound), Some(coupling)) = (self.bound, self.numbers.coupling_damping()) else {
             return None;
         };
@@ -270,6 +273,11 @@ impl PassivityProblem {
             Rule::Exact => match self.at_port(&Precision::within(ROUGHLY)) {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
+            },
+            // Where a part of a sample is late, a greater passivity lowers the bound.
+            Rule::Nonlinear if self.numbers.is_at_port => match self.bound {
+                Some(bound) => Some(bound.hi()),
+                None => None,
             },
             Rule::Nonlinear => match (self.bound, self.numbers.coupling_damping()) {
                 (Some(bound), Some(coupling)) if bound.is_below(coupling) => Some(coupling.hi()),
@@ -403,7 +411,8 @@ const fn profile_rejection(
     if profile.delay > 0 || ExtremeSlopes::of(profile, n).is_some() {
         return None;
     }
-    Some(Rejection::Steep { coupling: Interval::ONE.div(n.compliance) })
+    let coupling = Interval::ONE.div(n.compliance);
+    Some(Rejection::Steep { coupling, remedies: Remedies::NONE })
 }
 
 /// Enough to decide on which side of `limit` an index is.

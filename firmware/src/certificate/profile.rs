@@ -20,13 +20,7 @@ impl ExtremeSlopes {
     /// `None` where there is none: a torque in front of the coupling that rises faster than the coupling's
     /// own.
     pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
-        let outline = profile.outline();
-        let unit = torque_of_unit(profile, n.format).mul(knots_per_rad(profile, n.format));
-        let mut rise = unit.mul(Interval::exact(outline.rise as f64));
-        let fall = unit.mul(Interval::exact(outline.fall as f64));
-        if let Some(Ends { stiffness, .. }) = profile.ends {
-            rise = rise.max(n.coefficient(Interval::decimal(stiffness)));
-        }
+        let Self { rise, fall } = Self::of_table(profile, n);
         if profile.delay > 0 {
             return Some(Self { rise, fall });
         }
@@ -36,6 +30,18 @@ impl ExtremeSlopes {
         }
         let fed_back = Interval::ONE.add(fall.mul(n.compliance));
         Some(Self { rise: rise.div(left), fall: fall.div(fed_back) })
+    }
+
+    /// Those of the table and its end stops, wherever the coupling is.
+    pub const fn of_table(profile: &AnyProfile, n: &LoopIntervals) -> Self {
+        let outline = profile.outline();
+        let unit = torque_of_unit(profile, n.format).mul(knots_per_rad(profile, n.format));
+        let mut rise = unit.mul(Interval::exact(outline.rise as f64));
+        let fall = unit.mul(Interval::exact(outline.fall as f64));
+        if let Some(Ends { stiffness, .. }) = profile.ends {
+            rise = rise.max(n.coefficient(Interval::decimal(stiffness)));
+        }
+        Self { rise, fall }
     }
 
     /// The steeper of the two.
@@ -69,6 +75,26 @@ pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Opt
     let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
     let damping = damper(profile, n).mul(n.period).abs();
     Some(slopes.steepest().mul(n.period).add(damping.double()))
+}
+
+/// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to
+/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`. What is late is fed back through the
+/// coupling's compliance `V`, and adds up to `M / (1 - M V)`. `None` where that does not end, and behind a
+/// coupling that remembers torques.
+pub(super) const fn peak_gain(profile: &AnyProfile, n: &LoopIntervals) -> Option<f64> {
+    let gain =
+        ExtremeSlopes::of_table(profile, n).steepest().add(damper(profile, n).abs().double());
+    if profile.delay == 0 {
+        return Some(gain.hi());
+    }
+    let left = Interval::ONE.sub(gain.mul(n.compliance));
+    if n.is_matched || !left.is_positive() { None } else { Some(gain.div(left).hi()) }
+}
+
+/// Torque in N m over a cell of the table, at most.
+pub(super) const fn step_of_cell(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
+    let cell = Interval::ONE.div(knots_per_rad(profile, n.format));
+    ExtremeSlopes::of_table(profile, n).steepest().mul(cell).hi()
 }
 
 /// Whether a torque that is not zero in the mean would turn the device for ever.

@@ -47,6 +47,18 @@ impl Format {
     }
 }
 
+impl Format {
+    /// The most by which a place in a table of knots is off, in cells, beside what a product rounds.
+    pub(crate) fn error_of_place(self) -> f64 {
+        match self {
+            Self::F32 | Self::F64 => 0.0,
+            Self::Fixed { .. } | Self::Truncated { .. } => {
+                1.0 / f64::from(1_u32 << fixed_point::PART_BITS)
+            }
+        }
+    }
+}
+
 const fn to_f32(value: f64, rounding: Rounding) -> f32 {
     let nearest = value as f32;
     let (found, wanted) = ((nearest as f64).abs(), value.abs());

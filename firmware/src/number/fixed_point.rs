@@ -89,7 +89,7 @@ impl Scaled {
 }
 
 /// Parts of a cell that a place is told to.
-const PART_BITS: u32 = 14;
+pub(super) const PART_BITS: u32 = 14;
 
 /// From torque a unit of a knot to the mantissa of a torque a part of it, in a format with so many fractional
 /// bits.
