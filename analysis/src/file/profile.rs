@@ -16,7 +16,7 @@ const MOST_SHAPES: usize = 16;
 const MOST_KNOTS: usize = 2048;
 /// Cells of the smallest and of the largest table.
 const CELLS: [usize; 2] = [16, 4096];
-/// Cells in the narrowest piece of a table, so that one at the least is all within it.
+/// Cells in the narrowest straight piece, so that one at the least is all within it.
 const CELLS_OF_A_PIECE: f64 = 2.0;
 /// How far the last knot may be from where the period ends, as a part of the period: it is written with a
 /// few digits.
@@ -69,13 +69,13 @@ impl Shapes {
     }
 }
 
-/// Width in rad of the narrowest piece of a table; the cells of other shapes are the library's to choose.
+/// Width in rad of the narrowest straight piece of a shape.
 fn narrowest_piece(shape: &Shape) -> f64 {
     match shape {
         Shape::Table(knots) | Shape::Periodic(knots) => {
             knots.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min)
         }
-        _ => f64::INFINITY,
+        named => named.narrowest(),
     }
 }
 

@@ -327,6 +327,10 @@ const fn write_doubt(
         UndecidedReason::MissedWithLatency => {
             "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
+        UndecidedReason::NoProfileBound => {
+            "no bound is known for a torque profile that no coupling separates from a damper, a lag, jitter or \
+             missed updates; couple it by a spring, or where torques lag by the matched coupling"
+        }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"
         }

@@ -167,7 +167,7 @@ impl Shape {
     }
 
     /// Width in rad of the narrowest straight piece that a table has to show.
-    pub(super) const fn narrowest(&self) -> f64 {
+    pub const fn narrowest(&self) -> f64 {
         match *self {
             Self::Detents { count, .. } => 0.25 * TAU / count as f64,
             Self::Texture { pitch, .. } => 0.25 * pitch,
