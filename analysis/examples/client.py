@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 3
+PROTOCOL = 4
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -54,7 +54,8 @@ SCENE = [
                               ("free-mode", [FREE, ("delay", "u")]),
                               ("free-mode-wall", [FREE, ("wall", WALL)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
-                 ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE)]),
+                 ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
+                 ("actuator_response", TIME_RANGE)]),
     ("torque_limit", ("option", "f64")),
 ]
 FIELDS = {

@@ -59,6 +59,7 @@ pub mod device;
 pub mod file;
 pub mod hand;
 pub mod missed;
+pub mod nominal_latency;
 pub mod table;
 
 // Numbers and words.

@@ -4,20 +4,20 @@
 use std::fmt;
 
 use firmware::dac::DacCode;
-use firmware::scene::Device;
+use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
 use crate::device::{Energy, Hand, Motion, SimulatedEncoder};
 use crate::hand::HandTrajectory;
 use crate::simulation::SimulationError;
-use crate::simulation::held_device::HeldDevice;
+use crate::simulation::held_device::{DeviceState, HeldDevice};
 
 /// Source of the encoder's counts and sink of the DAC codes.
 pub trait PlantIo {
     /// The counter's content now; `None` at the end of a recording.
     fn count(&mut self) -> Option<i32>;
-    /// Holds the code until the next tick.
+    /// Puts the code of this tick out, which is held until that of the next one.
     fn hold(&mut self, code: u16);
 }
 
@@ -41,7 +41,8 @@ impl PlantIo for Recording<'_> {
     fn hold(&mut self, _: u16) {}
 }
 
-/// A simulated device in a hand that follows a trajectory.
+/// A simulated device in a hand that follows a trajectory. A code acts from the output delay of the scene
+/// on, and amplifier and sensor lag as the scene says: times in a range by its middle, without jitter.
 pub struct SimulatedDevice {
     held: HeldDevice,
     free: HeldDevice,
@@ -50,39 +51,38 @@ pub struct SimulatedDevice {
     period: f64,
     torque_per_code: f64,
     ticks: u64,
-    motion: Motion,
+    state: DeviceState,
     energy: Energy,
 }
 
 impl SimulatedDevice {
-    /// A device at rest at zero, stepped by `period` s, with the encoder and the motor of the
-    /// servo.
+    /// A scene's device at rest at zero, with the encoder and the motor of the servo.
     ///
     /// # Errors
     /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(
-        device: Device,
+        scene: &Scene,
         trajectory: HandTrajectory,
-        period: f64,
         transducers: &Transducers,
     ) -> Result<Self, SimulationError> {
         let full_scale = transducers.full_scale_torque;
+        let held = HeldDevice::of(scene, trajectory.hand)?;
         Ok(Self {
-            held: HeldDevice::new(device, trajectory.hand, period)?,
-            free: HeldDevice::new(device, Hand::default(), period)?,
+            state: held.at(Motion::default()),
+            held,
+            free: HeldDevice::of(scene, Hand::default())?,
             trajectory,
             encoder: SimulatedEncoder::new(transducers.counts_per_turn),
-            period,
+            period: scene.timing.period,
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             ticks: 0,
-            motion: Motion::default(),
             energy: Energy::default(),
         })
     }
 
     /// How the device moves now.
     pub fn motion(&self) -> Motion {
-        self.motion
+        self.state.motion()
     }
 
     /// Energy that passed between hand and device so far.
@@ -93,7 +93,7 @@ impl SimulatedDevice {
 
 impl PlantIo for SimulatedDevice {
     fn count(&mut self) -> Option<i32> {
-        Some(self.encoder.read(self.motion.position))
+        Some(self.encoder.read(self.state.measured()))
     }
 
     fn hold(&mut self, code: u16) {
@@ -104,8 +104,7 @@ impl PlantIo for SimulatedDevice {
         let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
         let is_held = start < self.trajectory.release;
         let device = if is_held { &self.held } else { &self.free };
-        let (motion, work) = device.step(self.motion, torque, setpoint);
-        self.motion = motion;
+        let work = device.step(&mut self.state, torque, setpoint);
         if is_held {
             self.energy.add(work);
         }
@@ -201,5 +200,57 @@ impl RemoteServo for NoRemote {
 
     fn exchange(&mut self, _: i32) -> Result<u16, Self::Error> {
         match *self {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::encoder::CounterWidth;
+    use firmware::environment::{Environment, Wall};
+    use firmware::scene::{Coupling, Device, Latency, Timing};
+
+    use super::*;
+
+    /// A free device is accelerated by the first code from its phase on, and by the one before until then.
+    #[test]
+    fn a_code_acts_from_its_phase_on() {
+        let (inertia, damping, period, phase) = (2.2e-5, 0.022, 1e-3, 2e-4);
+        let wall = Wall {
+            stiffness: 22.0,
+            damping: 0.0,
+            delay: 0,
+            filter: None,
+            face: 0.0,
+            one_sided: false,
+        };
+        let scene = Scene {
+            device: Device { inertia, damping, passivity: None },
+            timing: Timing { period, worst_period: None },
+            coupling: Coupling::Matched,
+            environment: Environment::DelayedSpring(wall),
+            latency: Latency::delayed(phase),
+            torque_limit: None,
+        };
+        let transducers = Transducers {
+            counts_per_turn: 61_440.0,
+            counter: CounterWidth::Bits16,
+            full_scale_torque: 2.0,
+            largest_speed: 100.0,
+        };
+        let trajectory = HandTrajectory { release: 0.0, ..HandTrajectory::push_and_let_go() };
+        let mut device = SimulatedDevice::new(&scene, trajectory, &transducers).unwrap();
+        let rate = damping / inertia;
+        // m v' = u - b v, with the code's torque from its phase on.
+        let after = |velocity: f64, torque: f64, time: f64| {
+            torque / damping + (velocity - torque / damping) * (-rate * time).exp()
+        };
+        let (mut velocity, mut before) = (0.0, 0.0);
+        for codes in [500, -300, 0, 700] {
+            device.hold(DacCode::MID_SCALE.get().wrapping_add_signed(codes));
+            let torque = 2.0 * f64::from(codes) / f64::from(DacCode::CODES_TO_FULL_SCALE);
+            velocity = after(after(velocity, before, phase), torque, period - phase);
+            assert!((device.motion().velocity - velocity).abs() < 1e-11, "{codes}");
+            before = torque;
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The scenes with a program for the board, from that program's own file: three, and one more in the
+//! The scenes with a program for the board, from that program's own file: four, and one more in the
 //! build of `haptic` that the package `haptic-scene` makes for it.
 
 #[path = "../../firmware/src/bin/damper_wall.rs"]
@@ -12,8 +12,12 @@ pub mod free_mode;
 // No scene, and so not among them: what a device is measured with.
 #[path = "../../firmware/src/bin/identify.rs"]
 pub mod identify;
+#[path = "../../firmware/src/bin/knob.rs"]
+pub mod knob;
 #[path = "../../firmware/src/bin/supervised_spring.rs"]
 pub mod supervised_spring;
+#[path = "../../firmware/src/bin/undelayed_spring.rs"]
+pub mod undelayed_spring;
 #[path = "../../firmware/src/bin/undelayed_wall.rs"]
 pub mod undelayed_wall;
 
@@ -90,13 +94,8 @@ impl Program {
 
     /// Its device at rest, in the hand that shows it.
     pub fn device(&self) -> SimulatedDevice {
-        SimulatedDevice::new(
-            self.scene.device,
-            (self.trajectory)(),
-            self.scene.timing.period,
-            &self.transducers,
-        )
-        .expect("a device that is written there moves")
+        SimulatedDevice::new(&self.scene, (self.trajectory)(), &self.transducers)
+            .expect("a device that is written there moves")
     }
 
     /// Starts it on a board that is a thread, around this device.
@@ -117,9 +116,9 @@ impl Program {
         Self::every().chain(MORE.get()).find(|program| program.name == name)
     }
 
-    /// All programs of this build, also the one that needs a host, and the one whose torques are not latched.
+    /// All programs of this build, also the one that needs a host, and those whose torques are not latched.
     pub fn every() -> impl Iterator<Item = &'static Self> {
-        ALL.iter().chain([&SUPERVISED, &UNDELAYED])
+        ALL.iter().chain([&SUPERVISED, &UNDELAYED, &STIFFEST])
     }
 }
 
@@ -189,7 +188,7 @@ macro_rules! programs {
     };
 }
 
-programs!(delayed_spring, damper_wall, free_mode);
+programs!(delayed_spring, damper_wall, free_mode, knob);
 
 /// What the options do. Not among the others: it lets the device go where no host is heard, as in a
 /// simulation there is none.
@@ -198,6 +197,9 @@ pub static SUPERVISED: Program = crate::program!(supervised_spring);
 /// The one whose torques come at a phase of their own. Not among the others, which are compared with the
 /// paper's: its wall is not late, and there is a coupling with a memory in front of it.
 pub static UNDELAYED: Program = crate::program!(undelayed_wall, undelayed_wall::Output);
+
+/// The stiffest spring of the paddle at its rate, whose torques come at a phase, too.
+pub static STIFFEST: Program = crate::program!(undelayed_spring, undelayed_spring::Output);
 
 #[cfg(test)]
 mod tests {

@@ -8,6 +8,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::chart::Picture;
 use crate::device::Hand;
 use crate::file::{SceneFile, write};
+use crate::nominal_latency::titled;
 use crate::quantity::significant;
 use crate::verdict::{Enclosure, RuleAnswer, Verdict, VerdictReport};
 
@@ -69,6 +70,7 @@ impl Page<'_> {
     /// The page as HTML.
     pub fn html(&self) -> String {
         let report = self.report;
+        let latency = [&self.file.scene.latency];
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -99,10 +101,10 @@ impl Page<'_> {
                     p { "The verdict holds only if these hold." }
                     ul id="assumptions" { @for item in &report.assumptions { li { (item) } } }
                     h2 { "Pictures" }
-                    (figure("nyquist", &self.nyquist, "Nyquist curves from velocity to torque. The \
-                                                       black curve decides: it must stay right of \
-                                                       the critical line. Grey curves are for \
-                                                       comparison."))
+                    (figure("nyquist", &self.nyquist, &titled("Nyquist curves from velocity to torque. \
+                                                              The black curve decides: it must stay \
+                                                              right of the critical line. Grey curves \
+                                                              are for comparison.", latency)))
                     @if let Some(profile) = &self.profile {
                         (figure("profile", &Figure::Drawn(profile.clone()), PROFILE))
                         (figure("map", &self.map, MAP_OF_PROFILES))
@@ -110,7 +112,7 @@ impl Page<'_> {
                         (figure("map", &self.map, "Verdicts on walls with this scene's device, \
                                                    period, coupling and delay."))
                     }
-                    (figure("motion", &self.motion, "Simulation of the scene."))
+                    (figure("motion", &self.motion, &titled("Simulation of the scene.", latency)))
                 }
             }
         };
@@ -197,6 +199,7 @@ fn latency(latency: &Latency) -> Vec<(&'static str, String)> {
         ("Deviation from that delay, at most", jitter),
         ("Lag of the amplifier", latency.actuator_lag),
         ("Lag of the encoder's filter", latency.sensor_lag),
+        ("Step response of the amplifier", latency.actuator_response),
     ];
     let text = |time: TimeRange| {
         let [least, most] = [time.least, time.most].map(|end| significant(end, 6));
@@ -241,7 +244,7 @@ fn numbers(report: &VerdictReport, scene: &Scene) -> Markup {
         ("Index with the coupling, alpha", enclosure(report.alpha_coupled)),
     ];
     rows.extend(report.alpha_port.map(|port| ("Index at the port, with latency", enclosure(port))));
-    rows.extend(report.margin.map(|margin| ("Margin", damping(margin))));
+    rows.extend(report.margin_in_words().map(|margin| ("Margin", margin)));
     rows.extend(report.theta.map(|theta| {
         let degrees = significant(theta.to_degrees(), 4);
         ("Least real part at", format!("{} rad a sample, {degrees}\u{b0}", significant(theta, 6)))

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::file::SceneFile;
+use crate::nominal_latency::titled;
 use crate::simulation::tick_status::TickStatus;
 use crate::simulation::torque_signal::TorqueSignal;
 use crate::simulation::{Experiment, Integration, SimulationError, simulate};
@@ -71,7 +72,7 @@ impl Trace {
         let is_driven = experiment.hand_torque != TorqueSignal::Free;
         let driven = is_driven.then(|| (0..experiment.samples).map(hand_torque).collect());
         let trace = Self {
-            title: file.name.clone(),
+            title: titled(&file.name, [&file.scene.latency]),
             time_unit: TimeUnit::Seconds,
             time: (0..experiment.samples).map(|sample| sample as f64 * period).collect(),
             position: motion.position,

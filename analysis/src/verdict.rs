@@ -3,13 +3,13 @@
 use std::fmt;
 
 use firmware::certificate::{
-    Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound,
+    Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Remedies,
     Resolution, Rule, assess_in, certify_in,
 };
 use firmware::number::Format;
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Scene};
-use firmware::servo::Latched;
+use firmware::servo::OutputTiming;
 use serde::Serialize;
 
 use crate::line_search::minimizing_angle;
@@ -128,6 +128,13 @@ pub struct VerdictReport {
     /// The same where the torque is limited as on a board; `None` where no board renders the scene.
     #[serde(skip)]
     pub margin_on_board: Option<f64>,
+    /// Whether the margin is a result: no loss of damping is known to be allowed, and the margin is 0, where
+    /// torques lag and a bound decides.
+    #[serde(skip)]
+    pub is_margin_known: bool,
+    /// The same of the margin on a board, where the bound decides for every scene.
+    #[serde(skip)]
+    pub is_margin_known_on_board: bool,
     /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
     /// Nyquist frequency.
     pub theta: Option<f64>,
@@ -172,12 +179,15 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
     };
     let delta = assessment.delta.midpoint();
     let margin = assessment.margin(scene);
+    let lags = has_port_index(scene);
+    let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear);
+    let is_margin_known_on_board = !lags;
     let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
     let remedies = rejection.map(|rejection| rejection.remedies());
     let assumptions = Assumptions::of(scene, &assessment, steps);
     let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
     let message = match rejection {
-        None => passed(margin, assumptions.rest()),
+        None => passed(margin.filter(|_| is_margin_known), assumptions.rest()),
         Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
     };
     VerdictReport {
@@ -192,22 +202,52 @@ pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -
         delta,
         margin,
         margin_on_board,
+        is_margin_known,
+        is_margin_known_on_board,
         theta: minimum_angle(scene, &assessment),
         format: (format != Format::F64).then(|| format.to_string()),
         rest: assumptions.rest().map(AtRest::of),
         board: assessment
             .outcome
             .ok()
-            .and_then(|()| assessment.renders_in::<Latched>(scene).err())
+            .and_then(|()| assessment.renders_at(scene, timing_on_a_board(scene)).err())
             .map(|error| error.to_string()),
         warnings: failing.map(ToString::to_string).collect(),
         assumptions: assumptions.iter().map(ToString::to_string).collect(),
         message,
-        remedies: remedies
-            .iter()
-            .flat_map(|found| found.iter().map(|remedy| remedy.to_string()))
-            .collect(),
+        remedies: remedies.as_ref().map_or_else(Vec::new, in_sentences),
     }
+}
+
+/// One sentence each.
+fn in_sentences(remedies: &Remedies) -> Vec<String> {
+    let matched = remedies.matched().map(ToOwned::to_owned);
+    matched.into_iter().chain(remedies.iter().map(|remedy| remedy.to_string())).collect()
+}
+
+impl VerdictReport {
+    /// The margin in words; `None` where there is none.
+    pub fn margin_in_words(&self) -> Option<String> {
+        Some(in_words(self.margin?, self.is_margin_known))
+    }
+
+    /// The margin on a board in words; `None` where no board renders the scene.
+    pub fn margin_on_board_in_words(&self) -> Option<String> {
+        Some(in_words(self.margin_on_board?, self.is_margin_known_on_board))
+    }
+}
+
+fn in_words(margin: f64, is_known: bool) -> String {
+    if is_known { format!("{} N m s/rad", significant(margin, 6)) } else { NO_MARGIN.to_owned() }
+}
+
+/// In place of a margin.
+const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face has them judged by a \
+                         bound, the coupling is made for this passivity of the device and for no less";
+
+/// When a board would put the scene's torques out.
+fn timing_on_a_board(scene: &Scene) -> OutputTiming {
+    OutputTiming::of_delay(scene.latency.output_delay.middle())
 }
 
 /// Whether the index at the port is another one than that of `E'`.

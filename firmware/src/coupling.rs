@@ -99,8 +99,10 @@ pub struct Solver<N: Number> {
     line_gain: N::Coefficient,
     /// The same with the slopes of line and wall together.
     contact_gain: N::Coefficient,
-    /// `K_vc` in N m/rad, the torque a depth that slides on the wall's face; `None`: rigid.
-    stiffness: Option<N::Coefficient>,
+    /// `K_vc` in N m/rad, the torque a depth that slides on the wall's face; zero for a rigid coupling, which
+    /// has no use for it.
+    stiffness: N::Coefficient,
+    is_rigid: bool,
 }
 
 impl<N: Number> Solver<N> {
@@ -129,14 +131,13 @@ impl<N: Number> Solver<N> {
             compliance,
             line_gain: BuildError::coefficient::<N>("coupled gain", 1.0 / line)?,
             contact_gain: BuildError::coefficient::<N>("coupled gain in contact", 1.0 / contact)?,
-            stiffness: if is_rigid {
-                None
-            } else {
-                // Not above that of the compliance as rounded: while the environment slides on
-                // the face, it must not come back out as the device goes in.
-                let stiffness = N::FORMAT.coefficient(1.0 / given, Rounding::Inward);
-                Some(BuildError::coefficient::<N>("coupling stiffness", stiffness)?)
-            },
+            // Not above that of the compliance as rounded: while the environment slides on the
+            // face, it must not come back out as the device goes in.
+            stiffness: BuildError::coefficient::<N>(
+                "coupling stiffness",
+                if is_rigid { 0.0 } else { N::FORMAT.coefficient(1.0 / given, Rounding::Inward) },
+            )?,
+            is_rigid,
         })
     }
 
@@ -159,12 +160,25 @@ impl<N: Number> Solver<N> {
     /// positive loop gains these cross once, and the order picks the right one.
     #[inline(always)]
     fn pushing(&self, free: N, both: N, depth: N) -> N {
-        let contact = both.times(self.contact_gain);
-        match self.stiffness {
-            Some(stiffness) => contact.smaller(depth.times(stiffness)).larger(free),
-            None if depth <= N::ZERO => free,
-            None => contact.larger(free),
+        if !self.is_rigid {
+            self.wall_or_face(both, depth).larger(free)
+        } else if depth <= N::ZERO {
+            free
+        } else {
+            both.times(self.contact_gain).larger(free)
         }
+    }
+
+    /// The solution with the wall's line, or on the wall's face, for a coupling that is not rigid.
+    #[inline(always)]
+    pub(crate) fn wall_or_face(&self, both: N, depth: N) -> N {
+        both.times(self.contact_gain).smaller(depth.times(self.stiffness))
+    }
+
+    /// Whether the coupling has no compliance.
+    #[inline(always)]
+    pub(crate) const fn is_rigid(&self) -> bool {
+        self.is_rigid
     }
 
     /// The environment's position `x_E` in rad with the device at `x` and this torque.

@@ -107,6 +107,13 @@ impl Position {
     /// Takes a reading of the counter.
     #[inline(always)]
     pub const fn update(&mut self, raw: RawCount) -> Reading {
+        self.follow(raw);
+        self.reading()
+    }
+
+    /// The same without a look at where that is.
+    #[inline(always)]
+    pub(crate) const fn follow(&mut self, raw: RawCount) {
         // The difference to the last reading, taken at the counter's width, is the signed step.
         let shift = self.width as u32;
         let step = (raw.0.wrapping_sub(self.count.cast_unsigned()) << shift).cast_signed() >> shift;
@@ -116,7 +123,6 @@ impl Position {
             cold_path();
             self.laps = self.laps.wrapping_add(if step < 0 { -1 } else { 1 });
         }
-        self.reading()
     }
 
     /// The position as it was last read.

@@ -1,6 +1,7 @@
 //! What lies between a count and its torque: delays of the output, and lags of amplifier and sensor.
 //!
-//! A lag is first order, with a gain of 1. All of it belongs to the controller's side of the device's
+//! A lag is first order, with a gain of 1. Of an amplifier that is not known to be, the begin and the end of
+//! its step response may be stated in its place. All of it belongs to the controller's side of the device's
 //! port: the device's passivity is that from the motor's torque to the velocity at the encoder
 //! (theory, section 13).
 
@@ -34,9 +35,17 @@ impl TimeRange {
         Self { least, most }
     }
 
+    /// The time that passes when one of another range follows.
+    pub const fn followed_by(self, next: Self) -> Self {
+        if next.is_zero() {
+            return self;
+        }
+        Self { least: self.least + next.least, most: self.most + next.most }
+    }
+
     /// Whether it is certainly no time.
     pub const fn is_zero(self) -> bool {
-        self.least == 0.0 && self.most == 0.0
+        is_zero(self.least) && is_zero(self.most)
     }
 
     /// Whether it is known.
@@ -48,6 +57,11 @@ impl TimeRange {
     pub const fn middle(self) -> f64 {
         if self.is_exact() { self.least } else { 0.5 * (self.least + self.most) }
     }
+}
+
+/// Whether a number is zero, by its bits: a board compares doubles in software, and asks this of every scene.
+const fn is_zero(number: f64) -> bool {
+    number.to_bits() << 1 == 0
 }
 
 /// Delays and lags between the instant of a count and that of its torque.
@@ -62,6 +76,9 @@ pub struct Latency {
     pub actuator_lag: TimeRange,
     /// Time constant of the filter between encoder and servo.
     pub sensor_lag: TimeRange,
+    /// Where the amplifier is no lag: its step response rises or rests, begins after the least and has
+    /// ended before the most of this, which is a period at the most. Zero where the torque follows at once.
+    pub actuator_response: TimeRange,
 }
 
 impl Latency {
@@ -72,6 +89,7 @@ impl Latency {
         output_jitter: 0.0,
         actuator_lag: TimeRange::ZERO,
         sensor_lag: TimeRange::ZERO,
+        actuator_response: TimeRange::ZERO,
     };
 
     /// A delay of the output in s that is known and constant.
@@ -84,12 +102,33 @@ impl Latency {
         Self { actuator_lag: TimeRange::exactly(lag), ..self }
     }
 
+    /// The same in front of an amplifier whose step response rises from `begin` to `end`, in s.
+    pub const fn with_actuator_response(self, begin: f64, end: f64) -> Self {
+        Self { actuator_response: TimeRange::between(begin, end), ..self }
+    }
+
+    /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is
+    /// not: no torque comes before its count.
+    ///
+    /// The sample counts where an amplifier lags. There the bound for jitter does not ask in which tick a
+    /// torque begins (theory, equation 42).
+    pub const fn largest_jitter(&self, is_late: bool, period: f64) -> f64 {
+        let sample = if is_late && !self.actuator_lag.is_zero() { period } else { 0.0 };
+        self.output_delay.least + sample
+    }
+
+    /// From a count to the parts of its torque: the delay of the output, and the amplifier's response.
+    pub const fn torque_delay(&self) -> TimeRange {
+        self.output_delay.followed_by(self.actuator_response)
+    }
+
     /// Whether there is none of it.
     pub const fn is_none(&self) -> bool {
         self.output_delay.is_zero()
-            && self.output_jitter == 0.0
+            && is_zero(self.output_jitter)
             && self.actuator_lag.is_zero()
             && self.sensor_lag.is_zero()
+            && self.actuator_response.is_zero()
     }
 }
 

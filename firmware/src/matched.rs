@@ -140,6 +140,13 @@ impl MatchedCoupling {
         }
     }
 
+    /// Sum of the magnitudes of all compliances: the most deflection in rad for torques of up to 1 N m each.
+    pub(crate) fn largest_deflection(&self) -> f64 {
+        let lasts = |trail: &Trail| trail.gain.abs() / (1.0 - trail.decay);
+        let held = self.held * self.whole as f64 + self.arriving.abs();
+        self.compliance + held + self.trails.iter().map(lasts).sum::<f64>()
+    }
+
     /// Sum over the taps of `(2 m + 1)` times what rounding changed.
     const fn rounding(&self, standard: Interval, taps: &Taps) -> Interval {
         let n = self.whole as f64;
@@ -186,7 +193,7 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 impl Taps {
     /// Of the times at one place in their ranges.
     const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        let delay = place.of(latency.output_delay).div(t);
+        let delay = place.of(latency.torque_delay()).div(t);
         let whole = delay.midpoint().max(0.0) as usize;
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);

@@ -41,6 +41,17 @@ impl OutputTiming {
         }
     }
 
+    /// When a board puts the torques of a scene out that has this output delay in s: at a phase, where
+    /// there is one, or by the latch. No phase is as long as what does not fit, and such a delay is no
+    /// board's.
+    pub const fn of_delay(delay: f64) -> Self {
+        if delay == 0.0 {
+            return Self::Latched;
+        }
+        // The cast rounds down, and gives the nearest of what does not fit.
+        Self::AtPhase((delay * 1e9 + 0.5) as u32)
+    }
+
     /// Whether a board with this period in s can do it: a phase is not too short to compute a code in,
     /// and not so long that the next period's code could be put out in its place.
     pub const fn fits(self, period: f64) -> bool {

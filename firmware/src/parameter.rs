@@ -106,6 +106,7 @@ parameters! {
     OutputJitter: "servo.output_jitter", "output jitter", "s", Range::NotNegative;
     ActuatorLag: "device.actuator_lag", "actuator lag", "s", Range::NotNegative;
     SensorLag: "device.sensor_lag", "sensor lag", "s", Range::NotNegative;
+    ActuatorResponse: "device.actuator_response", "actuator response", "s", Range::NotNegative;
     ProfileTorque: "environment.torque", "profile torque", "N m", Range::Positive;
     Count: "environment.count", "number of repetitions in a turn", "", Range::Positive;
     Centre: "environment.centre", "profile centre", "rad", Range::Finite;

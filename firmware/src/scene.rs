@@ -103,6 +103,7 @@ impl<E> Scene<E> {
         OutputJitter: Self { latency: Latency { output_jitter: value, .. }, .. },
         ActuatorLag: Self { latency: Latency { actuator_lag: TimeRange { most: value, .. }, .. }, .. },
         SensorLag: Self { latency: Latency { sensor_lag: TimeRange { most: value, .. }, .. }, .. },
+        ActuatorResponse: Self { latency: Latency { actuator_response: TimeRange { most: value, .. }, .. }, .. },
     }
 }
 
@@ -143,6 +144,11 @@ impl Scene {
         }
     }
 
+    /// The largest output jitter in s that it may have.
+    pub const fn largest_jitter(&self) -> f64 {
+        self.latency.largest_jitter(self.environment.is_late(), self.timing.period)
+    }
+
     /// The scene with this value, also where it had none that could be left out: a passivity, a worst
     /// period, a coupling, a torque limit. `None` where there is no place for it.
     pub const fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
@@ -157,6 +163,9 @@ impl Scene {
             Parameter::OutputDelay => changed.latency.output_delay = TimeRange::exactly(value),
             Parameter::ActuatorLag => changed.latency.actuator_lag = TimeRange::exactly(value),
             Parameter::SensorLag => changed.latency.sensor_lag = TimeRange::exactly(value),
+            Parameter::ActuatorResponse => {
+                changed.latency.actuator_response = TimeRange::exactly(value);
+            }
             _ => match changed.own_number_mut(parameter) {
                 Some(place) => *place = value,
                 None => match changed.environment.with(parameter, value) {

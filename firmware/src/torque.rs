@@ -97,6 +97,33 @@ impl<N: Number> Limiter<N> {
         }
     }
 
+    /// The same of what only pushes: of its part above zero. One comparison for its sign, the bound and what
+    /// is no number.
+    #[inline(always)]
+    pub(crate) fn limit_push(&self, wanted: N, otherwise: LimitReason) -> (N, LimitReason) {
+        if wanted.is_from_zero_to(self.level) {
+            return (wanted, otherwise);
+        }
+        if wanted <= N::ZERO {
+            return (wanted.positive_part(), otherwise);
+        }
+        let (torque, reason) = self.beyond(wanted);
+        (torque, *reason)
+    }
+
+    /// What is left of a push above the level, or of one that is no number. Out of line, so that a usual
+    /// tick has nothing of it in its registers, and with the reason where it is, so that the tick need not
+    /// take it for a register's lowest byte.
+    #[cold]
+    #[inline(never)]
+    fn beyond(&self, wanted: N) -> (N, &LimitReason) {
+        if wanted > N::ZERO {
+            (self.level, &self.because)
+        } else {
+            (N::ZERO, &LimitReason::NotANumber)
+        }
+    }
+
     /// Lets no torque through.
     pub(crate) fn shut(&mut self) {
         self.set(N::ZERO);
@@ -146,6 +173,21 @@ mod tests {
         assert_eq!(limit(f32::NAN), (0.0, LimitReason::NotANumber));
         assert_eq!(limiter.limit(1.0, LimitReason::Angle), (1.0, LimitReason::Angle));
         assert_eq!(limiter.limit(3.0, LimitReason::Angle), (2.0, LimitReason::Torque));
+    }
+
+    /// As the limit of the part above zero, which has a way of its own to the same.
+    #[test]
+    fn a_push_is_limited_as_its_part_above_zero() {
+        let mut limiter = Limiter::new(2.0_f32, LimitReason::Torque);
+        let wanted = [0.0, -0.0, 1e-40, 1.0, 2.0, 2.0_f32.next_up(), -1e-40, -3.0, f32::INFINITY];
+        for is_shut in [false, true] {
+            for wanted in wanted.into_iter().chain([f32::NAN, -f32::NAN]) {
+                let (torque, limit) = limiter.limit(wanted.larger(0.0), LimitReason::Angle);
+                let push = limiter.limit_push(wanted, LimitReason::Angle);
+                assert_eq!((push.0, push.1), (torque, limit), "{wanted}, shut: {is_shut}");
+            }
+            limiter.shut();
+        }
     }
 
     #[test]

@@ -18,6 +18,7 @@ use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
 use crate::studies::bench::live::live_set;
+use crate::studies::bench::matched;
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
 use crate::text_table::markdown_table;
@@ -69,6 +70,9 @@ const TICK_RATE: f64 = 20e3;
 const C_CONTACT: f64 = 53.0;
 const C_FREE: f64 = 42.0;
 
+/// Most instructions of a tick of the damper wall behind the matched coupling, in contact.
+const MATCHED_BUDGET: f64 = 50.0;
+
 /// Ticks of each run in the emulator.
 const DEFAULT_TICKS: usize = 5000;
 
@@ -93,8 +97,24 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         live_sets(program.name, f32, &mut figures)?;
         figures.extend(scene.figures());
     }
+    behind_matched(&toolchain, &mut figures)?;
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
     Ok(CommandStatus::Success)
+}
+
+/// Ticks behind the matched coupling, of which no program is of a wall alone.
+fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
+    let most = matched::contact_instructions(&toolchain.build_bench_programs()?)?;
+    for (what, most) in ["", " and one lag"].into_iter().zip(most) {
+        figures.push(Figure::new(
+            format!("damper wall behind the matched coupling{what}, f32: tick, contact, most"),
+            most.into(),
+            "instructions",
+            Some(MATCHED_BUDGET),
+            "budget",
+        ));
+    }
+    Ok(())
 }
 
 /// What every program has.
@@ -137,7 +157,7 @@ fn on_host() -> Vec<Figure> {
 }
 
 /// What a torque that lags costs a verdict, and what the verdict about it is worth.
-fn lagging() -> [Figure; 2] {
+fn lagging() -> [Figure; 3] {
     let time = bench::middle_verdict_time(&bench::lagging_scenes());
     let (lagging, whole_samples) = bench::lagging_springs();
     [
@@ -154,6 +174,13 @@ fn lagging() -> [Figure; 2] {
             "N m/rad",
             Some(whole_samples),
             "latched, lag as a whole sample",
+        ),
+        Figure::new(
+            "undelayed_spring: stiffness at rest in closed loop, same latency",
+            bench::at_rest::rendered_stiffness(&program::STIFFEST),
+            "N m/rad",
+            Some(lagging),
+            "the certified spring above",
         ),
     ]
 }

@@ -54,8 +54,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         signal_hook::flag::register(signal, enough.clone())?;
     }
     let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
-    let (device, period) = (program.scene.device, program.scene.timing.period);
-    let device = SimulatedDevice::new(device, trajectory, period, &program.transducers)?;
+    let period = program.scene.timing.period;
+    let device = SimulatedDevice::new(&program.scene, trajectory, &program.transducers)?;
     let (device, address) = (Box::new(device), &arguments.port);
     let board = match arguments.board {
         None => program.listen(device, address, Pacing::RealTime),

@@ -66,15 +66,11 @@ pub fn text(report: &VerdictReport) -> String {
         rows.push(("alpha, bound", enclosure(bound)));
     }
     rows.push(("delta", format!("{} N m s/rad", significant(report.delta, 12))));
-    if let Some(margin) = report.margin {
-        rows.push(("margin", format!("{} N m s/rad", significant(margin, 6))));
-    }
-    if let Some(margin) = report
-        .margin_on_board
-        .filter(|&margin| report.board.is_none() && Some(margin) != report.margin)
-    {
-        rows.push(("margin on a board", format!("{} N m s/rad", significant(margin, 6))));
-    }
+    let margin = report.margin_in_words();
+    let on_board = report.margin_on_board_in_words().filter(|_| report.board.is_none());
+    let on_board = on_board.filter(|on_board| margin.as_ref() != Some(on_board));
+    rows.extend(margin.map(|margin| ("margin", margin)));
+    rows.extend(on_board.map(|margin| ("margin on a board", margin)));
     if let Some(theta) = report.theta {
         let degrees = theta.to_degrees();
         rows.push(("reached at", format!("theta = {theta:.6} rad ({degrees:.2} degrees)")));

@@ -1,10 +1,12 @@
 //! What a run gave, for a person.
 
 use firmware::dac::DacCode;
+use firmware::text::RoundUp3;
 
 use crate::compare_run::RunOutcome;
 use crate::program::Program;
 use crate::quantity::significant;
+use crate::studies::bench::at_rest::friction_to_rest;
 use crate::verdict::VerdictReport;
 
 /// What a run gave, for a person.
@@ -46,7 +48,7 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
         ("verdict", verdict),
         ("alpha", damping(report.alpha.hi)),
         ("delta", damping(Some(report.delta))),
-        ("margin", damping(report.margin_on_board)),
+        ("margin", report.margin_on_board_in_words().unwrap_or_else(|| "none".to_owned())),
     ];
     let mut shown = format!("{}\n", report.name);
     for (label, value) in rows {
@@ -61,19 +63,27 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
 /// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
 const AT_REST: f64 = 1e-3;
 
-/// Why a released device keeps turning: the DAC rounds, and the simulated device has no friction at
-/// all. In the linear theory it stops.
+/// Why a released device keeps turning: the DAC rounds, where it is on a spring its encoder has edges, and
+/// the simulated device has no friction at all. In the linear theory it stops.
 fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let speed = outcome.final_speed.unwrap_or(0.0);
     let ended = outcome.run.ticks.len() as f64 * program.scene.timing.period;
     if speed < AT_REST || ended < (program.trajectory)().release {
         return String::new();
     }
-    let full_scale = program.transducers.full_scale_torque;
-    let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
-    format!(
-        "  still turning at the end: {} rad/s; friction of half a DAC step, {} N m, stops it\n",
-        significant(speed, 2),
-        significant(half_step, 2)
-    )
+    let friction = if is_held_by_a_spring(program) {
+        let friction = RoundUp3(friction_to_rest(program));
+        format!("that the encoder's and the DAC's steps ask for, {friction} N m,")
+    } else {
+        let full_scale = program.transducers.full_scale_torque;
+        let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);
+        format!("of half a DAC step, {} N m,", significant(half_step, 2))
+    };
+    let speed = significant(speed, 2);
+    format!("  still turning at the end: {speed} rad/s; friction {friction} stops it\n")
+}
+
+/// Whether a released device is on a spring, wherever it is.
+fn is_held_by_a_spring(program: &Program) -> bool {
+    program.scene.environment.wall().is_some_and(|wall| !wall.one_sided && wall.stiffness > 0.0)
 }

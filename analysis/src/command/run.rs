@@ -164,9 +164,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let input = match &counts {
         Some(counts) => Input::Recording(counts),
         None => Input::Hand(Box::new(SimulatedDevice::new(
-            setup.scene.device,
+            &setup.scene,
             setup.trajectory.clone(),
-            setup.scene.timing.period,
             &setup.transducers,
         )?)),
     };

@@ -3,10 +3,12 @@
 use std::io::{self, Write};
 
 use clap::Args;
+use firmware::scene::Scene;
 use serde::Serialize;
 
 use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument, json};
 use super::status::{CommandError, CommandStatus};
+use crate::nominal_latency::left_out;
 use crate::quantity::{rounded, significant};
 use crate::simulation::tick_status::TickStatus;
 use crate::simulation::{Experiment, Integration, Simulator, Trajectory, simulate};
@@ -42,6 +44,16 @@ struct Row {
     limit: TickStatus,
 }
 
+/// The motion as JSON.
+#[derive(Serialize)]
+struct Answer<'t> {
+    #[serde(flatten)]
+    trajectory: &'t Trajectory,
+    /// What of the scene's latency is not simulated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<&'static str>,
+}
+
 /// Angle in rad from zero beyond which a motion counts as divergent: 160 000 turns.
 const FARTHEST: f64 = 1e6;
 
@@ -57,9 +69,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     } else {
         let trajectory = simulate(&experiment, integration)?;
         if arguments.answer.json {
-            json(&mut out, &trajectory)?;
+            let left_out = left_out(&experiment.scene.latency);
+            json(&mut out, &Answer { trajectory: &trajectory, left_out })?;
         } else {
-            write!(out, "{}", text(&file.name, experiment.scene.timing.period, &trajectory))?;
+            write!(out, "{}", text(&file.name, &experiment.scene, &trajectory))?;
         }
         (trajectory.samples(), far(&trajectory))
     };
@@ -118,7 +131,10 @@ fn written(error: csv::Error) -> io::Error {
 }
 
 /// The motion in a few lines, for a person.
-fn text(name: &str, period: f64, trajectory: &Trajectory) -> String {
+fn text(name: &str, scene: &Scene, trajectory: &Trajectory) -> String {
+    let period = scene.timing.period;
+    let simplified =
+        left_out(&scene.latency).map_or_else(String::new, |words| format!("latency    {words}\n"));
     let Some(last) = trajectory.samples().checked_sub(1) else { return String::new() };
     let time = |sample: usize| significant(sample as f64 * period, 6);
     let row = |label: &str, column: &[f64], unit: &str| {
@@ -133,7 +149,7 @@ fn text(name: &str, period: f64, trajectory: &Trajectory) -> String {
         )
     };
     format!(
-        "scene      {name}\nsamples    {} over {} s\n{}{}{}",
+        "scene      {name}\n{simplified}samples    {} over {} s\n{}{}{}",
         last + 1,
         time(last),
         row("position", &trajectory.position, "rad"),

@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::shared_arguments::{IntegrationArguments, JsonOption, SceneArgument};
 use super::status::{CommandError, CommandStatus};
+use crate::nominal_latency::titled;
 use crate::quantity::significant;
 use crate::simulation::Experiment;
 use crate::stability::{Stability, Verdict, judge};
@@ -27,7 +28,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load_to_simulate()?;
     let stability = judge(&Experiment::at_rest(&file), arguments.steps.integration())?;
-    arguments.answer.print(&stability, |stability| text(&file.name, stability))?;
+    let name = titled(&file.name, [&file.scene.latency]);
+    arguments.answer.print(&stability, |stability| text(&name, stability))?;
     Ok(if stability.verdict == Verdict::Unstable {
         CommandStatus::NegativeVerdict
     } else {

@@ -68,6 +68,13 @@ fn text(name: &str, period: f64, search: &SearchResult) -> String {
             number(link.damping)
         );
     }
+    for absorber in &worst.hand.absorbers {
+        text += &format!(
+            "# and a mass of {} kg m^2 on a spring of {} N m/rad, on the device\n",
+            number(absorber.inertia),
+            number(absorber.stiffness)
+        );
+    }
     text
 }
 

@@ -57,8 +57,8 @@ impl Quantity {
             Self::Count => scene.with(Parameter::Count, value),
             Self::OutputDelay => {
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
-                // No torque comes before its count.
-                delayed.latency.output_jitter = delayed.latency.output_jitter.min(value);
+                delayed.latency.output_jitter =
+                    delayed.latency.output_jitter.min(delayed.largest_jitter());
                 Some(delayed)
             }
         }

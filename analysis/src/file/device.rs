@@ -31,6 +31,8 @@ pub struct DeviceTable {
     pub actuator_lag: Option<Found<TimeRange>>,
     /// Time constant of the filter behind the encoder.
     pub sensor_lag: Option<Found<TimeRange>>,
+    /// Begin and end of the amplifier's step response.
+    pub actuator_response: Option<Found<TimeRange>>,
 }
 
 /// Reads `[device]`.
@@ -49,11 +51,14 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     };
     let declared = section.found(&key::PASSIVITY);
     let encoder = section.text(&key::ENCODER);
-    let [actuator_lag, sensor_lag] =
-        [&key::ACTUATOR_LAG, &key::SENSOR_LAG].map(|key| section.time(key));
+    let [actuator_lag, sensor_lag, actuator_response] =
+        [&key::ACTUATOR_LAG, &key::SENSOR_LAG, &key::ACTUATOR_RESPONSE]
+            .map(|key| section.time(key));
     section.finish();
     let (friction, chain, declared) = (friction?, chain?, declared?);
     let (encoder, actuator_lag, sensor_lag) = (encoder?, actuator_lag?, sensor_lag?);
+    let actuator_response = actuator_response?;
+    alone(&section, actuator_response.as_ref(), &[&actuator_lag, &sensor_lag])?;
     let chain = placed(&section, chain, encoder.as_ref())?;
     let place = match &encoder {
         Some(found) if !chain.is_collocated() => (&key::ENCODER, found.span.clone()),
@@ -61,7 +66,24 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     };
     let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok(DeviceTable { chain, device, friction, actuator_lag, sensor_lag })
+    Ok(DeviceTable { chain, device, friction, actuator_lag, sensor_lag, actuator_response })
+}
+
+/// A step response of no known shape has no lag beside it: no bound is known for both.
+fn alone(
+    section: &Section<'_>,
+    response: Option<&Found<TimeRange>>,
+    lags: &[&Option<Found<TimeRange>>],
+) -> Read<()> {
+    let has_lag = lags.iter().any(|lag| lag.as_ref().is_some_and(|found| !found.value.is_zero()));
+    match response {
+        Some(found) if has_lag && !found.value.is_zero() => {
+            let lags = [key::ACTUATOR_LAG.path, key::SENSOR_LAG.path];
+            let reason = format!("stands beside `{}` or `{}`", lags[0], lags[1]);
+            Err(section.conflict(&key::ACTUATOR_RESPONSE, found.span.clone(), reason))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn rigid(section: &mut Section<'_>) -> Read<Chain> {

@@ -229,6 +229,11 @@ keys! {
     SENSOR_LAG = Key { bound: TIME, ..of(Parameter::SensorLag) },
         Default(0.0), "2.0e-5";
 
+    /// In place of `actuator_lag`, of an amplifier whose step response never falls: when it begins and when it
+    /// has ended, at most a period; any shape between is covered.
+    ACTUATOR_RESPONSE = Key { bound: TIME, ..of(Parameter::ActuatorResponse) },
+        Default(0.0), "[2.0e-5, 2.5e-4]";
+
     /// When the servo runs.
     SERVO = other("servo", "", TABLE),
         Needed, "";
@@ -242,7 +247,8 @@ keys! {
     OUTPUT_DELAY = Key { bound: TIME, ..of(Parameter::OutputDelay) },
         Default(0.0), "[4.0e-6, 6.0e-6]";
     /// Largest deviation from that delay, to either side, which may differ from tick to tick. Not more
-    /// than the delay. Simulations leave it out.
+    /// than the delay, or than that and a period where the environment is late and the amplifier lags.
+    /// Simulations leave it out.
     OUTPUT_JITTER = of(Parameter::OutputJitter),
         Default(0.0), "0.0";
 

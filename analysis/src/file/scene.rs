@@ -78,7 +78,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
         }
         EnvironmentTable::Other(environment) => (environment, None),
     };
-    let latency = latency_of(&top, &servo, &table)?;
+    let latency = latency_of(&top, &servo, &table, environment.is_late())?;
     let DeviceTable { chain, device, friction, .. } = table;
     let timing = servo.timing;
     let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
@@ -125,7 +125,12 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
 }
 
 /// The times between count and torque, each of which has a bound that other keys give.
-fn latency_of(top: &Section<'_>, servo: &Servo, device: &DeviceTable) -> Read<Latency> {
+fn latency_of(
+    top: &Section<'_>,
+    servo: &Servo,
+    device: &DeviceTable,
+    is_late: bool,
+) -> Read<Latency> {
     let period = servo.timing.period;
     let within = |key: &'static Key, found: &Option<Found<TimeRange>>, longest: f64| {
         let Some(Found { value, span }) = found else { return Ok(TimeRange::ZERO) };
@@ -133,28 +138,37 @@ fn latency_of(top: &Section<'_>, servo: &Servo, device: &DeviceTable) -> Read<La
             return Ok(*value);
         }
         let name = key::PERIOD.path;
-        let reason =
-            format!("is more than {longest} times `{name}` = {period} s, the most that it may be");
+        let times = if longest == 1.0 { String::new() } else { format!("{longest} times ") };
+        let reason = format!("is more than {times}`{name}` = {period} s, the most that it may be");
         Err(top.conflict(key, span.clone(), reason))
     };
     let output_delay = within(&key::OUTPUT_DELAY, &servo.output_delay, LONGEST_DELAY);
     let actuator_lag = within(&key::ACTUATOR_LAG, &device.actuator_lag, LONGEST_LAG);
     let sensor_lag = within(&key::SENSOR_LAG, &device.sensor_lag, LONGEST_LAG);
-    let output_jitter = jitter_of(top, servo);
+    let actuator_response = within(&key::ACTUATOR_RESPONSE, &device.actuator_response, 1.0);
+    let largest = match (&output_delay, &actuator_lag) {
+        (&Ok(output_delay), &Ok(actuator_lag)) => {
+            Latency { output_delay, actuator_lag, ..Latency::NONE }.largest_jitter(is_late, period)
+        }
+        // Of times that could not be read, any jitter is small enough.
+        _ => f64::INFINITY,
+    };
+    let output_jitter = jitter_of(top, servo, largest);
     Ok(Latency {
         output_delay: output_delay?,
         output_jitter: output_jitter?,
         actuator_lag: actuator_lag?,
         sensor_lag: sensor_lag?,
+        actuator_response: actuator_response?,
     })
 }
 
-fn jitter_of(top: &Section<'_>, servo: &Servo) -> Read<f64> {
+fn jitter_of(top: &Section<'_>, servo: &Servo, largest: f64) -> Read<f64> {
     let Some(Found { value, span }) = &servo.output_jitter else { return Ok(0.0) };
-    let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
-    if *value <= least {
+    if *value <= largest {
         return Ok(*value);
     }
+    let least = servo.output_delay.as_ref().map_or(0.0, |delay| delay.value.least);
     let reason = format!(
         "is more than the least `{}` = {least} s: no torque comes before its count",
         key::OUTPUT_DELAY.path

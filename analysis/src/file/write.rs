@@ -99,6 +99,7 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     }
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);
+    time(lines, "actuator_response", scene.latency.actuator_response);
     if chain.masses().len() > 1 {
         let damped = |table: &str, key: &str, value: f64, damping: f64| {
             format!("[[device.{table}]]\n{key} = {value:?}\ndamping = {damping:?}")
@@ -238,6 +239,7 @@ mod tests {
         for (device, servo, coupling) in [
             ("actuator_lag = [1e-5, 1.0000000000000002e-5]\n", "", ""),
             ("sensor_lag = 3e-5\n", "output_delay = [0, 5e-6]\n", "type = \"matched\"\n"),
+            ("actuator_response = [1e-5, 3e-4]\n", "output_delay = 5e-6\n", ""),
             (
                 "",
                 "output_delay = 0.0081\noutput_jitter = 1e-6\n",

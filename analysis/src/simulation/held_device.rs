@@ -5,9 +5,13 @@
 //! ```
 //!
 //! `x` angle of the device, `u` motor torque, `p` the hand's set-point; `m`, `b`
-//! of the device, `m_h`, `b_h`, `k_h` of the hand. Over a tick `u` is held and `p` moves steadily.
+//! of the device, `m_h`, `b_h`, `k_h` of the hand. Over a tick `p` moves steadily, and the commanded
+//! torque changes once: at the beginning, or as much later as the output is delayed. An amplifier may lag
+//! behind the command, and a filter behind the encoder.
 
-use firmware::scene::Device;
+use std::collections::VecDeque;
+
+use firmware::scene::{Device, Latency, Scene};
 use nalgebra::{DMatrix, DVector};
 
 use super::discrete_plant::{DiscretePlant, Discretization};
@@ -16,42 +20,138 @@ use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
 use crate::device::{Hand, HandSetpoint, Motion};
 
+/// State of the grip, behind the device's own two; those of the lags are behind it.
+const GRIP: usize = 2;
+/// State of the amplifier's torque, where the amplifier lags.
+const TORQUE: usize = 3;
+
 /// A device in a hand, ready to be stepped by whole ticks.
 #[derive(Clone, Debug)]
 pub struct HeldDevice {
     device: Device,
     period: f64,
-    tick: DiscretePlant,
-    /// `int x'^2 dt` over a tick as a quadratic form of [`at`] its start.
-    velocity_energy: DMatrix<f64>,
+    plant: Plant,
+    /// Whole ticks from a sample to its torque.
+    whole: usize,
+    /// The part of a tick before its new torque, where there is one.
+    before: Option<Part>,
+    /// The part with it.
+    after: Part,
+}
+
+/// How a device moves, with the torques that are still to act on it.
+#[derive(Clone, Debug)]
+pub struct DeviceState {
+    states: DVector<f64>,
+    measured: usize,
+    /// Commanded torques in N m of the ticks before, the newest first.
+    torques: VecDeque<f64>,
+}
+
+impl DeviceState {
+    /// The device's motion.
+    pub fn motion(&self) -> Motion {
+        Motion { position: self.states[POSITION], velocity: self.states[VELOCITY] }
+    }
+
+    /// The angle in rad at the encoder, or behind its filter.
+    pub fn measured(&self) -> f64 {
+        self.states[self.measured]
+    }
 }
 
 impl HeldDevice {
-    /// Solves the motion over one period of `period` s.
+    /// Solves the motion over one period of `period` s, with torques that neither wait nor lag.
     ///
     /// # Errors
     /// Where device and hand are too fast for their motion over a period to be computed.
     pub fn new(device: Device, hand: Hand, period: f64) -> Result<Self, SimulationError> {
-        let plant = Plant::rigid(device).with_moving_hand(hand);
-        let tick = DiscretePlant::checked(&plant, &Discretization::exact(period), 0.0)?;
-        Ok(Self { device, period, tick, velocity_energy: velocity_energy(&plant, period) })
+        Self::lagging(device, &Latency::NONE, hand, period)
     }
 
-    /// One tick with the motor torque `motor` in N m held over it: the motion at its end, and the
+    /// A scene's device, with the delay of its output and its lags.
+    ///
+    /// # Errors
+    /// As [`HeldDevice::new`].
+    pub fn of(scene: &Scene, hand: Hand) -> Result<Self, SimulationError> {
+        Self::lagging(scene.device, &scene.latency, hand, scene.timing.period)
+    }
+
+    fn lagging(
+        device: Device,
+        latency: &Latency,
+        hand: Hand,
+        period: f64,
+    ) -> Result<Self, SimulationError> {
+        let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency);
+        let delayed = Discretization::exact(period).delayed(latency.torque_delay().middle());
+        let lags = !latency.actuator_lag.is_zero();
+        let part = |length: f64| Part::new(&plant, length, lags);
+        let before = (delayed.latency > 0.0).then(|| part(delayed.latency)).transpose()?;
+        let after = part(period - delayed.latency)?;
+        Ok(Self { device, period, plant, whole: delayed.whole, before, after })
+    }
+
+    /// The state of a device that moves like this, without torque.
+    pub fn at(&self, motion: Motion) -> DeviceState {
+        DeviceState {
+            states: self.plant.state_at(motion.position, motion.velocity),
+            measured: self.plant.measured(),
+            torques: VecDeque::from(vec![0.0; self.whole + 1]),
+        }
+    }
+
+    /// One tick whose sample gives this motor torque in N m: takes the state to its end, and gives the
     /// work in J that the hand did on the device.
-    pub fn step(&self, motion: Motion, motor: f64, setpoint: HandSetpoint) -> (Motion, f64) {
+    pub fn step(&self, state: &mut DeviceState, motor: f64, setpoint: HandSetpoint) -> f64 {
+        state.torques.push_front(motor);
+        let [old, new] = [self.whole + 1, self.whole].map(|age| state.torques[age]);
+        state.torques.pop_back();
         let speed = (setpoint.to - setpoint.from) / self.period;
-        let state = DVector::from_vec(vec![motion.position, motion.velocity, setpoint.from]);
-        let end = self.tick.end(&state, motor, speed);
-        let next = Motion { position: end[POSITION], velocity: end[VELOCITY] };
-        let start = at(state, self.velocity_energy.nrows(), motor, speed);
-        let lost = self.device.damping * start.dot(&(&self.velocity_energy * &start));
-        let gained = self.kinetic(next) - self.kinetic(motion);
-        (next, gained + lost - motor * (next.position - motion.position))
+        state.states[GRIP] = setpoint.from;
+        let before = self.before.as_ref().map(|part| (part, old));
+        let mut work = 0.0;
+        for (part, motor) in before.into_iter().chain([(&self.after, new)]) {
+            let start = state.motion();
+            let spent = part.spent(&self.device, &mut state.states, motor, speed);
+            work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
+        }
+        work
     }
 
     fn kinetic(&self, motion: Motion) -> f64 {
         0.5 * self.device.inertia * motion.velocity * motion.velocity
+    }
+}
+
+/// A part of a tick over which the commanded torque is held.
+#[derive(Clone, Debug)]
+struct Part {
+    tick: DiscretePlant,
+    /// `int x'^2 dt` over it as a quadratic form of [`at`] its start.
+    velocity_energy: DMatrix<f64>,
+    /// `int u x' dt` likewise, where the amplifier lags; otherwise `u` is constant.
+    motor_work: Option<DMatrix<f64>>,
+}
+
+impl Part {
+    fn new(plant: &Plant, length: f64, lags: bool) -> Result<Self, SimulationError> {
+        let tick = DiscretePlant::checked(plant, &Discretization::exact(length), 0.0)?;
+        let velocity_energy = integral(plant, length, [VELOCITY; 2]);
+        let motor_work = lags.then(|| integral(plant, length, [VELOCITY, TORQUE]));
+        Ok(Self { tick, velocity_energy, motor_work })
+    }
+
+    /// Takes the states to its end; gives the energy in J that the device's damping took less that which
+    /// the motor gave.
+    fn spent(&self, device: &Device, states: &mut DVector<f64>, motor: f64, speed: f64) -> f64 {
+        let end = self.tick.end(states, motor, speed);
+        let moved = end[POSITION] - states[POSITION];
+        let rows = self.velocity_energy.nrows();
+        let start = at(std::mem::replace(states, end), rows, motor, speed);
+        let form = |form: &DMatrix<f64>| start.dot(&(form * &start));
+        let gained = self.motor_work.as_ref().map_or(motor * moved, form);
+        device.damping * form(&self.velocity_energy) - gained
     }
 }
 
@@ -76,16 +176,18 @@ const GAUSS: [(f64, f64); 4] = [
 /// is then below that of a double.
 const FINENESS: f64 = 16.0;
 
-/// `int x'^2 dt` over a period: by quadrature over a short time, doubled until it is the period.
-fn velocity_energy(plant: &Plant, period: f64) -> DMatrix<f64> {
-    let doublings = (FINENESS * plant.rates().amax() * period).log2().ceil().clamp(0.0, 1023.0);
-    let short = period * (-doublings).exp2();
+/// The integral over `length` s of the product of two states, as a quadratic form: by quadrature over a
+/// short time, doubled until it is the length.
+fn integral(plant: &Plant, length: f64, states: [usize; 2]) -> DMatrix<f64> {
+    let doublings = (FINENESS * plant.rates().amax() * length).log2().ceil().clamp(0.0, 1023.0);
+    let short = length * (-doublings).exp2();
     let motion = |time: f64| step(plant, Method::Exact, 0.0, time);
     let mut transition = motion(short);
     let mut energy = DMatrix::zeros(transition.nrows(), transition.ncols());
     for (node, weight) in GAUSS {
-        let velocity = motion(node * short).row(VELOCITY).transpose();
-        energy.ger(weight * short, &velocity, &velocity, 1.0);
+        let motion = motion(node * short);
+        let [first, second] = states.map(|state| motion.row(state).transpose());
+        energy.ger(weight * short, &first, &second, 1.0);
     }
     for _ in 0..doublings as u32 {
         energy += transition.transpose() * &energy * &transition;
@@ -100,12 +202,24 @@ mod tests {
 
     const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
 
+    /// The motion after a tick, and the hand's work in it.
+    fn stepped(
+        held: &HeldDevice,
+        start: Motion,
+        torque: f64,
+        setpoint: HandSetpoint,
+    ) -> (Motion, f64) {
+        let mut state = held.at(start);
+        let work = held.step(&mut state, torque, setpoint);
+        (state.motion(), work)
+    }
+
     #[test]
     fn free_device_follows_its_closed_form() {
         let held = HeldDevice::new(DEVICE, Hand::default(), 1e-3).unwrap();
         let start = Motion { position: 0.1, velocity: 2.0 };
         let torque = 0.05;
-        let (end, work) = held.step(start, torque, HandSetpoint::default());
+        let (end, work) = stepped(&held, start, torque, HandSetpoint::default());
         // x'' = (u - b x') / m
         let (rate, last) = (DEVICE.damping / DEVICE.inertia, torque / DEVICE.damping);
         let decay = (-rate * 1e-3_f64).exp();
@@ -122,16 +236,16 @@ mod tests {
         let device = Device { damping: 0.0, ..DEVICE };
         let hand = Hand { inertia: 1e-4, damping: 0.0, stiffness: 5.0 };
         let held = HeldDevice::new(device, hand, 1e-3).unwrap();
-        let mut motion = Motion { position: 0.1, velocity: 0.0 };
+        let mut state = held.at(Motion { position: 0.1, velocity: 0.0 });
         let energy = |m: Motion| {
             0.5 * (device.inertia + hand.inertia) * m.velocity.powi(2)
                 + 0.5 * hand.stiffness * m.position.powi(2)
         };
-        let before = energy(motion);
+        let before = energy(state.motion());
         for _ in 0..10_000 {
-            motion = held.step(motion, 0.0, HandSetpoint::default()).0;
+            held.step(&mut state, 0.0, HandSetpoint::default());
         }
-        assert!((energy(motion) / before - 1.0).abs() < 1e-10);
+        assert!((energy(state.motion()) / before - 1.0).abs() < 1e-10);
     }
 
     #[test]
@@ -144,9 +258,9 @@ mod tests {
                 HeldDevice::new(device, hand, 5e-4).unwrap(),
             );
             let start = Motion { position: 0.02, velocity: -1.0 };
-            let (end, work) = whole.step(start, 0.3, HandSetpoint { from: 0.1, to: 0.2 });
-            let (middle, first) = half.step(start, 0.3, HandSetpoint { from: 0.1, to: 0.15 });
-            let (same, second) = half.step(middle, 0.3, HandSetpoint { from: 0.15, to: 0.2 });
+            let (end, work) = stepped(&whole, start, 0.3, HandSetpoint { from: 0.1, to: 0.2 });
+            let (middle, first) = stepped(&half, start, 0.3, HandSetpoint { from: 0.1, to: 0.15 });
+            let (same, second) = stepped(&half, middle, 0.3, HandSetpoint { from: 0.15, to: 0.2 });
             assert!((end.position - same.position).abs() < 1e-13);
             assert!((end.velocity - same.velocity).abs() < 1e-10);
             assert!((work - first - second).abs() < 1e-12, "{work} {}", first + second);
@@ -157,8 +271,70 @@ mod tests {
     fn a_light_device_over_a_long_period_stays_finite() {
         let device = Device { inertia: 1e-12, ..DEVICE };
         let held = HeldDevice::new(device, Hand::default(), 0.1).unwrap();
-        let (end, work) = held.step(Motion::default(), 0.022, HandSetpoint::default());
+        let (end, work) = stepped(&held, Motion::default(), 0.022, HandSetpoint::default());
         assert!((end.velocity - 1.0).abs() < 1e-9 && (end.position - 0.1).abs() < 1e-9);
         assert!(work.abs() < 1e-9);
+    }
+
+    /// A delay of 2.25 periods against ticks of a quarter of a period in which nothing waits.
+    #[test]
+    fn a_torque_acts_from_its_delay_on() {
+        let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
+        let latency = Latency::delayed(2.25e-3);
+        let late = HeldDevice::lagging(DEVICE, &latency, hand, 1e-3).unwrap();
+        let quarter = HeldDevice::new(DEVICE, hand, 2.5e-4).unwrap();
+        let torques = [0.3, -0.1, 0.2, 0.05, -0.4, 0.1, 0.0, 0.15];
+        let start = Motion { position: 0.02, velocity: -1.0 };
+        let (mut state, mut fine) = (late.at(start), quarter.at(start));
+        let place = |time: f64| 0.05 + 0.02 * time;
+        for (tick, &torque) in torques.iter().enumerate() {
+            let setpoint = |from: f64, to: f64| HandSetpoint { from: place(from), to: place(to) };
+            let work = late.step(&mut state, torque, setpoint(tick as f64, tick as f64 + 1.0));
+            let mut parts = 0.0;
+            for part in 0..4 {
+                let index = (4 * tick + part).checked_sub(9).map(|since| since / 4);
+                let torque = index.map_or(0.0, |index| torques[index]);
+                let at = tick as f64 + 0.25 * f64::from(part as u32);
+                parts += quarter.step(&mut fine, torque, setpoint(at, at + 0.25));
+            }
+            let (end, same) = (state.motion(), fine.motion());
+            assert!((end.position - same.position).abs() < 1e-14, "tick {tick}");
+            assert!((end.velocity - same.velocity).abs() < 1e-11, "tick {tick}");
+            assert!((work - parts).abs() < 1e-14, "tick {tick}: {work} {parts}");
+        }
+    }
+
+    /// A free device behind an amplifier that lags, in closed form; and no hand does no work.
+    #[test]
+    fn an_amplifier_s_torque_follows_its_command() {
+        let (lag, period, torque) = (5.3e-5, 1e-3, 0.05);
+        let latency = Latency::NONE.with_actuator_lag(lag);
+        let held = HeldDevice::lagging(DEVICE, &latency, Hand::default(), period).unwrap();
+        let mut state = held.at(Motion::default());
+        let work = held.step(&mut state, torque, HandSetpoint::default());
+        // v' = (u (1 - exp(-t / tau)) - b v) / m: a sum of 1 and of both exponentials.
+        let rate = DEVICE.damping / DEVICE.inertia;
+        let part = torque / DEVICE.inertia / (rate - 1.0 / lag);
+        let last = torque / DEVICE.damping;
+        let at = |rate: f64| (-rate * period).exp();
+        let velocity = last - part * at(1.0 / lag) + (part - last) * at(rate);
+        assert!((state.motion().velocity / velocity - 1.0).abs() < 1e-11, "{velocity}");
+        assert!(work.abs() < 1e-16, "no hand does no work, and did {work} J");
+    }
+
+    #[test]
+    fn the_filter_of_a_sensor_shows_where_a_device_was() {
+        let lag = 2e-4;
+        let sensor_lag = firmware::latency::TimeRange::exactly(lag);
+        let latency = Latency { sensor_lag, ..Latency::NONE };
+        let device = Device { damping: 1e-9, inertia: 1.0, passivity: None };
+        let held = HeldDevice::lagging(device, &latency, Hand::default(), 1e-3).unwrap();
+        let mut state = held.at(Motion { position: 0.0, velocity: 2.0 });
+        assert_eq!(state.measured(), 0.0);
+        for _ in 0..20 {
+            held.step(&mut state, 0.0, HandSetpoint::default());
+        }
+        let behind = state.motion().position - state.measured();
+        assert!((behind - 2.0 * lag).abs() < 1e-9, "{behind}");
     }
 }

@@ -129,6 +129,22 @@ impl Plant {
         self
     }
 
+    /// The same with one more mass, on a spring at the mass that the hand holds. For a plant without lags
+    /// and without a grip that moves, whose states come behind those of the masses.
+    pub fn with_absorber(mut self, inertia: f64, stiffness: f64) -> Self {
+        let n = self.order();
+        debug_assert_eq!(n, 2 * self.masses.len());
+        self.rates = self.rates.resize(n + 2, n + 2, 0.0);
+        self.inputs = self.inputs.resize(n + 2, INPUTS, 0.0);
+        self.masses.push(Mass { inertia, damping: 0.0 });
+        self.rates[(n, n + 1)] = 1.0;
+        let (held, added) = (self.hand, self.masses.len() - 1);
+        let spring = Link { stiffness, damping: 0.0 };
+        self.pull(held, added, self.masses[held].inertia, spring);
+        self.pull(added, held, inertia, spring);
+        self
+    }
+
     /// The same in a hand whose grip moves: its spring and damper go to a point of its own, whose
     /// angle is one more state and whose velocity in rad/s takes the place of the hand's torque.
     pub fn with_moving_hand(self, hand: Hand) -> Self {

@@ -192,6 +192,55 @@ fn a_device_behind_an_encoder_hums_and_rests_as_the_certificate_says() {
     assert!(!moves(&run(hum).velocity));
 }
 
+/// The same behind the coupling that remembers torques of a delay of 1.4 samples: its compliances count at
+/// rest, too. A wall with a face is in contact in some ticks and not in others.
+#[test]
+fn a_device_behind_the_matched_coupling_hums_and_rests_as_the_certificate_says() {
+    let (step, compliance) = (1e-4, 1e-3 / (2.0 * 0.022));
+    for (stiffness, one_sided) in [(10.0, true), (18.0, false), (120.0, false)] {
+        let wall = Wall { one_sided, ..wall(stiffness, 0.0, 0) };
+        let scene = Scene {
+            coupling: Coupling::Matched,
+            latency: Latency::delayed(1.4e-3),
+            ..paper(Environment::DelayedSpring(wall))
+        };
+        // Pressed against the wall with half a count of its torque more than a whole number.
+        let push = 40.5 * step * stiffness / (1.0 + 2.4 * compliance * stiffness);
+        let run = |friction: f64| {
+            let experiment = Experiment {
+                friction,
+                encoder_step: Some(step),
+                hand_torque: TorqueSignal::Held(vec![push; 4000]),
+                ..moving(&scene, 4000, 0.0)
+            };
+            simulate(&experiment, Integration::default()).unwrap()
+        };
+        let steps = Resolution { encoder: Some(step), ..Resolution::default() };
+        let bound = QuantizationBound::of(&scene, Format::F64, &steps).unwrap();
+        let hum = bound.hum();
+        // Compliances of one sample, of one that is on its way, and of 0.4 of another.
+        let fed_back = 2.4 * compliance * stiffness;
+        if one_sided {
+            let most = 0.5 * step * stiffness / (1.0 - fed_back);
+            assert!(bound.in_any_motion && (hum / most - 1.0).abs() < 1e-6, "{hum} {most}");
+        }
+        let free = run(0.0);
+        let (mut linear, mut past) = (Vec::new(), [0.0; 2]);
+        for x in &free.position {
+            let x_e = x - 0.5 * step - compliance * (past[0] + 0.4 * past[1]);
+            let line = stiffness * x_e / (1.0 + compliance * stiffness);
+            let torque = if one_sided { line.max(0.0) } else { line };
+            past = [torque, past[0]];
+            linear.push(torque);
+        }
+        let off = linear.iter().zip(&free.torque).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off <= hum * (1.0 + 1e-6) && off > 0.05 * hum, "{off} {hum}");
+        let moves = |velocity: &[f64]| velocity[3500..].iter().any(|&v| v != 0.0);
+        assert!(moves(&free.velocity), "{stiffness}");
+        assert!(!moves(&run(hum).velocity), "{stiffness}");
+    }
+}
+
 /// Theory, section 8: with b < K T/2 friction alone keeps small motion from growing, up to a speed.
 #[test]
 fn friction_alone_quiets_what_is_slower_than_the_certificate_says() {

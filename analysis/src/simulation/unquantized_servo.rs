@@ -14,6 +14,7 @@ pub struct UnquantizedServo {
     law: DataLaw<f64>,
     solver: Solver<f64>,
     limiter: Limiter<f64>,
+    torque: f64,
 }
 
 impl UnquantizedServo {
@@ -29,18 +30,19 @@ impl UnquantizedServo {
         let solver = Solver::new(compliance, law.slopes())?;
         // There is no DAC range here.
         let bound = scene.torque_limit.unwrap_or(f64::INFINITY);
-        Ok(Self { law, solver, limiter: Limiter::new(bound, LimitReason::Torque) })
+        let limiter = Limiter::new(bound, LimitReason::Torque);
+        Ok(Self { law, solver, limiter, torque: 0.0 })
     }
 
     /// One tick with the encoder at `x` rad: the coupling torque `F` in N m, limited before the
     /// coupling is solved, and the reason if it was limited; `otherwise` if not. The motor applies
     /// `-F`.
     pub fn tick(&mut self, x: f64, otherwise: LimitReason) -> (f64, LimitReason) {
-        let x = x - self.law.lasting_deflection();
+        let x = x - self.law.deflection_after(self.torque);
         let wanted = self.solver.torque(self.law.evaluate(x));
         let (torque, limit) = self.limiter.limit(wanted, otherwise);
         self.law.update(self.solver.environment_position(x, torque));
-        self.law.remember(torque);
+        self.torque = torque;
         (torque, limit)
     }
 }

@@ -11,7 +11,7 @@ use crate::simulation::plant::Plant;
 
 /// A passive hand: on the device, or behind a spring and damper of its own. No number is negative,
 /// so it is passive whatever they are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct HandImpedance {
     /// Inertia in kg m^2 of the hand.
     pub inertia: f64,
@@ -21,6 +21,18 @@ pub struct HandImpedance {
     pub stiffness: f64,
     /// What is between device and hand; `None`: the hand is on the device.
     pub link: Option<Compliance>,
+    /// Masses on springs beside each other, on what the hand holds.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub absorbers: Vec<Absorber>,
+}
+
+/// A mass on a spring of its own: together they take what moves them at their resonance to a halt.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Absorber {
+    /// Inertia in kg m^2 of the mass.
+    pub inertia: f64,
+    /// Stiffness in N m/rad of the spring.
+    pub stiffness: f64,
 }
 
 /// Skin and tendons between the device and a hand.
@@ -90,7 +102,11 @@ pub fn plant(device: &Chain, lighter: f64, impedance: &HandImpedance) -> Plant {
         EncoderPlace::Motor => 0,
         EncoderPlace::Hand => device.masses().len() - 1,
     };
-    let plant = Plant::with_encoder_at(encoder, &masses, &links).with_hand(hand);
+    let held = Plant::with_encoder_at(encoder, &masses, &links).with_hand(hand);
+    let on = |plant: Plant, absorber: &Absorber| {
+        plant.with_absorber(absorber.inertia, absorber.stiffness)
+    };
+    let plant = impedance.absorbers.iter().fold(held, on);
     let lag = device.actuator_lag();
     if lag > 0.0 { plant.with_actuator_lag(lag) } else { plant }
 }

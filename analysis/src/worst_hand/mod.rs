@@ -3,12 +3,16 @@
 //! For a rigid device the rule of theory, section 4.1, is necessary as well as sufficient: below
 //! the device's passivity lies an angle on the unit circle at which some passive hand makes the
 //! sampled loop grow. Where the real part is smallest is where that hand resonates, so the search
-//! starts from masses and springs that resonate near there, then climbs in all their numbers. A
-//! hand on this device cannot take away from its inertia, and so not every rejected scene has one.
+//! starts from masses and springs that resonate near there, then climbs in all their numbers. Where
+//! none of them does, the hand is constructed as in the proof (theory, section 13.6): for a rigid device
+//! it has what is needed at all frequencies that a sample confuses.
 //!
-//! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried.
+//! Where torques lag, delay, amplifier and sensor are part of the loop in which hands are tried. On the
+//! other devices not every rejected scene has such a hand.
 
+mod constructed;
 mod impedance;
+mod nnls;
 
 use std::f64::consts::PI;
 
@@ -23,7 +27,9 @@ use crate::response::Response;
 use crate::simulation::{Experiment, Integration, SimulationError};
 use crate::stability::{closed_loop, eigenvalues};
 
-pub use impedance::{Compliance, HandImpedance, plant};
+use constructed::LaggingLoop;
+
+pub use impedance::{Absorber, Compliance, HandImpedance, plant};
 
 /// What makes a loop count as growing: so much a tick above 1.
 pub const GROWTH_THRESHOLD: f64 = 1e-9;
@@ -35,7 +41,7 @@ const SLOWEST_RESONANCE: f64 = 1e-2;
 const HEAVIEST: f64 = 1e4;
 
 /// A hand, and what the loop does in it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HandCase {
     /// Inertia in kg m^2 of the device.
     pub device_inertia: f64,
@@ -48,7 +54,7 @@ pub struct HandCase {
 }
 
 /// What the search came to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SearchResult {
     /// The worst hand of all that were tried.
     pub worst: HandCase,
@@ -73,7 +79,12 @@ pub fn search(scene: &Scene, device: &Chain) -> Result<SearchResult, SimulationE
     /// Factors of the device's inertia.
     const LIGHTER: [f64; 3] = [0.1, 0.01, 0.001];
     let mut tried = 0;
-    let worst = worst(scene, device, 1.0, &mut tried)?;
+    let mut worst = worst(scene, device, 1.0, &mut tried)?;
+    if !worst.grows()
+        && let Some(constructed) = constructed(scene, device, &mut tried)?
+    {
+        worst = constructed;
+    }
     let oscillates = worst.grows();
     let mut lighter = None;
     for factor in LIGHTER {
@@ -104,7 +115,7 @@ fn worst(
     let found = hands.into_iter().map(|hand| search.of(hand));
     let mut found = found.collect::<Result<Vec<HandCase>, _>>()?;
     found.sort_by(|a, b| b.spectral_radius.total_cmp(&a.spectral_radius));
-    let mut worst = found[0];
+    let mut worst = found[0].clone();
     for start in starts(&found) {
         let climbed = search.climb(start)?;
         if climbed.spectral_radius > worst.spectral_radius {
@@ -115,13 +126,42 @@ fn worst(
     Ok(worst)
 }
 
+/// The damping in N m s/rad below which some hand that does not vary in time destabilises a scene on a
+/// device (theory, equation 43), from many aliases and a grid of angles; `None` where the device is no single
+/// mass with damping, or the loop has no transfer function.
+pub fn needed(scene: &Scene, device: &Chain) -> Option<f64> {
+    Some(LaggingLoop::new(scene, device)?.needed())
+}
+
+/// A hand on the device of a scene that is constructed so that the loop grows, if it does.
+fn constructed(
+    scene: &Scene,
+    device: &Chain,
+    tried: &mut usize,
+) -> Result<Option<HandCase>, SimulationError> {
+    let Some(lagging) = LaggingLoop::new(scene, device) else { return Ok(None) };
+    let mut search = HandSearch::new(scene, device, 1.0)?;
+    let mut found = None;
+    for hand in lagging.hands() {
+        // A hand that is too fast to be taken through a tick is none.
+        if let Ok(case) = search.of(hand)
+            && case.grows()
+        {
+            found = Some(case);
+            break;
+        }
+    }
+    *tried += search.tried;
+    Ok(found)
+}
+
 /// Where to climb from: the worst of each kind of hand.
 fn starts(sorted: &[HandCase]) -> Vec<HandCase> {
     const EACH: usize = 3;
     let kind = |linked: bool| {
         sorted.iter().filter(move |case| case.hand.link.is_some() == linked).take(EACH)
     };
-    kind(false).chain(kind(true)).copied().collect()
+    kind(false).chain(kind(true)).cloned().collect()
 }
 
 /// Hands tried on a device under a scene.
@@ -225,15 +265,15 @@ impl<'d> HandSearch<'d> {
         for inertia in changed(hand.inertia, inertia * SMALL) {
             // A hand behind a link has to have a mass.
             if inertia > 0.0 || hand.link.is_none() {
-                all.push(HandImpedance { inertia, ..*hand });
+                all.push(HandImpedance { inertia, ..hand.clone() });
             }
         }
         all.extend(
-            changed(hand.damping, damping).map(|damping| HandImpedance { damping, ..*hand }),
+            changed(hand.damping, damping).map(|damping| HandImpedance { damping, ..hand.clone() }),
         );
         all.extend(
             changed(hand.stiffness, stiffness)
-                .map(|stiffness| HandImpedance { stiffness, ..*hand }),
+                .map(|stiffness| HandImpedance { stiffness, ..hand.clone() }),
         );
         if let Some(link) = hand.link {
             let links = changed(link.stiffness, stiffness)
@@ -242,7 +282,7 @@ impl<'d> HandSearch<'d> {
                 .chain(
                     changed(link.damping, damping).map(|damping| Compliance { damping, ..link }),
                 );
-            all.extend(links.map(|link| HandImpedance { link: Some(link), ..*hand }));
+            all.extend(links.map(|link| HandImpedance { link: Some(link), ..hand.clone() }));
         }
         // A mass behind nothing is in no hand, and its rest anywhere a double eigenvalue 1, which
         // rounding moves to either side.

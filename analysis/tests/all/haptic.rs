@@ -194,6 +194,75 @@ fn a_certified_scene_that_no_board_renders_says_why() {
     }
 }
 
+/// A wall beyond a face, undelayed behind the matched coupling, with this output delay.
+fn phased_wall(output_delay: &str) -> String {
+    format!(
+        r#"{{"name": "phased", "device": {{"inertia": 2.2e-5, "damping": 0.022, "actuator_lag": 5.3e-5}},
+            "servo": {{"period": 0.001, "output_delay": {output_delay}, "output_jitter": 1e-6}},
+            "coupling": {{"type": "matched"}},
+            "environment": {{"type": "damper-wall", "stiffness": 100, "damping": 0.01, "delay": 0,
+                             "one_sided": true}}}}"#
+    )
+    .replace('\n', " ")
+}
+
+/// A board has a phase where the scene has an output delay; and where that is no board's, it says why.
+#[test]
+fn a_scene_with_an_output_delay_is_judged_as_on_a_board_with_that_phase() {
+    for (delay, why) in [
+        ("1e-5", None),
+        ("[1e-5, 2e-5]", Some("is between 0.00001 s and 0.00002 s")),
+        ("1e-6", Some("the phase must be between 5e-6 s and 0.000999 s")),
+        ("0.0012", Some("the phase must be between")),
+    ] {
+        let output = haptic(&["certify", "--json", "-"], phased_wall(delay).as_bytes());
+        assert_eq!(output.status.code(), Some(0), "{delay}: {output:?}");
+        let answer = lines(&output).remove(0);
+        let board = answer["board"].as_str();
+        assert_eq!(board.is_some(), why.is_some(), "{delay}: {board:?}");
+        assert!(why.is_none_or(|why| board.unwrap().contains(why)), "{delay}: {board:?}");
+        // No loss of damping is known to be allowed, which is no result.
+        assert_eq!(answer["margin"], 0.0, "{delay}");
+        assert!(!answer["message"].as_str().unwrap().contains("may lose"), "{answer}");
+        let output = haptic(&["certify", "-"], phased_wall(delay).as_bytes());
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.contains("none is known: where torques lag"), "{text}");
+        assert!(!text.contains("margin on a board"), "{text}");
+    }
+}
+
+/// A board that latches its torques reads counts late, too, which a scene with a lag states as its jitter.
+#[test]
+fn a_latched_scene_with_a_lag_is_for_boards_with_its_jitter() {
+    let latched = phased_wall("0").replace("\"delay\": 0", "\"delay\": 1");
+    let latched = latched.replace("\"stiffness\": 100", "\"stiffness\": 15");
+    let still = latched.replace("\"output_jitter\": 1e-6", "\"output_jitter\": 0");
+    for (scene, why) in [(&latched, None), (&still, Some("which is jitter where torques lag"))] {
+        let output = haptic(&["certify", "--json", "-"], scene.as_bytes());
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let answer = lines(&output).remove(0);
+        let board = answer["board"].as_str();
+        assert_eq!(board.is_some(), why.is_some(), "{board:?}");
+        assert!(why.is_none_or(|why| board.unwrap().contains(why)), "{board:?}");
+    }
+    // Without a lag, or without a sample, the torque would come before its count.
+    for (key, other) in
+        [("\"actuator_lag\": 5.3e-5", "\"actuator_lag\": 0"), ("\"delay\": 1", "\"delay\": 0")]
+    {
+        let said = complaint(haptic(&["certify", "-"], latched.replace(key, other).as_bytes()));
+        assert!(said.contains("no torque comes before its count"), "{said}");
+    }
+}
+
+/// Behind a spring such a wall is refused, and the remedy names the other coupling.
+#[test]
+fn a_face_behind_a_lag_has_the_matched_coupling_for_a_remedy() {
+    let spring = phased_wall("1e-5").replace(r#""type": "matched""#, r#""stiffness": 44"#);
+    let output = haptic(&["certify", "--json", "-"], spring.as_bytes());
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert_eq!(lines(&output)[0]["remedies"][0], "behind the matched coupling");
+}
+
 /// `delta` plus the least real part of `T C / (z - 1)` on a fine grid, for the wall's controller `C`
 /// behind its coupling.
 fn margin_of_the_wall() -> f64 {

@@ -120,6 +120,7 @@ fn a_device_is_written_once() {
         ("damper_wall", "paddle"),
         ("delayed_spring", "paddle"),
         ("supervised_spring", "paddle"),
+        ("undelayed_spring", "paddle"),
         ("undelayed_wall", "paddle"),
         ("free_mode", "paddle"),
         ("identify", "device"),

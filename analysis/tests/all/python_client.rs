@@ -176,7 +176,8 @@ fn reads_every_message_to_the_host() {
                 "latency": {
                     "output_delay": {"least": 0.0, "most": 0.0}, "output_jitter": 0.0,
                     "actuator_lag": {"least": 0.0, "most": 0.0},
-                    "sensor_lag": {"least": 0.0, "most": 0.0}},
+                    "sensor_lag": {"least": 0.0, "most": 0.0},
+                    "actuator_response": {"least": 0.0, "most": 0.0}},
                 "torque_limit": 1.5,
             },
             "transducers": {"counts_per_turn": 61_440.0, "counter": {"type": "16"},

@@ -102,6 +102,7 @@ fn times_between_count_and_torque_are_numbers_or_ranges() {
         output_jitter: 4e-6,
         actuator_lag: TimeRange::between(1e-4, 2e-4),
         sensor_lag: TimeRange::exactly(3e-5),
+        ..Latency::NONE
     };
     assert_eq!((scene.latency, scene.coupling), (expected, Coupling::Matched));
     assert_eq!(toml(WALL).unwrap().scene.latency, Latency::NONE);
@@ -125,6 +126,11 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
             "5:18",
             &["`device.sensor_lag[1]`", bad, bound],
         );
+        device(
+            &format!("actuator_response = [0, {bad}]"),
+            "5:25",
+            &["`device.actuator_response[1]`", bad, bound],
+        );
     }
     servo("output_delay = \"5 us\"", "7:16", &["is a string", bound]);
     servo("output_delay = [1e-6]", "7:16", &["[1e-6]", "[least, most]"]);
@@ -134,6 +140,17 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
     servo("output_delay = [0, 0.0081]", "7:16", &["0.0081", "8 times"]);
     device("actuator_lag = 0.11", "5:16", &["0.11", "100 times `servo.period` = 0.001 s"]);
     device("sensor_lag = 0.11", "5:14", &["0.11", "100 times"]);
+    let response = "actuator_response = ";
+    device(&format!("{response}[2e-4, 1e-4]"), "5:21", &["ends before it begins"]);
+    device(
+        &format!("{response}[0, 1.1e-3]"),
+        "5:21",
+        &["[0, 1.1e-3]", "is more than `servo.period` = 0.001 s"],
+    );
+    for lag in ["actuator_lag", "sensor_lag"] {
+        let both = format!("{lag} = 1e-4\n{response}[0, 1e-4]");
+        device(&both, "6:21", &["stands beside `device.actuator_lag` or `device.sensor_lag`"]);
+    }
     let least = "more than the least `servo.output_delay` = 0.000004 s";
     servo("output_delay = [4e-6, 9e-6]\noutput_jitter = 5e-6", "8:17", &["5e-6", least]);
     servo("output_jitter = 5e-6", "7:17", &["`servo.output_delay` = 0 s"]);

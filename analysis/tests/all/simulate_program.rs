@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::common::{WALL, answer, complaint, haptic, haptic_reading};
+use crate::common::{MOTION, WALL, answer, complaint, haptic, haptic_reading};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -377,4 +377,29 @@ fn chains_move_and_may_be_seen_from_either_end() {
     assert_eq!(ends[0].len(), 20);
     // The motor's mass, which alone is damped, falls behind the hand's.
     assert!(ends[0][1] > 0.0 && ends[1][1] > ends[0][1]);
+}
+
+/// A simulation has the middle of a range and no jitter, and says so; of a latency that is known it has all.
+#[test]
+fn what_is_left_out_of_a_latency_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    for (delay, jitter, words) in [
+        ("1e-5", "0", None),
+        ("1e-5", "1e-6", Some("without jitter")),
+        ("[1e-5, 2e-5]", "1e-6", Some("middle of each range of latency, without jitter")),
+    ] {
+        let servo = format!("period = 0.001\noutput_delay = {delay}\noutput_jitter = {jitter}\n");
+        let text = format!("{WALL}{MOTION}").replacen("period = 0.001\n", &servo, 1);
+        std::fs::write(&path, text).unwrap();
+        let (_, motion) = json(&["simulate", name(&path), "--json"]);
+        assert_eq!(motion["left_out"].as_str(), words, "{delay}, {jitter}");
+        let said = haptic(&["simulate", name(&path)]);
+        let said = String::from_utf8(said.stdout).unwrap();
+        assert_eq!(words.is_some_and(|words| said.contains(words)), words.is_some(), "{said}");
+        let page = folder.path().join("page.html");
+        haptic(&["report", name(&path), "-o", name(&page)]);
+        let page = crate::common::read(&page);
+        assert_eq!(page.matches("without jitter)").count() >= 2, jitter != "0", "{delay}");
+    }
 }

@@ -188,8 +188,8 @@ impl Board {
     }
 
     /// The pacing timer's update: the sample that it ends goes into the device, and the DAC
-    /// begins the next one. A device takes what is put out then for that of the whole sample, also
-    /// where a phase was put out later than the sample began.
+    /// begins the next one. What is put out then is the code that the sample ends with; a device whose
+    /// codes have a phase knows from when on it is there.
     fn sample(&mut self) {
         self.samples += 1;
         let counts = self.device.sample(self.torque(), self.amplifier() == Level::High);

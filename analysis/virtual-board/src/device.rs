@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a device is, to the board.
 pub trait Device {
-    /// A sample ends: what the DAC put out during it, and whether the amplifier was on. Gives
-    /// the counts that the encoder has turned in it.
+    /// A sample ends: the code that the DAC put out from the sample's beginning or from its phase on, and
+    /// whether the amplifier was on. Gives the counts that the encoder has turned in it.
     fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32;
 }
 

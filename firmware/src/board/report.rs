@@ -5,6 +5,7 @@ use core::fmt;
 use crate::certificate::{
     Answer, Assessment, AssumptionStatus, Assumptions, Certified, Resolution, Rule,
 };
+use crate::coupling::Coupling;
 use crate::passivity::interval::Interval;
 use crate::scene::Scene;
 
@@ -15,6 +16,7 @@ pub struct Report {
     margin: Option<f64>,
     injection: Option<f64>,
     assumptions: Assumptions,
+    lags: bool,
 }
 
 impl Report {
@@ -27,7 +29,8 @@ impl Report {
         let (data, assessment) = (certified.as_data(), *certified.assessment());
         let margin = assessment.margin_injecting(data, injection.unwrap_or(0.0));
         let assumptions = Assumptions::of(data, &assessment, steps);
-        Self { assessment, margin, injection, assumptions }
+        let lags = !data.latency.is_none() || matches!(data.coupling, Coupling::Matched);
+        Self { assessment, margin, injection, assumptions, lags }
     }
 }
 
@@ -51,8 +54,11 @@ impl fmt::Display for Report {
         if let Some(injection) = self.injection {
             writeln!(f, "injects        up to {injection} N m s/rad where there is a deficit")?;
         }
-        if let Some(margin) = self.margin {
-            writeln!(f, "margin         {margin:.9} N m s/rad")?;
+        match self.margin {
+            // The coupling was made for this passivity.
+            Some(_) if self.lags => writeln!(f, "margin         none is known where torques lag")?,
+            Some(margin) => writeln!(f, "margin         {margin:.9} N m s/rad")?,
+            None => {}
         }
         if let Some(rest) = self.assumptions.rest() {
             writeln!(f, "at rest        {rest}")?;

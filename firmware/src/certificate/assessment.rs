@@ -72,7 +72,8 @@ pub const fn assess_in(scene: &Scene, format: Format) -> Assessment {
 pub(super) enum Extent {
     /// The answers of both rules.
     BothRules,
-    /// Of a rejected scene, and of one whose torques lag and are limited, only the result of its own rule.
+    /// Of a rejected scene, and of one whose torques lag and are limited, only the result of its own rule;
+    /// of one whose torques lag, no more of the index than proves it.
     OwnRule,
 }
 
@@ -137,6 +138,8 @@ const fn judge(
             }
             Err(error) => Err(error),
         }
+    } else if n.latency.is_some() {
+        posed.coupled_unless_clear()
     } else {
         posed.coupled(Some(alone), &Precision::TIGHT)
     };

@@ -265,7 +265,8 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
 
 /// Each time that the scene has.
 fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
-    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag } = latency;
+    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, actuator_response } =
+        latency;
     f.write_str("a torque begins ")?;
     if output_delay.is_zero() {
         f.write_str("with its count")?;
@@ -281,6 +282,14 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
             write!(f, "; the {what} is a first-order lag of ")?;
             write_time(f, *lag)?;
         }
+    }
+    if !actuator_response.is_zero() {
+        let TimeRange { least, most } = *actuator_response;
+        let (least, most) = (ShortF64(least), ShortF64(most));
+        write!(
+            f,
+            "; the step response of the amplifier never falls, and rises from {least} to {most} s"
+        )?;
     }
     Ok(())
 }

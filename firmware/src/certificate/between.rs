@@ -70,6 +70,8 @@ pub(super) const fn between(
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
+        // No longer than a period is what an amplifier may take.
+        Parameter::Period if !scene.latency.actuator_response.is_zero() => false,
         Parameter::Period => return between_periods(scene, &n, value),
         _ => false,
     };

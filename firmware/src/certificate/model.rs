@@ -111,9 +111,8 @@ impl Missed {
 impl LoopIntervals {
     pub const fn of(scene: &Scene, format: Format) -> Self {
         let is_late = scene.environment.is_late();
-        let mut out = Self::of_late::<Environment>(scene, is_late, format);
-        if let (Some(stiffness), None) = (out.coupling, &out.latency) {
-            let written = Interval::ONE.div(stiffness);
+        let (mut out, written) = Self::with_compliance::<Environment>(scene, is_late, format);
+        if let (Some(_), None) = (out.coupling, &out.latency) {
             out.is_standard = written.sub(standard(out.period, out.delta)).contains(0.0);
         }
         out
@@ -129,6 +128,17 @@ impl LoopIntervals {
         is_late: bool,
         format: Format,
     ) -> Self {
+        Self::with_compliance::<E>(scene, is_late, format).0
+    }
+
+    /// The same, with the coupling's compliance before it is rounded.
+    // A part of either caller: a result as large as this would be copied.
+    #[inline(always)]
+    const fn with_compliance<E: EnvironmentModel>(
+        scene: &Scene,
+        is_late: bool,
+        format: Format,
+    ) -> (Self, Interval) {
         let period = Interval::decimal(scene.timing.period);
         let delta = Interval::decimal(match scene.device.passivity {
             Some(passivity) => passivity,
@@ -183,7 +193,7 @@ impl LoopIntervals {
         if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
             out.add_latency(scene);
         }
-        out
+        (out, written)
     }
 
     // In a frame of its own, which no scene without latency needs.

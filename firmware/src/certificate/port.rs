@@ -2,11 +2,11 @@
 
 use super::model::{Lagging, LoopIntervals};
 use super::problem::PassivityProblem;
-use crate::latency::TimeRange;
+use crate::latency::{Latency, TimeRange};
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::RealPart;
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::{LagIntervals, Port, SampledResponse};
+use crate::passivity::lagged::{LagIntervals, Port, SampledResponse, ripple_of_mixture};
 use crate::passivity::poles::{IndexError, UndecidedReason, cancelled};
 use crate::passivity::transfer::Transfer;
 
@@ -49,6 +49,58 @@ impl Cells {
     }
 }
 
+/// An amplifier of which only is known when its step response begins and ends: where the sampled response
+/// has its corners, and the ripple that it has at the most (theory, section 13.7).
+#[derive(Clone, Copy)]
+struct Corners {
+    /// Of the delay, in periods.
+    ends: [Interval; 2],
+    /// The first whole sample above the lower end.
+    first_whole: i32,
+    /// Whole samples between the ends.
+    wholes: usize,
+    ripple: Interval,
+}
+
+impl Corners {
+    const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
+        let Latency { output_delay, actuator_response, .. } = lagging.latency;
+        if actuator_response.is_zero() {
+            return None;
+        }
+        let least = after(output_delay.least, actuator_response.least).div(period);
+        let most = after(output_delay.most, actuator_response.most).div(period);
+        let first_whole = least.hi().max(0.0) as i32 + 1;
+        let last_whole = most.hi().max(0.0) as i32;
+        let wholes = if last_whole < first_whole { 0 } else { last_whole - first_whole + 1 };
+        Some(Self {
+            ends: [least, most],
+            first_whole,
+            wholes: wholes as usize,
+            ripple: ripple_of_mixture(least, most),
+        })
+    }
+
+    const fn count(&self) -> usize {
+        self.ends.len() + self.wholes
+    }
+
+    const fn corner(&self, index: usize) -> LagIntervals {
+        let delay = if index < self.ends.len() {
+            self.ends[index]
+        } else {
+            let whole = self.first_whole + (index - self.ends.len()) as i32;
+            Interval::exact(whole as f64)
+        };
+        LagIntervals { delay, lags: [Interval::ZERO, Interval::ZERO] }
+    }
+}
+
+/// One time after another.
+const fn after(first: f64, then: f64) -> Interval {
+    Interval::decimal(first).add(Interval::decimal(then))
+}
+
 const fn parts(range: TimeRange) -> usize {
     if range.is_exact() { 1 } else { PARTS }
 }
@@ -86,7 +138,7 @@ impl Deviation {
             return None;
         }
         let h = Interval::decimal(latency.output_jitter).div(n.period);
-        if latency.actuator_lag.is_zero() {
+        if latency.actuator_lag.is_zero() && latency.actuator_response.is_zero() {
             let limit = n.delta.mul(Interval::ONE.sub(h.half()));
             return Some(Self { limit, ripple: h.double().add(h), ..none });
         }
@@ -148,13 +200,24 @@ impl PassivityProblem {
             Err(error) => return Err(error),
         };
         let cells = Cells::of(&lagging);
+        let corners = Corners::of(&lagging, self.numbers.period);
+        let count = match corners {
+            Some(corners) => corners.count(),
+            None => cells.count(),
+        };
         let mut all: Option<(RealPart, Interval)> = None;
         let mut index = 0;
-        while index < cells.count() {
-            let cell = cells.cell(index, self.numbers.period);
+        while index < count {
+            let cell = match corners {
+                Some(corners) => corners.corner(index),
+                None => cells.cell(index, self.numbers.period),
+            };
             let mut piece = 0;
             while piece < cell.pieces() {
-                let Some(response) = cell.response(piece) else { return Err(UNKNOWN) };
+                let Some(mut response) = cell.response(piece) else { return Err(UNKNOWN) };
+                if let Some(corners) = corners {
+                    response = response.with_ripple(corners.ripple);
+                }
                 all = match (self.piece(&h, &response, &deviation, closeness, and_needed), all) {
                     (Err(error), _) => return Err(error),
                     (Ok(one), None) => Some(one),

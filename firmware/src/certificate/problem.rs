@@ -358,6 +358,16 @@ impl PassivityProblem {
         }
     }
 
+    /// Index of `E'`: no tighter than it takes to prove it below its limit, and tight where it is not, for the
+    /// rejection.
+    pub(super) const fn coupled_unless_clear(&self) -> Result<RealPart, IndexError> {
+        let roughly = self.coupled(None, &near(exact_limit(&self.numbers)));
+        match self.exact(&roughly) {
+            Answer::Pass => roughly,
+            Answer::Fail | Answer::Undecided => self.coupled(None, &Precision::TIGHT),
+        }
+    }
+
     /// Whether there is no transfer function, and at most a bound.
     pub(super) const fn has_no_transfer(&self) -> bool {
         self.no_transfer.is_some()

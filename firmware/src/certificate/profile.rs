@@ -3,7 +3,6 @@
 use super::model::LoopIntervals;
 use crate::environment::{AnyProfile, Ends};
 use crate::latency::{Latency, TimeRange};
-use crate::number::{Format, Rounding};
 use crate::passivity::interval::Interval;
 
 /// The steepest slopes of a profile as a servo has them, in N m/rad, neither of them negative. Of a
@@ -35,12 +34,14 @@ impl ExtremeSlopes {
     /// Those of the table and its end stops, wherever the coupling is.
     pub const fn of_table(profile: &AnyProfile, n: &LoopIntervals) -> Self {
         let outline = profile.outline();
-        let unit = torque_of_unit(profile, n.format).mul(knots_per_rad(profile, n.format));
-        let mut rise = unit.mul(Interval::exact(outline.rise as f64));
+        let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
+        let unit = unit.mul(parts_per_rad(profile, n));
+        let inside = unit.mul(Interval::exact(outline.rise as f64));
+        let rise = match profile.ends {
+            Some(Ends { stiffness, .. }) => inside.max(n.coefficient(Interval::decimal(stiffness))),
+            None => inside,
+        };
         let fall = unit.mul(Interval::exact(outline.fall as f64));
-        if let Some(Ends { stiffness, .. }) = profile.ends {
-            rise = rise.max(n.coefficient(Interval::decimal(stiffness)));
-        }
         Self { rise, fall }
     }
 
@@ -50,7 +51,7 @@ impl ExtremeSlopes {
     }
 }
 
-/// Upper bound on the index of a profile (equations 43 and 44): `T L/2` for a torque that is a sample
+/// Upper bound on the index of a profile (equations 46 and 47): `T L/2` for a torque that is a sample
 /// late and rises by up to `L`, `T M` for each sample more, where `M` is the steepest slope. One that is not
 /// late has `T/2` times the steepest fall.
 ///
@@ -78,23 +79,27 @@ pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Opt
 }
 
 /// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to
-/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`. What is late is fed back through the
-/// coupling's compliance `V`, and adds up to `M / (1 - M V)`. `None` where that does not end, and behind a
-/// coupling that remembers torques.
-pub(super) const fn peak_gain(profile: &AnyProfile, n: &LoopIntervals) -> Option<f64> {
-    let gain =
-        ExtremeSlopes::of_table(profile, n).steepest().add(damper(profile, n).abs().double());
-    if profile.delay == 0 {
+/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`. Torques of ticks before are fed back
+/// through a coupling whose compliances add up to `V`, and add up to `M / (1 - M V)`. `None` where that does
+/// not end.
+pub(super) const fn peak_gain(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+    compliance: f64,
+) -> Option<f64> {
+    let steepest = ExtremeSlopes::of_table(profile, n).steepest();
+    let gain = steepest.add(damper(profile, n).abs().double());
+    if profile.delay == 0 && !n.is_matched {
+        // In front of the coupling.
         return Some(gain.hi());
     }
-    let left = Interval::ONE.sub(gain.mul(n.compliance));
-    if n.is_matched || !left.is_positive() { None } else { Some(gain.div(left).hi()) }
+    let left = Interval::ONE.sub(gain.mul(Interval::exact(compliance)));
+    if left.is_positive() { Some(gain.div(left).hi()) } else { None }
 }
 
-/// Torque in N m over a cell of the table, at most.
-pub(super) const fn step_of_cell(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
-    let cell = Interval::ONE.div(knots_per_rad(profile, n.format));
-    ExtremeSlopes::of_table(profile, n).steepest().mul(cell).hi()
+/// Torque in N m over a part of a cell of the table, the smallest step of a place, at most.
+pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
+    ExtremeSlopes::of_table(profile, n).steepest().div(parts_per_rad(profile, n)).hi()
 }
 
 /// Whether a torque that is not zero in the mean would turn the device for ever.
@@ -102,7 +107,7 @@ pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
     let outline = profile.outline();
     match profile.ends {
         // Nothing but springs that push back beyond them keeps the device within its ends.
-        Some(Ends { stiffness, .. }) => !(stiffness > 0.0),
+        Some(Ends { stiffness, .. }) => stiffness.is_nan() || stiffness <= 0.0,
         None => outline.sum != 0 || !outline.wraps,
     }
 }
@@ -118,16 +123,17 @@ const fn damper(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     n.coefficient(Interval::decimal(profile.damping).div(n.period))
 }
 
-const fn torque_of_unit(profile: &AnyProfile, format: Format) -> Interval {
-    Interval::exact(format.knot_scale(profile.torque)).double()
+/// Parts of a cell in a rad, as a law multiplies by them.
+const fn parts_per_rad(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+    around(n.format.parts_per_rad(profile.scale().parts_per_rad))
 }
 
-const fn knots_per_rad(profile: &AnyProfile, format: Format) -> Interval {
-    let written = profile.knots_per_rad();
-    Interval::exact(format.coefficient(written, Rounding::Nearest))
+/// Around a number that was computed in a few roundings.
+const fn around(value: f64) -> Interval {
+    Interval::exact(value).mul(Interval::new(1.0 - 4.0 * f64::EPSILON, 1.0 + 4.0 * f64::EPSILON))
 }
 
-/// Upper bound on the index at the device's port, without a coupling (equation 45): for a torque that is
+/// Upper bound on the index at the device's port, without a coupling (equation 48): for a torque that is
 /// late by `n + eps` samples `T (L/2 + (n + eps) M) + eps (1 - eps) T^2 M^2 / (4 delta)`, to be below
 /// `delta`. `None` where none is known: beside a damper or a lag, and where updates are missed.
 pub(super) const fn profile_bound_at_port(
@@ -137,12 +143,10 @@ pub(super) const fn profile_bound_at_port(
     let delay = match &n.latency {
         None => Interval::ZERO,
         Some(lagging) => {
-            let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, .. } =
-                lagging.latency;
-            if output_jitter != 0.0 || !actuator_lag.is_zero() || !sensor_lag.is_zero() {
+            let TimeRange { least, most } = lagging.latency.output_delay;
+            if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
                 return None;
             }
-            let TimeRange { least, most } = output_delay;
             Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi()).div(n.period)
         }
     };

@@ -16,10 +16,11 @@ use core::f64::consts::TAU;
 use core::fmt;
 
 use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
-use super::profile::{peak_gain, step_of_cell};
+use super::profile::{peak_gain, step_of_part};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
 use crate::environment::Rational;
+use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
@@ -151,14 +152,15 @@ struct Peak {
 /// The l1 norm of the controller's impulse response (theory, section 6).
 ///
 /// A wall in and out of contact and a torque limit make the response vary. Then, for an
-/// environment of norm `e` behind a compliance `V`, no torque is more than `e + V e` times the last
-/// one, which for `V e < 1` adds up to `e / (1 - V e)`; where that is not so, the norm is the one
-/// in contact.
+/// environment of norm `e` behind a coupling whose compliances add up to `V`, no torque is more than `e`
+/// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
+/// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
 ///
 /// A torque profile has no impulse response, and is bounded by its steepest slope alone.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     if let Some(profile) = scene.environment.profile() {
-        let norm = peak_gain(profile, &LoopIntervals::of(scene, format))?;
+        let n = LoopIntervals::of(scene, format);
+        let norm = peak_gain(profile, &n, compliance(scene, format))?;
         return Some(Peak { norm, in_any_motion: true });
     }
     let LoopTransfers { controller, environment, .. } =
@@ -177,8 +179,15 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     })
 }
 
+/// Most deflection of the coupling in rad for torques of up to 1 N m each.
 fn compliance(scene: &Scene, format: Format) -> f64 {
-    LoopIntervals::of(scene, format).compliance.hi()
+    let n = LoopIntervals::of(scene, format);
+    matched(&n).map_or_else(|| n.compliance.hi(), |coupling| coupling.largest_deflection())
+}
+
+/// The matched coupling, where a scene has that.
+fn matched(n: &LoopIntervals) -> Option<MatchedCoupling> {
+    n.latency.and_then(|lagging| lagging.matched)
 }
 
 /// Roundings of one kind in a tick: fixed point rounds products, floating point also sums.
@@ -192,13 +201,13 @@ fn roundings(format: Format, products: f64, sums: f64) -> f64 {
 /// The most by which the servo's arithmetic moves the torque: each rounding in a tick times the
 /// norm from where it happens to the torque.
 ///
-/// Positions are rounded as the count becomes an angle and behind the coupling, and differ from a
-/// face and from a state; torques by stiffness, damper and the two gains of the coupling. These
+/// Positions are rounded as the count becomes an angle and behind the coupling and its
+/// [memory](deflection), and differ from a face and from a state; torques by stiffness, damper and the two gains of the coupling. These
 /// come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times the controller's.
 fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Option<f64> {
     // Torques where none is stated are small beside the positions that they come from.
-    let torque = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
-    let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(torque));
+    let limit = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);
+    let (angle, torque) = (format.rounding_error(TAU), format.rounding_error(limit));
     let at_torque = match scene.environment.rational() {
         // Its sums may cancel: they are as large as the torque of a turn.
         Some(rational) => {
@@ -207,16 +216,38 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         }
         None => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
     };
+    let at_position = angle * roundings(format, 2.0, 3.0) + deflection(scene, format, limit);
     let (at_torque, at_position) = match scene.environment.profile() {
-        // The place in its table is cut off, and a product and a sum more lead to it.
+        // Places in its table, and those of its end stops, are whole parts of a cell; a product and a sum
+        // more lead to them.
         Some(profile) => {
-            let n = LoopIntervals::of(scene, format);
-            let cut = format.error_of_place() * step_of_cell(profile, &n);
-            (at_torque + cut, angle * roundings(format, 3.0, 4.0))
+            let part = step_of_part(profile, &LoopIntervals::of(scene, format));
+            (at_torque + 2.0 * part, at_position + angle * roundings(format, 1.0, 1.0))
         }
-        None => (at_torque, angle * roundings(format, 2.0, 3.0)),
+        None => (at_torque, at_position),
     };
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
+}
+
+/// Position error in rad by which a matched coupling rounds the deflection that past torques leave, and the
+/// device's position less that deflection, for torques of up to `limit` N m.
+///
+/// It multiplies and adds a torque for the part of a sample, the sum of those that are on their way, and a
+/// state for each lag. Such a state decays, and keeps a part of its own rounding.
+fn deflection(scene: &Scene, format: Format, limit: f64) -> f64 {
+    let Some(coupling) = matched(&LoopIntervals::of(scene, format)) else { return 0.0 };
+    let whole = coupling.whole as f64;
+    let lags = coupling.trails.iter().filter(|trail| trail.gain != 0.0);
+    let terms = 2.0 + lags.clone().count() as f64;
+    let at_position = format.rounding_error(TAU) * roundings(format, terms, terms);
+    let at_sum =
+        coupling.held * format.rounding_error(whole * limit) * roundings(format, 0.0, whole);
+    let at_state = |trail: &Trail| {
+        let left = 1.0 - trail.decay;
+        let rounding = format.rounding_error(limit / left) * roundings(format, 1.0, 1.0);
+        trail.gain.abs() * rounding / left
+    };
+    at_position + at_sum + lags.map(at_state).sum::<f64>()
 }
 
 /// Torque error in N m of the states of filter and canceller: each moves by a share of its

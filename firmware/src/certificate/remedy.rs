@@ -104,21 +104,39 @@ pub struct Remedies {
     ranges: [Range; CANDIDATES],
     is_damping: bool,
     is_of_profile: bool,
+    is_matched: bool,
 }
+
+/// What passes behind the coupling that absorbs latency.
+const MATCHED: &str = "behind the matched coupling";
 
 impl Remedies {
     /// No remedy.
-    pub const NONE: Self =
-        Self { ranges: [Range::EMPTY; CANDIDATES], is_damping: false, is_of_profile: false };
+    pub const NONE: Self = Self {
+        ranges: [Range::EMPTY; CANDIDATES],
+        is_damping: false,
+        is_of_profile: false,
+        is_matched: false,
+    };
 
     #[cfg(test)]
     pub(super) fn of(found: [Remedy; CANDIDATES]) -> Self {
         let mut all = Self::NONE;
         (0..CANDIDATES).for_each(|i| all.put(i, Some(found[i])));
+        all.put_matched();
         all
     }
 
-    /// The remedies in order.
+    /// The matched coupling in place of the scene's, in words, where the scene passes with it.
+    pub const fn matched(&self) -> Option<&'static str> {
+        if self.is_matched { Some(MATCHED) } else { None }
+    }
+
+    pub(super) const fn put_matched(&mut self) {
+        self.is_matched = true;
+    }
+
+    /// The remedies in order that change a number.
     pub fn iter(&self) -> impl Iterator<Item = Remedy> {
         (0..CANDIDATES).filter_map(|i| self.get(i))
     }
@@ -161,10 +179,19 @@ impl Remedies {
     /// Appends the remedies; gives their number.
     pub(super) const fn write<const N: usize>(&self, t: &mut Text<N>) -> usize {
         let mut written = 0;
+        if let Some(matched) = self.matched() {
+            t.push("; it would pass ");
+            t.push(matched);
+            written += 1;
+        }
         let mut i = 0;
         while i < CANDIDATES {
             if let Some(remedy) = self.get(i) {
-                t.push(if written == 0 { "; it would pass with " } else { ", or " });
+                t.push(match (written, self.is_matched) {
+                    (0, _) => "; it would pass with ",
+                    (1, true) => ", or with ",
+                    _ => ", or ",
+                });
                 remedy.write(t);
                 written += 1;
             }

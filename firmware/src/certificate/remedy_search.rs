@@ -41,6 +41,9 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
     }
     let own = shortage(scene, format);
     let mut found = Remedies::NONE;
+    if passes_behind_matched(scene, format) {
+        found.put_matched();
+    }
     let mut i = 0;
     while i < CANDIDATES {
         let parameter = match ORDER[i] {
@@ -60,6 +63,19 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
         i += 1;
     }
     found
+}
+
+/// Whether a scene whose torques lag passes behind the coupling that absorbs that, where it has another.
+#[inline(never)]
+const fn passes_behind_matched(scene: &Scene, format: Format) -> bool {
+    if scene.latency.is_none() || matches!(scene.coupling, Coupling::Matched) {
+        return false;
+    }
+    let matched = Scene { coupling: Coupling::Matched, ..*scene };
+    match PassivityProblem::in_format(&matched, format) {
+        Ok(posed) => posed.is_certified(),
+        Err(_) => false,
+    }
 }
 
 /// The stiffness with which the scene passes behind the standard coupling to three digits, on the soft
@@ -175,6 +191,29 @@ mod tests {
             }),
             latency: Latency::NONE,
             torque_limit: None,
+        }
+    }
+
+    /// An undelayed wall beyond a face, whose torque lags: a bound asks for a softer one behind a spring.
+    #[test]
+    fn a_face_behind_a_lag_passes_behind_the_matched_coupling() {
+        let wall = Wall { one_sided: true, ..Wall::spring(100.0, 0) };
+        let lagging = Scene {
+            environment: Environment::DamperWall(wall),
+            latency: Latency::delayed(1e-5).with_actuator_lag(5.3e-5),
+            ..scene(100.0, Coupling::Spring { stiffness: 44.0 })
+        };
+        let rejection = certify(&lagging).unwrap_err();
+        assert!(rejection.remedies().matched().is_some(), "{rejection}");
+        let sentence = rejection.to_string();
+        assert!(sentence.contains("; it would pass behind the matched coupling, or with period"));
+        assert!(certify(&Scene { coupling: Coupling::Matched, ..lagging }).is_ok());
+        // Nothing lags, or nothing helps.
+        let at_once = scene(100.0, Coupling::Spring { stiffness: 44.0 });
+        let active = Wall { stiffness: -1.0, ..wall };
+        let pulling = Scene { environment: Environment::DamperWall(active), ..lagging };
+        for scene in [at_once, pulling] {
+            assert_eq!(certify(&scene).unwrap_err().remedies().matched(), None);
         }
     }
 

@@ -48,8 +48,10 @@ const NO_MORE_THAN_DAMPING: &str =
 
 const NO_LONGER_DELAY: &str = "at most eight periods:";
 const NO_LONGER_LAG: &str = "at most a hundred periods:";
+const NO_LONGER_RESPONSE: &str = "at most the period:";
+const NO_LAG_BESIDE: &str = "0 beside a lag of amplifier or sensor";
 /// No torque comes before its count.
-const NO_TORQUE_BEFORE: &str = "at most the output delay:";
+const NO_TORQUE_BEFORE: &str = "at most the time from a count to its torque:";
 
 const fn requirement(range: Range) -> &'static str {
     match range {
@@ -132,6 +134,7 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
         {
             ("at least 1 where no transfer function is stated", None)
         }
+        _ if scene.latency.is_none() => return None,
         _ => return latency_conflict(scene, parameter, value),
     };
     Some(InvalidParameter { parameter, value, bound, limit })
@@ -197,12 +200,20 @@ const fn latency_conflict(
     let (period, latency) = (scene.timing.period, &scene.latency);
     let (range, longest) = match parameter {
         Parameter::OutputDelay => (latency.output_delay, LONGEST_DELAY * period),
-        Parameter::OutputJitter if value > latency.output_delay.least => {
-            let limit = Some(latency.output_delay.least);
+        Parameter::OutputJitter if value > scene.largest_jitter() => {
+            let limit = Some(scene.largest_jitter());
             return Some(InvalidParameter { parameter, value, bound: NO_TORQUE_BEFORE, limit });
         }
         Parameter::ActuatorLag => (latency.actuator_lag, LONGEST_LAG * period),
         Parameter::SensorLag => (latency.sensor_lag, LONGEST_LAG * period),
+        Parameter::ActuatorResponse => {
+            let has_lag = !latency.actuator_lag.is_zero() || !latency.sensor_lag.is_zero();
+            if has_lag && !latency.actuator_response.is_zero() {
+                let bound = NO_LAG_BESIDE;
+                return Some(InvalidParameter { parameter, value, bound, limit: None });
+            }
+            (latency.actuator_response, period)
+        }
         _ => return None,
     };
     if value == 0.0 && range.least == 0.0 {
@@ -218,8 +229,12 @@ const fn latency_conflict(
         });
     }
     let (value, bound, limit) = if value > longest {
-        let is_delay = matches!(parameter, Parameter::OutputDelay);
-        (value, if is_delay { NO_LONGER_DELAY } else { NO_LONGER_LAG }, longest)
+        let bound = match parameter {
+            Parameter::OutputDelay => NO_LONGER_DELAY,
+            Parameter::ActuatorResponse => NO_LONGER_RESPONSE,
+            _ => NO_LONGER_LAG,
+        };
+        (value, bound, longest)
     } else if least > value {
         (least, "at most the other end of its range:", value)
     } else {

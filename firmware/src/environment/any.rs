@@ -297,6 +297,11 @@ impl<N: Number> Law<N> for DataLaw<N> {
     }
 
     #[inline]
+    fn deflection_after(&mut self, torque: N) -> N {
+        self.memory.as_mut().map_or(N::ZERO, |memory| memory.deflection_after(torque))
+    }
+
+    #[inline]
     fn lasting_deflection(&self) -> N {
         self.memory.as_ref().map_or(N::ZERO, CouplingMemory::deflection)
     }

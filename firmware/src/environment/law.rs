@@ -9,6 +9,8 @@ use crate::number::{Format, Number};
 
 /// The difference equation of an environment, at rest at zero to begin with.
 pub trait Law<N: Number> {
+    /// Whether it is behind a compliant coupling, whatever the scene says.
+    const IS_COMPLIANT: bool = false;
     /// The torque in this tick as a function of `x_E`, given by its value at `x_E = x` (rad); the
     /// slopes are those of [`Law::slopes`].
     fn evaluate(&self, x: N) -> Response<N>;
@@ -16,8 +18,14 @@ pub trait Law<N: Number> {
     fn update(&mut self, x_e: N);
     /// Starts anew, as if the environment had always been at `x_e` (rad). Between two ticks.
     fn rest_at(&mut self, x_e: N);
-    /// Deflection in rad that the coupling has in this tick of the torques of earlier ticks: none, but
-    /// behind a coupling with memory.
+    /// Deflection in rad that the coupling has in this tick of the torques of earlier ticks, the last of
+    /// which is given in N m: none, but behind a coupling with memory. Once a tick, before anything else.
+    #[inline(always)]
+    fn deflection_after(&mut self, _torque: N) -> N {
+        N::ZERO
+    }
+    /// The same where a tick begins with its own torque known: of the torques that
+    /// [`remember`](Law::remember) was told.
     #[inline(always)]
     fn lasting_deflection(&self) -> N {
         N::ZERO
@@ -27,7 +35,7 @@ pub trait Law<N: Number> {
     fn matched_compliance(&self) -> Option<f64> {
         None
     }
-    /// Ends the tick for the coupling, with this torque in N m.
+    /// Ends such a tick for the coupling, with this torque in N m.
     #[inline(always)]
     fn remember(&mut self, _torque: N) {}
     /// The turn within which its angles are, for a law that repeats for ever.

@@ -34,6 +34,7 @@ pub struct CouplingMemory<N: Number, D, const LAGS: usize> {
     arriving: N::Coefficient,
     trails: [Fading<N>; LAGS],
     torques: D,
+    /// Where a tick begins with its own torque known.
     deflection: N,
     compliance: f64,
 }
@@ -85,15 +86,10 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
         self.compliance
     }
 
-    /// Deflection in rad in this tick of the torques of earlier ticks.
+    /// Takes the torque of a tick in N m, and gives the deflection in rad that this one and those before it
+    /// leave to the next tick.
     #[inline(always)]
-    pub(crate) fn deflection(&self) -> N {
-        self.deflection
-    }
-
-    /// Ends the tick with this torque in N m.
-    #[inline(always)]
-    pub(crate) fn remember(&mut self, torque: N) {
+    pub(crate) fn deflection_after(&mut self, torque: N) -> N {
         let arriving = match self.torques.due() {
             None => torque,
             Some(oldest) => {
@@ -109,7 +105,19 @@ impl<N: Number, D: DelayLine<N>, const LAGS: usize> CouplingMemory<N, D, LAGS> {
             deflection = deflection.plus(trail.torque.times(trail.gain));
             trail.torque = trail.torque.times(trail.decay).plus(arriving);
         }
-        self.deflection = deflection;
+        deflection
+    }
+
+    /// The deflection in rad that [`CouplingMemory::remember`] has kept.
+    #[inline(always)]
+    pub(crate) fn deflection(&self) -> N {
+        self.deflection
+    }
+
+    /// [`CouplingMemory::deflection_after`] a torque in N m, kept.
+    #[inline(always)]
+    pub(crate) fn remember(&mut self, torque: N) {
+        self.deflection = self.deflection_after(torque);
     }
 
     /// Forgets all torques.
@@ -130,6 +138,8 @@ pub struct MatchedLaw<N: Number, L, D, const LAGS: usize> {
 impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
     for MatchedLaw<N, L, D, LAGS>
 {
+    const IS_COMPLIANT: bool = true;
+
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
         self.law.evaluate(x)
@@ -160,6 +170,11 @@ impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
 
     fn matched_compliance(&self) -> Option<f64> {
         Some(self.memory.compliance())
+    }
+
+    #[inline(always)]
+    fn deflection_after(&mut self, torque: N) -> N {
+        self.memory.deflection_after(torque)
     }
 
     #[inline(always)]

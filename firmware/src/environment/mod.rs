@@ -69,7 +69,7 @@ pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
 pub use profile::{
-    AnyProfile, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, Outline, Profile,
+    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, Outline, Profile,
     ProfileLaw, Shape, ShapeError,
 };
 pub use rational::{Coefficients, Rational, RationalLaw};

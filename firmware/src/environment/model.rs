@@ -48,7 +48,7 @@ impl Memory {
             Self::None => !is_matched,
             Self::Any => true,
             Self::Of { whole, lags } => {
-                let needed = (latency.output_delay.middle() / period) as usize;
+                let needed = (latency.torque_delay().middle() / period) as usize;
                 let lagging = !latency.actuator_lag.is_zero() as usize
                     + !latency.sensor_lag.is_zero() as usize;
                 is_matched && needed == whole && lagging == lags

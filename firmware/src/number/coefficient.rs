@@ -5,10 +5,6 @@ use super::fixed_point::{self, Scaled};
 use super::rounding::Rounding;
 use super::{Format, float};
 
-/// The largest unit of a knot of a table: it stands for all of the table's torque.
-pub const KNOT_FULL_SCALE: i16 = i16::MAX;
-pub(super) const TWICE_FULL_SCALE: f64 = 2.0 * KNOT_FULL_SCALE as f64;
-
 impl Format {
     /// The value of the coefficient that this format makes of `value`. What the format does not
     /// hold is given back as it is: it is refused by name where the servo is built.
@@ -23,15 +19,25 @@ impl Format {
         }
     }
 
-    /// Torque in N m of half a unit of a knot, as this format makes it of that of a knot at full scale.
-    pub(crate) const fn knot_scale(self, torque: f64) -> f64 {
-        let half_unit = torque / TWICE_FULL_SCALE;
+    /// What [`Number::parts_scale`](super::Number::parts_scale) makes of parts in a rad.
+    pub(crate) const fn parts_per_rad(self, value: f64) -> f64 {
+        let steps = self.steps_per_unit();
+        self.coefficient(value / steps, Rounding::Nearest) * steps
+    }
+
+    /// What [`Number::part_scale`](super::Number::part_scale) makes of the torque in N m of a part.
+    pub(crate) const fn torque_of_part(self, value: f64) -> f64 {
+        let steps = self.steps_per_unit();
+        self.coefficient(value * steps, Rounding::Nearest) / steps
+    }
+
+    /// Steps of a fixed-point format in a rad or a N m, a power of two; 1 in floating point.
+    const fn steps_per_unit(self) -> f64 {
         match self {
             Self::Fixed { fraction_bits } | Self::Truncated { fraction_bits } => {
-                let factor = fixed_point::knot_factor(fraction_bits);
-                self.coefficient(half_unit * factor, Rounding::Nearest) / factor
+                (1_u64 << fraction_bits) as f64
             }
-            Self::F32 | Self::F64 => self.coefficient(half_unit, Rounding::Nearest),
+            Self::F32 | Self::F64 => 1.0,
         }
     }
 
@@ -43,18 +49,6 @@ impl Format {
             Self::F64 => 0.5 * f64::EPSILON * magnitude,
             Self::Fixed { fraction_bits } => 0.5 / (1_u64 << fraction_bits) as f64,
             Self::Truncated { fraction_bits } => 1.0 / (1_u64 << fraction_bits) as f64,
-        }
-    }
-}
-
-impl Format {
-    /// The most by which a place in a table of knots is off, in cells, beside what a product rounds.
-    pub(crate) fn error_of_place(self) -> f64 {
-        match self {
-            Self::F32 | Self::F64 => 0.0,
-            Self::Fixed { .. } | Self::Truncated { .. } => {
-                1.0 / f64::from(1_u32 << fixed_point::PART_BITS)
-            }
         }
     }
 }

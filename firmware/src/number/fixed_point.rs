@@ -5,7 +5,6 @@ use core::hint::cold_path;
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
-use super::coefficient::TWICE_FULL_SCALE;
 use super::{Format, Number, OutOfRange, Rounding, bounded};
 
 /// Largest magnitude of a coefficient.
@@ -88,37 +87,6 @@ impl Scaled {
     }
 }
 
-/// Parts of a cell that a place is told to.
-pub(super) const PART_BITS: u32 = 14;
-
-/// From torque a unit of a knot to the mantissa of a torque a part of it, in a format with so many fractional
-/// bits.
-pub(super) const fn knot_factor(fraction_bits: u32) -> f64 {
-    (1_u64 << fraction_bits) as f64 / (1_u32 << PART_BITS) as f64
-}
-
-/// Twice the units between two knots, in parts, at `bits` of a number with so many fractional bits.
-#[inline(always)]
-pub(super) fn knots(
-    bits: i32,
-    fraction_bits: u32,
-    cells: Scaled,
-    around: impl FnOnce(i32) -> (i32, i32),
-) -> i32 {
-    let place = i64::from(bits) * i64::from(cells.mantissa);
-    let shift = (cells.shift & Scaled::LARGEST_SHIFT) + fraction_bits;
-    // In parts of a cell: a place of more than 2^17 cells is no place of a table.
-    let place = match shift.checked_sub(PART_BITS) {
-        Some(surplus) => place >> surplus,
-        None => place << (PART_BITS - shift),
-    } as i32;
-    let cell = place.wrapping_add(1 << (PART_BITS - 1)) >> PART_BITS;
-    let (from, to) = around(cell);
-    let part = place.wrapping_sub(cell << PART_BITS);
-    // Each term is at most 2^30.
-    ((from + to) << PART_BITS) + 2 * (to - from) * part
-}
-
 /// The nearest `i32`, and whether it is the value itself.
 #[inline(always)]
 fn nearest(value: i64) -> (i32, bool) {
@@ -184,6 +152,12 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
     }
 
     #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        // A negative number has more bits than any other.
+        self.to_bits().cast_unsigned() <= bound.to_bits().cast_unsigned()
+    }
+
+    #[inline(always)]
     fn positive_part(self) -> Self {
         self.max(Self::ZERO)
     }
@@ -199,18 +173,24 @@ impl<Frac: LeEqU32 + 'static> Number for FixedI32<Frac> {
         (Self::from_bits(bits), fits)
     }
 
-    fn knot_scale(torque: f64) -> Result<Scaled, OutOfRange> {
-        Scaled::new(torque / TWICE_FULL_SCALE * knot_factor(Frac::U32), Self::FORMAT)
+    fn parts_scale(parts_per_rad: f64) -> Result<Scaled, OutOfRange> {
+        let parts = parts_per_rad * Self::DELTA.to_num::<f64>();
+        Scaled::new(parts, Self::FORMAT)
     }
 
     #[inline(always)]
-    fn between_knots(
-        self,
-        cells: Scaled,
-        around: impl FnOnce(i32) -> (i32, i32),
-        torque: Scaled,
-    ) -> Self {
-        Self::from_bits(torque.scale(knots(self.to_bits(), Frac::U32, cells, around)).0)
+    fn parts(self, scale: Scaled) -> i32 {
+        scale.scale(self.to_bits()).0
+    }
+
+    fn part_scale(torque: f64) -> Result<Scaled, OutOfRange> {
+        let steps = torque * Self::DELTA.to_num::<f64>().recip();
+        Scaled::new(steps, Self::FORMAT)
+    }
+
+    #[inline(always)]
+    fn of_parts(parts: i32, scale: Scaled) -> Self {
+        Self::from_bits(scale.scale(parts).0)
     }
 
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {

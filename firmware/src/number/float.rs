@@ -1,6 +1,5 @@
 //! The formats of the floating-point unit: `f32` on the target, `f64` as the host's reference.
 
-use super::coefficient::TWICE_FULL_SCALE;
 use super::{Format, Number, OutOfRange, Rounding, bounded};
 
 /// Largest magnitude of a coefficient or a constant. An angle is below 2^34 rad, so that no
@@ -62,6 +61,13 @@ macro_rules! floating_point {
             }
 
             #[inline(always)]
+            fn is_from_zero_to(self, bound: Self) -> bool {
+                // The bits of a float are in the order of its magnitude, and above those of all numbers
+                // that are not negative come a NaN's and whatever has a sign.
+                self.to_bits() <= bound.to_bits()
+            }
+
+            #[inline(always)]
             fn positive_part(self) -> Self {
                 // Clears all bits where the sign is set: three integer instructions in place of
                 // five for a comparison and a choice.
@@ -78,24 +84,22 @@ macro_rules! floating_point {
                 (count as $float * scale, true)
             }
 
-            fn knot_scale(torque: f64) -> Result<Self, OutOfRange> {
-                Self::from_f64(torque / TWICE_FULL_SCALE)
+            fn parts_scale(parts_per_rad: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(parts_per_rad)
             }
 
             #[inline(always)]
-            fn between_knots(
-                self,
-                cells: Self,
-                around: impl FnOnce(i32) -> (i32, i32),
-                torque: Self,
-            ) -> Self {
-                // As in `codes_below`: the sum rounds to the nearest whole cell.
-                let place = self * cells;
-                let whole = place + $integers_from;
-                let (from, to) = around(whole.to_bits() as i32);
-                let part = place - (whole - $integers_from);
-                // Twice the torque in the middle of the cell, and twice its rise over the cell.
-                (((from + to) as $float) + ((to - from + (to - from)) as $float) * part) * torque
+            fn parts(self, scale: Self) -> i32 {
+                (self * scale) as i32
+            }
+
+            fn part_scale(torque: f64) -> Result<Self, OutOfRange> {
+                Self::from_f64(torque)
+            }
+
+            #[inline(always)]
+            fn of_parts(parts: i32, scale: Self) -> Self {
+                parts as $float * scale
             }
 
             fn code_scale(codes_per_torque: f64) -> Result<Self, OutOfRange> {

@@ -17,7 +17,6 @@ mod truncated;
 pub use fixed;
 
 pub use arithmetic::{Arithmetic, InEach};
-pub use coefficient::KNOT_FULL_SCALE;
 pub use fixed_point::Scaled;
 pub use rounding::Rounding;
 pub use truncated::Truncated;
@@ -57,6 +56,12 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     fn negated(self) -> Self;
     /// Whether the magnitude is at most `bound`; never true of a NaN.
     fn within(self, bound: Self) -> bool;
+    /// Whether the number is at least zero and at most `bound`, which is not negative; never true of a NaN,
+    /// and of a negative zero in some formats.
+    #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        self >= Self::ZERO && self <= bound
+    }
     /// The number where it is positive, else zero. Of a NaN: by its sign, itself or zero.
     fn positive_part(self) -> Self;
     /// The smaller of two; `self` where one is a NaN.
@@ -75,17 +80,14 @@ pub trait Number: Copy + PartialOrd + fmt::Debug + 'static {
     /// Angle of an encoder count in rad, and whether it fits the format; if not, it is the end of
     /// the format's range.
     fn angle(count: i32, scale: Self::Coefficient) -> (Self, bool);
-    /// The factor for [`Number::between_knots`] from the torque in N m of a knot at full scale.
-    fn knot_scale(torque: f64) -> Result<Self::Coefficient, OutOfRange>;
-    /// The torque in N m between two knots of a table: `self * cells` is the place in it, counted in cells
-    /// from the middle of the first one, and `around` has the knots at the beginning and at the end of
-    /// a cell. No number, or zero, for a place that is none.
-    fn between_knots(
-        self,
-        cells: Self::Coefficient,
-        around: impl FnOnce(i32) -> (i32, i32),
-        torque: Self::Coefficient,
-    ) -> Self;
+    /// The factor for [`Number::parts`] from parts in a rad.
+    fn parts_scale(parts_per_rad: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// The angle in whole parts, cut off or rounded; the nearest `i32` where it is out of range.
+    fn parts(self, scale: Self::Coefficient) -> i32;
+    /// The factor for [`Number::of_parts`] from the torque in N m of a part.
+    fn part_scale(torque: f64) -> Result<Self::Coefficient, OutOfRange>;
+    /// The torque in N m of so many parts.
+    fn of_parts(parts: i32, scale: Self::Coefficient) -> Self;
     /// The factor for [`Number::codes_below`] from the DAC's codes per N m, rounded
     /// [`Rounding::Inward`].
     fn code_scale(codes_per_torque: f64) -> Result<Self::Coefficient, OutOfRange>;

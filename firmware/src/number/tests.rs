@@ -56,6 +56,25 @@ fn fixed_point_saturates_at_its_ends() {
 }
 
 #[test]
+fn what_only_pushes_is_from_zero_to_its_bound() {
+    fn ends<N: Number>() {
+        let is = |value: f64, bound: f64| {
+            N::from_f64(value).unwrap().is_from_zero_to(N::from_f64(bound).unwrap())
+        };
+        assert!(is(0.0, 0.0) && is(0.0, 0.5) && is(0.25, 0.5) && is(0.5, 0.5));
+        assert!(!is(0.75, 0.5) && !is(-0.25, 0.5) && !is(-0.75, 0.5) && !is(0.25, 0.0));
+    }
+    ends::<f32>();
+    ends::<f64>();
+    ends::<Q16>();
+    ends::<FixedI32<U31>>();
+    ends::<Cut>();
+    for nan in [f32::NAN, -f32::NAN] {
+        assert!(!nan.is_from_zero_to(f32::MAX));
+    }
+}
+
+#[test]
 fn an_angle_beyond_its_format_stands_still_and_says_so() {
     fn ends<N: Number>(last: i32, beyond: i32) {
         let scale = N::angle_scale(1e-4).unwrap();

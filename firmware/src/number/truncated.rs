@@ -4,7 +4,7 @@
 use fixed::FixedI32;
 use fixed::types::extra::LeEqU32;
 
-use super::{Format, Number, OutOfRange, Scaled, fixed_point};
+use super::{Format, Number, OutOfRange, Scaled};
 
 /// A [`fixed::FixedI32`] whose angles and products are the largest numbers of the format that do
 /// not lie above the exact ones. Its coefficients are those of the rounded format, and DAC codes
@@ -67,6 +67,11 @@ impl<Frac: LeEqU32 + 'static> Number for Truncated<FixedI32<Frac>> {
     }
 
     #[inline(always)]
+    fn is_from_zero_to(self, bound: Self) -> bool {
+        self.0.is_from_zero_to(bound.0)
+    }
+
+    #[inline(always)]
     fn positive_part(self) -> Self {
         Self(self.0.positive_part())
     }
@@ -82,20 +87,24 @@ impl<Frac: LeEqU32 + 'static> Number for Truncated<FixedI32<Frac>> {
         (Self(FixedI32::from_bits(bits)), fits)
     }
 
-    fn knot_scale(torque: f64) -> Result<Scaled, OutOfRange> {
+    fn parts_scale(parts_per_rad: f64) -> Result<Scaled, OutOfRange> {
         let out_of_range = |error| OutOfRange { format: Self::FORMAT, ..error };
-        FixedI32::<Frac>::knot_scale(torque).map_err(out_of_range)
+        FixedI32::<Frac>::parts_scale(parts_per_rad).map_err(out_of_range)
     }
 
     #[inline(always)]
-    fn between_knots(
-        self,
-        cells: Scaled,
-        around: impl FnOnce(i32) -> (i32, i32),
-        torque: Scaled,
-    ) -> Self {
-        let units = fixed_point::knots(self.0.to_bits(), Frac::U32, cells, around);
-        Self(FixedI32::from_bits(torque.scale_down(units).0))
+    fn parts(self, scale: Scaled) -> i32 {
+        scale.scale_down(self.0.to_bits()).0
+    }
+
+    fn part_scale(torque: f64) -> Result<Scaled, OutOfRange> {
+        let out_of_range = |error| OutOfRange { format: Self::FORMAT, ..error };
+        FixedI32::<Frac>::part_scale(torque).map_err(out_of_range)
+    }
+
+    #[inline(always)]
+    fn of_parts(parts: i32, scale: Scaled) -> Self {
+        Self(FixedI32::from_bits(scale.scale_down(parts).0))
     }
 
     fn code_scale(codes_per_torque: f64) -> Result<Scaled, OutOfRange> {

@@ -55,13 +55,11 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// all energy in it is what its spring stores at this position; a state left at zero with the
     /// device elsewhere would be none.
     pub(crate) fn rest_here(&mut self) -> N {
-        let count = match self.law.turn() {
-            Some(turn) => {
-                turn.start_at(self.position.count());
-                turn.within(self.position.low()).0
-            }
-            None => self.position.reading().count,
-        };
+        let within = self.law.turn().and_then(|turn| {
+            turn.start_at(self.position.count());
+            turn.within(self.position.low())
+        });
+        let count = within.map_or(self.position.reading().count, |(count, _)| count);
         let (x, _) = N::angle(count, self.angle_scale);
         self.torque = N::ZERO;
         self.law.rest_at(x);

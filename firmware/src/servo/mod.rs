@@ -18,7 +18,7 @@ use crate::coupling::{Response, Solver};
 use crate::dac::{Dac, DacCode};
 use crate::encoder::{Encoder, Position, RawCount};
 use crate::energy::{Action, NoAction};
-use crate::environment::{Discretize, EnvironmentModel, Law, Turn};
+use crate::environment::{Discretize, EnvironmentModel, Law};
 use crate::number::{Number, OutOfRange};
 use crate::scene::Scene;
 use crate::torque::{LimitReason, Limiter};
@@ -142,10 +142,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// The code that belongs to the same instant as the count.
     #[inline(always)]
     fn tick_zero_delay(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw, action);
-        let x = x.minus(self.law.lasting_deflection());
+        let (x, standing_still) = self.angle(raw, action);
+        let x = x.minus(self.law.deflection_after(self.torque));
         let offer = action.add_to(self.law.evaluate(x));
-        let output = self.solve_to_code(offer, fits);
+        let output = self.solve_to_code(offer, standing_still);
         self.update_environment(x, action);
         output
     }
@@ -155,11 +155,13 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// [`Servo::tick_zero_delay`] would give in the tick after this one.
     #[inline(always)]
     fn tick_latched(&mut self, raw: RawCount, action: &mut impl Action<N>) -> Output {
-        let (x, fits) = self.angle(raw, action);
+        let (x, standing_still) = self.angle(raw, action);
+        let x = x.minus(self.law.lasting_deflection());
         // The torque of this tick was computed in the one before.
+        self.law.remember(self.torque);
         self.update_environment(x, action);
         let offer = action.add_to(self.law.evaluate(x));
-        self.solve_to_code(offer, fits)
+        self.solve_to_code(offer, standing_still)
     }
 
     /// One tick at an angle in rad that no encoder has counted: what the number format alone does to
@@ -169,9 +171,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     /// # Errors
     /// Where the format does not hold the angle.
     pub fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
-        let angle = if self.law.turn().is_some() { Turn::<N>::wrapped(angle) } else { angle };
-        let x = N::from_f64(angle)?.minus(self.law.lasting_deflection());
-        self.solve_to_code(self.law.evaluate(x), true);
+        let angle = self.law.turn().map_or(angle, |turn| turn.wrapped(angle));
+        let x = N::from_f64(angle)?;
+        let x = x.minus(self.law.deflection_after(self.torque));
+        self.solve_to_code(self.law.evaluate(x), LimitReason::None);
         self.update_environment(x, &mut NoAction);
         Ok(self.torque_nm())
     }
@@ -181,38 +184,59 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     fn update_environment(&mut self, x: N, action: &mut impl Action<N>) {
         let x_e = self.solver.environment_position(x, self.torque);
         self.law.update(x_e);
-        self.law.remember(self.torque);
         action.update(x_e);
     }
 
-    /// The device's angle in rad, and whether the number format holds it.
+    /// The device's angle in rad, and the reason if it stands still at the end of its range.
     #[inline(always)]
-    fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, bool) {
-        let reading = self.position.update(raw);
-        if let Some(turn) = self.law.turn() {
-            let (count, turns) = turn.within(self.position.low());
+    fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, LimitReason) {
+        self.position.follow(raw);
+        if let Some(turn) = self.law.turn()
+            && let Some((count, turns)) = turn.within(self.position.low())
+        {
             if turns != 0 {
                 cold_path();
                 let by = turn.left(turns);
                 self.law.shift(by);
                 action.shift(by);
             }
-            return N::angle(count, self.angle_scale);
+            return self.angle_of(count);
         }
-        let (x, fits) = N::angle(reading.count, self.angle_scale);
-        (x, fits && !reading.saturated)
+        let reading = self.position.reading();
+        if reading.saturated {
+            cold_path();
+            return (self.angle_of(reading.count).0, LimitReason::Angle);
+        }
+        self.angle_of(reading.count)
+    }
+
+    #[inline(always)]
+    fn angle_of(&self, count: i32) -> (N, LimitReason) {
+        let (x, fits) = N::angle(count, self.angle_scale);
+        (x, if fits { LimitReason::None } else { LimitReason::Angle })
     }
 
     /// Solves coupling and environment with the limited torque, which is then that of this tick.
     #[inline(always)]
-    fn solve_to_code(&mut self, offer: Response<N>, fits: bool) -> Output {
-        let wanted = self.solver.torque(offer);
-        let standing_still = if fits { LimitReason::None } else { LimitReason::Angle };
-        let (torque, limit) = self.limiter.limit(wanted, standing_still);
+    fn solve_to_code(&mut self, offer: Response<N>, standing_still: LimitReason) -> Output {
+        let (torque, limit) = self.limited(offer, standing_still);
         self.torque = torque;
         // The motor pushes against the coupling's deflection.
         let code = torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale);
         Output { code: DacCode::from_low_bits(code), limit }
+    }
+
+    /// The torque of coupling and environment within its limit, and the reason if it was limited;
+    /// `otherwise` if not.
+    #[inline(always)]
+    fn limited(&self, offer: Response<N>, otherwise: LimitReason) -> (N, LimitReason) {
+        match offer {
+            Response::Wall(wall) if E::Law::IS_COMPLIANT || !self.solver.is_rigid() => {
+                let wanted = self.solver.wall_or_face(wall.torque, wall.depth);
+                self.limiter.limit_push(wanted, otherwise)
+            }
+            _ => self.limiter.limit(self.solver.torque(offer), otherwise),
+        }
     }
 
     /// One tick between an encoder and a DAC that are at hand.

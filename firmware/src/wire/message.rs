@@ -68,6 +68,7 @@ pub enum ToBoard {
 
 /// Replies and telemetry. `S` is text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "a board has no heap, and one message at a time")]
 pub enum ToHost<S> {
     /// Who answers. The same in every version of the protocol, so that a host of another version
     /// can say so.

@@ -48,6 +48,7 @@ fn has(name: &str) -> &'static [Part] {
         // Torques are later than positions on these boards.
         "free_mode" => &[Part::Canceller, Part::Delay],
         // Free motion that ends at a wall, neither of them late.
+        "undelayed_spring" => &[Part::Spring],
         "undelayed_wall" => &[Part::Spring, Part::Damper, Part::Face, Part::Canceller],
         // It measures a device, and renders no scene.
         _ => &[],

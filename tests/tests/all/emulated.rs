@@ -9,18 +9,19 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use analysis::emulator::{BenchClient, CertifyClient, Emulator, EmulatorError, EmulatorReport};
-use analysis::program::{damper_wall, delayed_spring, free_mode, undelayed_wall};
+use analysis::program::{damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::studies::bench;
 use analysis::studies::bench::live::live_set;
+use analysis::studies::bench::matched::contact_instructions;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
 use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use firmware::certificate::{Certified, Parameter, assess};
 use firmware::encoder::RawCount;
-use firmware::environment::Environment;
+use firmware::environment::{Environment, Wall};
 use firmware::number::{Arithmetic, Number};
 use firmware::passivity::interval::Interval;
-use firmware::scene::Scene;
+use firmware::scene::{Coupling, Latency, Scene};
 use firmware::servo::{Servo, Transducers};
 use firmware::tuning::Tunable;
 use firmware_harness::bench_request::BenchRequest;
@@ -41,7 +42,7 @@ static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
 
 /// The scenes' programs in each format.
 static PROGRAMS: LazyLock<HashMap<(&str, NumberFormat), PathBuf>> = LazyLock::new(|| {
-    let names = ["delayed_spring", "damper_wall", "free_mode", "undelayed_wall"];
+    let names = ["delayed_spring", "damper_wall", "free_mode", "knob", "undelayed_wall"];
     let build = |format| {
         let files = TOOLCHAIN.build_scenes(&names, format);
         let files = files.unwrap_or_else(|error| panic!("{error}"));
@@ -211,6 +212,40 @@ fn every_format_computes_as_the_host_does() {
     board.finish().unwrap();
 }
 
+/// So are those behind the matched coupling, with one lag and without; the wall's depth and its torque's limit
+/// change what a tick does.
+#[test]
+fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
+    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = BenchClient::boot(&elf).unwrap();
+    let wall = Wall {
+        stiffness: 22.0,
+        damping: 0.01,
+        filter: None,
+        delay: 0,
+        face: 0.01,
+        one_sided: true,
+    };
+    let environment = Environment::DamperWall(wall);
+    let prompt = Latency::delayed(1e-5);
+    for latency in [prompt, prompt.with_actuator_lag(5e-5)] {
+        let mut problem = servo::cases()[0].problem;
+        let coupling = Coupling::Matched;
+        problem.scene = Scene { environment, coupling, latency, ..problem.scene };
+        let motion = Motion::recorded(&problem, counts(3));
+        for arithmetic in [Arithmetic::F32, Arithmetic::I16F16, Arithmetic::I8F24] {
+            let cost = cost(&mut board, &motion, arithmetic);
+            let name = arithmetic.name();
+            let cost = cost.unwrap_or_else(|error| panic!("{name}, {latency:?}: {error}"));
+            println!("{name}, {latency:?}: at most {} instructions", cost.most);
+        }
+    }
+    board.finish().unwrap();
+    let [most, with_a_lag] = contact_instructions(&elf).unwrap();
+    println!("in contact: {most} instructions, {with_a_lag} with one lag");
+    assert!(most <= 56 && with_a_lag <= 66, "{most}, {with_a_lag}");
+}
+
 /// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.
 #[test]
 fn programs_without_a_log_fit_the_smallest_board() {
@@ -240,7 +275,7 @@ fn a_board_that_does_nothing_is_an_error() {
 /// and a kibibyte of stack is left.
 #[test]
 fn every_set_is_answered_with_stack_to_spare() {
-    for name in ["delayed_spring", "damper_wall", "free_mode"] {
+    for name in ["delayed_spring", "damper_wall", "free_mode", "knob"] {
         let elf = &PROGRAMS[&(name, NumberFormat::F32)];
         // The standard coupling; softer and stiffer ones, for which another function is looked at;
         // one that ends the solution of the loop.
@@ -304,5 +339,7 @@ emulated! {
     damper_wall_in_fixed_point: damper_wall, NumberFormat::Fixed, damper_wall::Fixed, None::<u64>;
     free_mode_in_f32: free_mode, NumberFormat::F32, f32, None::<u64>;
     free_mode_in_fixed_point: free_mode, NumberFormat::Fixed, free_mode::Fixed, None::<u64>;
+    knob_in_f32: knob, NumberFormat::F32, f32, Some(160);
+    knob_in_fixed_point: knob, NumberFormat::Fixed, knob::Fixed, None::<u64>;
     undelayed_wall_in_f32: undelayed_wall, NumberFormat::F32, f32, None::<u64>;
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use firmware::certificate::{PassivityProblem, assess};
-use firmware::environment::{Environment, Wall};
+use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::DMatrix;
 use rand::{Rng, SeedableRng};
@@ -16,19 +16,30 @@ const SQUARINGS: u32 = 30;
 
 /// A wall in the units of the loop: period and passivity are 1.
 #[derive(Clone, Copy, Debug)]
-struct Loop {
-    stiffness: f64,
-    damping: f64,
-    filter: f64,
-    delay: usize,
-    coupling: Option<f64>,
-    output_delay: f64,
-    actuator_lag: f64,
-    sensor_lag: f64,
+pub struct Loop {
+    pub stiffness: f64,
+    pub damping: f64,
+    pub filter: f64,
+    pub delay: usize,
+    pub coupling: Option<f64>,
+    pub output_delay: f64,
+    pub actuator_lag: f64,
+    pub sensor_lag: f64,
+    /// What multiplies the wall: `(z^2 + b z + c) / (z^2 + d z + e)`.
+    pub section: Option<[f64; 4]>,
+}
+
+/// A part of the torque.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Delay in periods.
+    pub delay: f64,
+    /// All of them together are 1.
+    pub weight: f64,
 }
 
 impl Loop {
-    fn draw(rng: &mut ChaCha8Rng) -> Self {
+    pub fn draw(rng: &mut ChaCha8Rng) -> Self {
         let some = |rng: &mut ChaCha8Rng, part: f64, hi: f64| {
             if rng.random_bool(part) { rng.random_range(0.02..hi) } else { 0.0 }
         };
@@ -41,6 +52,7 @@ impl Loop {
             output_delay: some(rng, 0.6, 1.9),
             actuator_lag: some(rng, 0.6, 2.0),
             sensor_lag: some(rng, 0.3, 1.0),
+            section: None,
         }
     }
 
@@ -48,7 +60,7 @@ impl Loop {
         Self { stiffness: factor * self.stiffness, damping: factor * self.damping, ..self }
     }
 
-    fn scene(&self) -> Scene {
+    pub fn scene(&self) -> Scene {
         let exactly = TimeRange::exactly;
         Scene {
             device: Device { inertia: 1.0, damping: 1.0, passivity: None },
@@ -57,22 +69,50 @@ impl Loop {
                 Some(stiffness) => Coupling::Spring { stiffness },
                 None => Coupling::Rigid,
             },
-            environment: Environment::DamperWall(Wall {
+            environment: self.environment(),
+            latency: Latency {
+                output_delay: exactly(self.output_delay),
+                output_jitter: 0.0,
+                actuator_lag: exactly(self.actuator_lag),
+                sensor_lag: exactly(self.sensor_lag),
+                ..Latency::NONE
+            },
+            torque_limit: None,
+        }
+    }
+
+    fn environment(&self) -> Environment {
+        if self.section.is_none() {
+            return Environment::DamperWall(Wall {
                 stiffness: self.stiffness,
                 damping: self.damping,
                 filter: (self.filter > 0.0).then_some(self.filter),
                 delay: self.delay,
                 face: 0.0,
                 one_sided: false,
-            }),
-            latency: Latency {
-                output_delay: exactly(self.output_delay),
-                output_jitter: 0.0,
-                actuator_lag: exactly(self.actuator_lag),
-                sensor_lag: exactly(self.sensor_lag),
-            },
-            torque_limit: None,
+            });
         }
+        let descending = |ascending: Vec<f64>| {
+            let values: Vec<f64> = ascending.into_iter().rev().collect();
+            Coefficients::new(&values).expect("a low degree")
+        };
+        let (numerator, denominator) = self.fraction();
+        Environment::Rational(Rational {
+            numerator: descending(numerator),
+            denominator: descending(denominator),
+            delay: self.delay,
+            unit_zeros: 0,
+        })
+    }
+
+    /// The wall with its section, without its delay: numerator and denominator, ascending.
+    fn fraction(&self) -> (Vec<f64>, Vec<f64>) {
+        let a = self.filter;
+        let gain = self.damping * (1.0 - a);
+        let numerator = vec![-self.stiffness * a - gain, self.stiffness + gain];
+        let denominator = vec![-a, 1.0];
+        let Some([b, c, d, e]) = self.section else { return (numerator, denominator) };
+        (times(&numerator, &[c, b, 1.0]), times(&denominator, &[e, d, 1.0]))
     }
 
     fn is_certified(&self) -> bool {
@@ -101,12 +141,10 @@ impl Loop {
     }
 
     /// Numerator and denominator, ascending, of the controller behind the coupling.
-    fn controller(&self) -> (Vec<f64>, Vec<f64>) {
-        let a = self.filter;
-        let gain = self.damping * (1.0 - a);
-        let numerator = vec![-self.stiffness * a - gain, self.stiffness + gain];
+    pub fn controller(&self) -> (Vec<f64>, Vec<f64>) {
+        let (numerator, poles) = self.fraction();
         let mut denominator = vec![0.0; self.delay];
-        denominator.extend([-a, 1.0]);
+        denominator.extend(poles);
         let compliance = self.coupling.map_or(0.0, |k| 1.0 / k);
         for (place, value) in denominator.iter_mut().zip(&numerator) {
             *place += compliance * value;
@@ -115,10 +153,11 @@ impl Loop {
     }
 
     /// The closed loop over a period: hand and device, amplifier, sensor, past torques, controller.
-    fn closed(&self, hand: &Hand) -> DMatrix<f64> {
-        let bodies = 2 * (1 + hand.segments.len());
+    fn closed(&self, hand: &Hand, absorbers: &[[f64; 2]], parts: &[Part]) -> DMatrix<f64> {
+        let bodies = 2 * (1 + hand.segments.len() + absorbers.len());
         let (amplifier, sensor, torque) = (bodies, bodies + 1, bodies + 2);
         let mut rates = rates(hand, bodies + 3);
+        absorb(&mut rates, hand, absorbers);
         let felt = if self.actuator_lag > 0.0 { amplifier } else { torque };
         rates[(1, felt)] -= 1.0 / hand.inertia;
         if self.actuator_lag > 0.0 {
@@ -129,9 +168,10 @@ impl Loop {
             rates[(sensor, sensor)] = -1.0 / self.sensor_lag;
             rates[(sensor, 0)] = 1.0 / self.sensor_lag;
         }
-        let whole = self.output_delay as usize;
-        let part = self.output_delay - whole as f64;
-        let (before, after) = ((&rates * part).exp(), (&rates * (1.0 - part)).exp());
+        let whole = parts.iter().map(|part| part.delay as usize).max().expect("a part");
+        let mut times: Vec<f64> = parts.iter().map(|part| part.delay.fract()).collect();
+        times.extend([0.0, 1.0]);
+        times.sort_by(f64::total_cmp);
         let plant = bodies + 2;
         let (numerator, denominator) = self.controller();
         let order = denominator.len() - 1;
@@ -160,9 +200,14 @@ impl Loop {
         let square = |m: &DMatrix<f64>| m.view((0, 0), (plant, plant)).into_owned();
         let driven = |m: &DMatrix<f64>| m.view((0, plant), (plant, 1)).into_owned();
         let mut through = DMatrix::zeros(plant, size);
-        through.view_mut((0, 0), (plant, plant)).copy_from(&square(&before));
-        through += driven(&before) * held(whole + 1);
-        let through = square(&after) * through + driven(&after) * held(whole);
+        through.view_mut((0, 0), (plant, plant)).copy_from(&DMatrix::identity(plant, plant));
+        for ends in times.windows(2).filter(|ends| ends[1] > ends[0]) {
+            let step = (&rates * (ends[1] - ends[0])).exp();
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let late = |part: &Part| held((part.delay - middle).ceil() as usize) * part.weight;
+            let torque = parts.iter().fold(DMatrix::zeros(1, size), |sum, part| sum + late(part));
+            through = square(&step) * through + driven(&step) * torque;
+        }
         closed.view_mut((0, 0), (plant, size)).copy_from(&through);
         for ago in 1..=past {
             closed.view_mut((plant + ago - 1, 0), (1, size)).copy_from(&held(ago - 1));
@@ -182,8 +227,14 @@ impl Loop {
 
     /// Spectral radius: the growth of the loop's powers, each the square of the one before. No iteration
     /// that need not converge, as one for eigenvalues.
-    fn radius(&self, hand: &Hand) -> f64 {
-        let mut power = self.closed(hand);
+    pub fn radius(&self, hand: &Hand, absorbers: &[[f64; 2]]) -> f64 {
+        let whole = [Part { delay: self.output_delay, weight: 1.0 }];
+        self.mixed_radius(hand, absorbers, &whole)
+    }
+
+    /// The same with a torque of which each part comes after a delay of its own.
+    pub fn mixed_radius(&self, hand: &Hand, absorbers: &[[f64; 2]], parts: &[Part]) -> f64 {
+        let mut power = self.closed(hand, absorbers, parts);
         let (mut growth, mut share) = (0.0, 1.0);
         for _ in 0..SQUARINGS {
             let norm = power.norm();
@@ -194,6 +245,17 @@ impl Loop {
         }
         growth.exp()
     }
+}
+
+/// Product of two polynomials.
+fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let mut product = vec![0.0; a.len() + b.len() - 1];
+    for (i, a) in a.iter().enumerate() {
+        for (j, b) in b.iter().enumerate() {
+            product[i + j] += a * b;
+        }
+    }
+    product
 }
 
 /// Positions and velocities of device and hand, without the motor.
@@ -218,6 +280,19 @@ fn rates(hand: &Hand, size: usize) -> DMatrix<f64> {
         before = s.inertia;
     }
     rates
+}
+
+/// Masses on springs beside each other on the device: of each its inertia and its stiffness.
+fn absorb(rates: &mut DMatrix<f64>, hand: &Hand, absorbers: &[[f64; 2]]) {
+    let first = 2 * (1 + hand.segments.len());
+    for (i, [inertia, stiffness]) in absorbers.iter().enumerate() {
+        let here = first + 2 * i;
+        rates[(here, here + 1)] = 1.0;
+        rates[(here + 1, here)] -= stiffness / inertia;
+        rates[(here + 1, 0)] += stiffness / inertia;
+        rates[(1, 0)] -= stiffness / hand.inertia;
+        rates[(1, here)] += stiffness / hand.inertia;
+    }
 }
 
 /// What a search in hands found.
@@ -249,12 +324,12 @@ fn search(seed: u64, loops: usize, hands: usize) -> Found {
             };
             found.hands += 1;
             // Heavy masses on the ground by nothing drift at exactly 1.
-            let radius = certified.radius(&hand);
+            let radius = certified.radius(&hand, &[]);
             if radius.is_nan() || radius > 1.0 + 1e-7 {
                 println!("{certified:?} {hand:?} {radius}");
                 found.unstable += 1;
             }
-            is_shown |= refused.radius(&hand) > 1.0 + 1e-7;
+            is_shown |= refused.radius(&hand, &[]) > 1.0 + 1e-7;
         }
         found.shown += usize::from(is_shown);
     }

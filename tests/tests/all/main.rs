@@ -1,6 +1,7 @@
 //! The tests of the whole, in one program: it links once, and while some of them wait for a compiler or
 //! an emulator others compute. `cargo test -p tests --test all NAME::` runs those of one file.
 
+mod actuator_response;
 mod bits;
 mod boards;
 mod closed_forms;
@@ -21,6 +22,7 @@ mod margin;
 mod matched;
 mod misses;
 mod own_environment;
+mod profiles;
 mod random;
 mod reference;
 mod remedies;
@@ -28,3 +30,4 @@ mod simulated;
 mod soundness;
 mod vectors;
 mod virtual_board;
+mod worst_hand;

@@ -190,14 +190,14 @@ fn latency(rng: &mut ChaCha8Rng) -> Latency {
             output_delay: range(delay),
             output_jitter: jitter * (1.0 - width),
             actuator_lag: range(lag),
-            sensor_lag: TimeRange::ZERO,
+            ..Latency::NONE
         }
     } else {
         Latency {
             output_delay: exactly(delay),
             output_jitter: jitter,
             actuator_lag: exactly(lag),
-            sensor_lag: TimeRange::ZERO,
+            ..Latency::NONE
         }
     }
 }

@@ -319,9 +319,9 @@ struct PortCurve {
 impl PortCurve {
     /// `None` where two lags are too much alike for their difference.
     fn of(scene: &Scene, controller: Transfer) -> Option<Self> {
-        let Latency { output_delay, actuator_lag, sensor_lag, .. } = scene.latency;
+        let Latency { actuator_lag, sensor_lag, .. } = scene.latency;
         let period = Interval::decimal(scene.timing.period);
-        let [delay, actuator, sensor] = [output_delay, actuator_lag, sensor_lag]
+        let [delay, actuator, sensor] = [scene.latency.torque_delay(), actuator_lag, sensor_lag]
             .map(|time| Interval::decimal(time.middle()).div(period));
         let response = LagIntervals { delay, lags: [actuator, sensor] }.response(0)?;
         Some(Self {

@@ -6,6 +6,7 @@ use super::output::{OutputArguments, WindowArguments};
 use crate::chart::{self, Chart};
 use crate::command::status::CommandError;
 use crate::file;
+use crate::nominal_latency::titled;
 
 /// Arguments of `haptic chart nyquist`.
 #[derive(Debug, Args)]
@@ -28,10 +29,11 @@ pub struct Arguments {
 pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let files: Result<Vec<_>, _> = arguments.files.iter().map(|file| file::load(file)).collect();
     let scenes: Vec<_> = files?.into_iter().map(|file| (file.name, file.scene)).collect();
+    let latencies = scenes.iter().map(|(_, scene)| &scene.latency);
     let title = match (&arguments.title, &scenes[..]) {
         (Some(title), _) => title.clone(),
-        (None, [(name, _)]) => name.clone(),
-        _ => "From velocity to torque: (T z/(z-1)) E(z)".to_owned(),
+        (None, [(name, _)]) => titled(name, latencies),
+        _ => titled("From velocity to torque: (T z/(z-1)) E(z)", latencies),
     };
     let picture = chart::nyquist::nyquist(&title, &scenes, &arguments.window.window())?;
     Ok(Chart { picture, data: chart::nyquist::data(&scenes)? })

@@ -1,6 +1,8 @@
 //! Measured cost of a certificate, a step and a tick, each with its reference.
 
+pub mod at_rest;
 pub mod live;
+pub mod matched;
 pub mod parts;
 pub mod steps;
 

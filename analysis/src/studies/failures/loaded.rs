@@ -16,7 +16,7 @@ pub struct LoadedDevice {
     hand_torque: TorqueSignal,
     encoder: SimulatedEncoder,
     torque_per_code: f64,
-    missed: Box<dyn Iterator<Item = bool>>,
+    missed: Box<dyn Iterator<Item = bool> + Send>,
     /// Position in rad at each tick, missed or not.
     pub positions: Vec<f64>,
 }

@@ -100,7 +100,7 @@ impl MethodResult {
     /// The verdict of the certificate about a scene: the index that it found, or its refusal.
     pub fn certificate(scene: &Scene) -> Self {
         let assessment = assess(scene);
-        let index = assessment.alpha_coupled.or(assessment.alpha);
+        let index = assessment.alpha_port.or(assessment.alpha_coupled).or(assessment.alpha);
         let (verdict, reason) = match certify(scene) {
             Ok(_) => (Verdict::Safe, certified(index, assessment.delta)),
             Err(rejection @ Rejection::Undecided { .. }) => {

@@ -4,12 +4,14 @@
 //! A case is a question about one loop. Common methods answer it, and so do the certificate and an
 //! exact reference; the loop is then run, in simulation and with the emulated board as its servo.
 
+pub mod between_ends;
 mod case;
 pub mod converters;
 pub mod grid;
 pub mod integration;
 pub mod loaded;
 pub mod loop_run;
+pub mod mean_delay;
 pub mod method_result;
 pub mod missed;
 pub mod motion;
@@ -19,6 +21,7 @@ pub mod report;
 pub mod roots;
 pub mod rules;
 pub mod setting;
+pub mod varying_hand;
 pub mod walls;
 pub mod zigzag;
 
@@ -47,6 +50,9 @@ cases! {
     "encoder", "the paper's wall behind an encoder", converters::encoder;
     "zigzag", "a wall with nearly the friction that it needs", zigzag::zigzag;
     "missed-ticks", "a spring near its limit, ticks missed", missed::missed_ticks;
+    "mean-delay", "a spring half a period late, behind a current loop", mean_delay::mean_delay;
+    "between-ends", "a wall computed ahead and written 5 us after its count", between_ends::between_ends;
+    "varying-hand", "a resonance behind a current loop, just past its limit", varying_hand::varying_hand;
 }
 
 impl Case {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{FormatError, FormatProblem, FormatServo};
 use crate::device::{Hand, HandSetpoint, Motion, SimulatedEncoder};
-use crate::simulation::held_device::HeldDevice;
+use crate::simulation::held_device::{DeviceState, HeldDevice};
 
 /// The limit cycle of a device that is pressed against a wall, or released in free mode.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -46,7 +46,7 @@ pub fn at_rest(
 ) -> Result<LimitCycle, FormatError> {
     let encoder = with_encoder.then(|| SimulatedEncoder::new(problem.transducers.counts_per_turn));
     let scene = &problem.scene;
-    let device = HeldDevice::new(scene.device, Hand::default(), scene.timing.period)?;
+    let device = HeldDevice::of(scene, Hand::default())?;
     let limit = scene.torque_limit.unwrap_or(problem.transducers.full_scale_torque);
     let push = if has_spring(&scene.environment) { PRELOAD.min(0.5 * limit) } else { 0.0 };
     let window = window(problem, &device, push)?;
@@ -54,7 +54,8 @@ pub fn at_rest(
     for start in STARTS {
         let servo = problem.servo(arithmetic)?;
         let motion = Motion { position: start, velocity: 0.0 };
-        let mut settling = Settling { device: &device, servo, encoder, push, motion };
+        let state = device.at(motion);
+        let mut settling = Settling { device: &device, servo, encoder, push, state };
         let left = settling.settle(ticks(window, scene.timing.period))?;
         largest = LimitCycle {
             torque: largest.torque.max(left.torque),
@@ -73,7 +74,8 @@ fn window(problem: &FormatProblem, device: &HeldDevice, push: f64) -> Result<f64
         let ticks = ticks(4.0 * window, problem.scene.timing.period);
         let servo = problem.servo(Arithmetic::F64)?;
         let motion = Motion { position: STARTS[0], velocity: 0.0 };
-        let mut settling = Settling { device, servo, encoder: None, push, motion };
+        let state = device.at(motion);
+        let mut settling = Settling { device, servo, encoder: None, push, state };
         let (first, second) = (settling.window(ticks)?, settling.window(ticks)?);
         if second.torque <= first.torque / 16.0 {
             return Ok(window);
@@ -105,7 +107,7 @@ struct Settling<'a> {
     servo: FormatServo,
     encoder: Option<SimulatedEncoder>,
     push: f64,
-    motion: Motion,
+    state: DeviceState,
 }
 
 impl Settling<'_> {
@@ -125,15 +127,14 @@ impl Settling<'_> {
     fn window(&mut self, ticks: usize) -> Result<LimitCycle, FormatError> {
         let (mut torques, mut angles) = (Span::EMPTY, Span::EMPTY);
         for _ in 0..ticks {
-            let angle = self.motion.position;
+            let angle = self.state.measured();
             let torque = match &self.encoder {
                 Some(encoder) => self.servo.tick(encoder.read(angle)).0,
                 None => self.servo.tick_at(angle)?,
             };
             torques.add(torque);
-            angles.add(angle);
-            self.motion =
-                self.device.step(self.motion, self.push - torque, HandSetpoint::default()).0;
+            angles.add(self.state.motion().position);
+            self.device.step(&mut self.state, self.push - torque, HandSetpoint::default());
         }
         Ok(LimitCycle { torque: torques.length(), angle: angles.length() })
     }

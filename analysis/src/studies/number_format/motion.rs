@@ -32,7 +32,7 @@ impl Motion {
     ) -> Result<Self, FormatError> {
         let FormatProblem { scene, transducers, .. } = *problem;
         let period = scene.timing.period;
-        let mut device = SimulatedDevice::new(scene.device, trajectory, period, &transducers)?;
+        let mut device = SimulatedDevice::new(&scene, trajectory, &transducers)?;
         let certified = scene.certify().map_err(|r| FormatError::Refused(Box::new(r)))?;
         let mut servo = controller::<_, f64>(&certified, &transducers)?;
         let ticks = (seconds / period).ceil() as usize;

@@ -36,7 +36,7 @@ pub enum Part {
 const TICK: (&str, &str) = ("<firmware::servo::prepared_servo::PreparedServo<", "::tick");
 
 /// How the functions of a part are called: how the name begins, and what else is in it.
-const NAMES: [(&str, &str, Part); 17] = [
+const NAMES: [(&str, &str, Part); 18] = [
     ("<firmware::energy::Injector<", "", Part::Injection),
     ("<firmware::environment::velocity::Difference<", "", Part::Damper),
     ("<firmware::environment::free_mode::", "", Part::Canceller),
@@ -45,6 +45,7 @@ const NAMES: [(&str, &str, Part); 17] = [
     ("<firmware::environment::wall_law::Displaced<", "", Part::Face),
     ("<", "::positive_part", Part::Face),
     ("<firmware::coupling::Solver<", "::pushing", Part::Face),
+    ("<firmware::coupling::Solver<", "::wall_or_face", Part::Face),
     ("<firmware::environment::delay_line::", "", Part::Delay),
     ("<firmware::environment::wall_law::WallLaw<", "", Part::Spring),
     ("<firmware::coupling::", "", Part::Coupling),

@@ -8,13 +8,13 @@ use std::thread;
 use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
 use analysis::program::Program;
-use analysis::toolchain::{Board, NumberFormat, Tools, prepare};
+use analysis::toolchain::{Board as BoardName, NumberFormat, Tools, prepare};
 use firmware::dac::DacCode;
 use firmware::wire::message::{
     LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
 };
 use firmware::wire::{CHECKSUM, Decoder, encode, largest_frame};
-use virtual_board::board::Event;
+use virtual_board::board::{Board, Event};
 use virtual_board::chip::Chip;
 use virtual_board::device::{Device, FixedDevice};
 use virtual_board::machine::Machine;
@@ -55,7 +55,7 @@ pub fn program(chip: &'static Chip, name: &'static str) -> &'static PathBuf {
 pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
     let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
-    let board = Board::find(chip.name).unwrap();
+    let board = BoardName::find(chip.name).unwrap();
     let built = toolchain.build_for(board, names, NumberFormat::F32);
     built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }
@@ -130,9 +130,28 @@ impl Bench {
         self.run_for(due - board.now);
     }
 
+    /// Turns the encoder by some counts, and runs to where the code for that is written and waits for its
+    /// trigger, in the servo's interrupt.
+    pub fn run_to_waiting_code(&mut self, turn: i32) {
+        self.pins().turns.push_back(turn);
+        self.run_to_update();
+        let waits = |board: &Board| board.dac.output().is_some_and(|code| code != board.dac.held());
+        while !waits(self.machine.board()) {
+            self.run_for(1);
+        }
+    }
+
     /// What happened at the pins so far, with the time.
     pub fn events(&self) -> &[(u64, Event)] {
         self.machine.board().events.as_deref().unwrap()
+    }
+
+    /// Codes that were put out after a time, each where it differs from the one before.
+    pub fn torques_after(&self, from: u64) -> impl Iterator<Item = u16> {
+        self.events().iter().filter_map(move |&(at, event)| match event {
+            Event::Torque(code) if at > from => code,
+            _ => None,
+        })
     }
 
     /// When the amplifier's line was first not high from a time on; none where it still is.

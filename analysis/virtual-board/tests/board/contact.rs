@@ -38,8 +38,7 @@ impl Spun {
         let trajectory =
             HandTrajectory::push_and_let_go().repeated_until(60.0 * (minutes + 1) as f64);
         let (scene, transducers) = (&program.scene, &program.transducers);
-        let period = scene.timing.period;
-        let device = SimulatedDevice::new(scene.device, trajectory, period, transducers).unwrap();
+        let device = SimulatedDevice::new(scene, trajectory, transducers).unwrap();
         Self { hand: HandHeldDevice::with(device), sample: 0 }
     }
 }

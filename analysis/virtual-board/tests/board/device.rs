@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use analysis::lockstep::{PlantIo, SimulatedDevice};
+use analysis::lockstep::PlantIo;
 use analysis::program::Program;
 use virtual_board::device::Device;
 
@@ -58,7 +58,7 @@ impl Device for Pins {
 
 /// A simulated device in a hand that follows its script once the amplifier is on.
 pub struct HandHeldDevice {
-    device: SimulatedDevice,
+    device: Box<dyn PlantIo + Send>,
     /// The encoder's position in counts.
     count: i32,
     begun: bool,
@@ -71,8 +71,8 @@ impl HandHeldDevice {
     }
 
     /// A simulated device at rest at zero.
-    pub fn with(device: SimulatedDevice) -> Self {
-        Self { device, count: 0, begun: false }
+    pub fn with(device: impl PlantIo + Send + 'static) -> Self {
+        Self { device: Box::new(device), count: 0, begun: false }
     }
 }
 

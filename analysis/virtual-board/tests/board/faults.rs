@@ -24,6 +24,9 @@ const TIMEOUT: f64 = 8.25;
 /// Periods for which interrupts are masked.
 const MASKED: u64 = 3;
 
+/// Instructions from an update to after the count is read and before a code is written.
+const BEFORE_THE_CODE: u64 = 45;
+
 /// A way to provoke a fault.
 struct Case {
     fault: &'static str,
@@ -78,6 +81,60 @@ const CASES: &[Case] = &[
         },
         resets: false,
         expected: None,
+    },
+    Case {
+        fault: "late-tick",
+        cause: "a torque has a phase, and its code is written half a period behind it",
+        program: "undelayed_wall",
+        bound: 0.75,
+        provoke: |bench| {
+            bench.run_to_update();
+            let update = bench.machine.board().now;
+            bench.run_for(BEFORE_THE_CODE);
+            bench.machine.board_mut().now += bench.period() / 2;
+            update
+        },
+        resets: false,
+        expected: None,
+    },
+    Case {
+        fault: "late-tick",
+        cause: "a torque has a phase, and interrupts are masked from half a period before its count to \
+                3 microseconds behind",
+        program: "undelayed_wall",
+        bound: 0.75,
+        provoke: |bench| {
+            let period = bench.period();
+            bench.run_to_update();
+            bench.run_for(period / 2);
+            hold_up(bench, period / 2 + 3 * period / 1000, Masks::All)
+        },
+        resets: false,
+        expected: None,
+    },
+    Case {
+        fault: "missed-tick",
+        cause: "a torque has a phase, and all interrupts are masked for three periods",
+        program: "undelayed_wall",
+        bound: MASKED as f64 + 1.0,
+        provoke: |bench| {
+            let instructions = MASKED * bench.period();
+            hold_up(bench, instructions, Masks::All)
+        },
+        resets: false,
+        expected: Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
+    },
+    Case {
+        fault: "panic",
+        cause: "a torque has a phase, and the core is sent into a panic while its code waits for that",
+        program: "undelayed_wall",
+        bound: 1.0,
+        provoke: |bench| {
+            bench.run_to_waiting_code(40);
+            panics(bench)
+        },
+        resets: true,
+        expected: Some(Fault::Panic { line: 12, column: 34 }),
     },
     Case {
         fault: "not-a-number",
@@ -180,20 +237,7 @@ const CASES: &[Case] = &[
         cause: "the core is sent into a panic of line 12, column 34",
         program: "damper_wall",
         bound: 1.0,
-        provoke: |bench| {
-            // The place in the source that a panic is told, as the compiler lays it out: a file's
-            // name, line and column.
-            let place = 0x2000_0000 + bench.machine.board().chip().ram - 16;
-            let (panic, _) = bench.symbol("9panicking5panic");
-            let core = bench.machine.core_mut();
-            let words = [0_u32, 0, 12, 34].map(u32::to_le_bytes).concat();
-            assert!(core.set_memory(place, &words));
-            for register in [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2] {
-                core.set_register(register, place);
-            }
-            core.set_register(RegisterARM::PC, panic | 1);
-            bench.machine.board().now
-        },
+        provoke: panics,
         resets: true,
         expected: Some(Fault::Panic { line: 12, column: 34 }),
     },
@@ -225,6 +269,22 @@ fn breaks_in_a_tick(bench: &mut Bench, register: Register) -> u64 {
     let board = bench.machine.board_mut();
     board.broken = Some(register.address(board.chip()));
     board.now
+}
+
+/// Sends the core into a panic of line 12, column 34. Gives when.
+fn panics(bench: &mut Bench) -> u64 {
+    // The place in the source that a panic is told, as the compiler lays it out: a file's name, line and
+    // column.
+    let place = 0x2000_0000 + bench.machine.board().chip().ram - 16;
+    let (panic, _) = bench.symbol("9panicking5panic");
+    let core = bench.machine.core_mut();
+    let words = [0_u32, 0, 12, 34].map(u32::to_le_bytes).concat();
+    assert!(core.set_memory(place, &words));
+    for register in [RegisterARM::R0, RegisterARM::R1, RegisterARM::R2] {
+        core.set_register(register, place);
+    }
+    core.set_register(RegisterARM::PC, panic | 1);
+    bench.machine.board().now
 }
 
 /// Where the servo has the angle of a count, as a number in single precision.

@@ -2,6 +2,7 @@
 //! renders, and stops when it must.
 
 mod assembly;
+mod at_rest;
 mod bench;
 mod contact;
 mod corpus;

@@ -88,14 +88,7 @@ fn check_stopped(bench: &mut Bench, chip: &Chip, before: u16, from: u64) -> Faul
     bench.run(2);
     let status = bench.status();
     assert_eq!(status.state, State::Faulted, "{}", chip.name);
-    let torques: Vec<_> = bench
-        .events()
-        .iter()
-        .filter_map(|&(at, event)| match event {
-            Event::Torque(code) if at > from => code,
-            _ => None,
-        })
-        .collect();
+    let torques: Vec<_> = bench.torques_after(from).collect();
     assert_eq!(torques, [MID_SCALE], "{}: after {before}", chip.name);
     let off = bench.amplifier_off(from).expect("the amplifier is off") - from;
     assert!(off < bench.period() / 20, "{}: off after {off} instructions", chip.name);
@@ -103,6 +96,28 @@ fn check_stopped(bench: &mut Bench, chip: &Chip, before: u16, from: u64) -> Faul
     bench.run(20);
     assert_eq!(bench.arm(), Outcome::Done, "{}", chip.name);
     fault
+}
+
+/// The program ends between a code and its phase: the code is not put out in place of mid-scale, also not
+/// for the moment in which the DAC loses its trigger.
+#[test]
+fn a_code_that_waits_for_its_phase_when_the_program_ends_is_never_at_the_motor() {
+    on_both(|chip| {
+        let mut bench = pushing(chip);
+        let (_, before) = codes(&bench);
+        bench.run_to_waiting_code(STEP);
+        let (held, output) = codes(&bench);
+        assert_eq!(output, before, "{}", chip.name);
+        let ended = bench.machine.board().now;
+        let (panic, _) = bench.symbol("9panicking5panic");
+        let core = bench.machine.core_mut();
+        core.set_register(RegisterARM::PRIMASK, 1);
+        core.set_register(RegisterARM::PC, panic | 1);
+        bench.run_for(bench.period() / 2);
+        let torques: Vec<_> = bench.torques_after(ended).collect();
+        assert_eq!(torques, [MID_SCALE], "{}: {before}, then {held}", chip.name);
+        assert!(bench.amplifier_off(ended).is_some(), "{}", chip.name);
+    });
 }
 
 /// The core waits between count and code, as for a memory that does not answer.

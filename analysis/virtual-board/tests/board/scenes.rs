@@ -78,7 +78,8 @@ fn compare<E, M>(
     bench.run(SAMPLES + 2);
     let samples = &bench.pins().samples[armed..];
     let transducers = &Transducers { counter: width(chip), ..*transducers };
-    let codes = with_the_same_cycle::<E, M>(scene, transducers, samples);
+    let ticks = &samples[..SAMPLES as usize];
+    let codes = with_the_same_cycle::<E, M>(scene, transducers, ticks);
     let at = |tick: usize| (samples[tick].count, samples[tick + late].code.unwrap());
     for (tick, &code) in codes.iter().enumerate() {
         assert_eq!(at(tick).1, code, "{}, {name}, tick {tick}: {:?}", chip.name, at(tick));
@@ -95,7 +96,7 @@ fn compare<E, M>(
 }
 
 /// The codes of the same cycle on the host, from the tick on in which it is armed.
-fn with_the_same_cycle<E, M>(
+pub fn with_the_same_cycle<E, M>(
     scene: Scene<E>,
     transducers: &Transducers,
     samples: &[Sample],
@@ -111,7 +112,7 @@ where
         options: Options::DEFAULT,
     });
     host.arm();
-    samples[..SAMPLES as usize].iter().map(|sample| host.tick(sample.count).0).collect()
+    samples.iter().map(|sample| host.tick(sample.count).0).collect()
 }
 
 /// Of the counter of a chip's encoder.

@@ -35,7 +35,9 @@ use super::{
 /// simulation has it.
 pub type Mode = crate::servo::Simultaneous;
 
-/// A program's places in memory, which have its scene's types.
+/// A program's places in memory, which have its scene's types. In this order: the interrupt's state comes
+/// first, where a load of floating point, which reaches 1020 bytes, needs no address computed for it.
+#[repr(C)]
 pub struct Statics<E: Tunable<N>, N: Number, M: OutputMode> {
     /// Where the servo's interrupt finds its state.
     pub isr: IsrCell<ServoIsr<Registers, E, N, M>>,

@@ -17,8 +17,8 @@ const _: () = assert!(
     "this board's DAC saturates within the codes of full scale"
 );
 
-/// TIM7's update among the triggers of the DAC, in both families (RM0440, table of the DAC's
-/// interconnections; RM0090, table of its external triggers).
+/// TIM7's update among the triggers of the DAC, TSEL of DAC_CR, in both families (RM0440 and RM0090, tables
+/// of the DAC's triggers; `DAC_TRIGGER_T7_TRGO` in ST's drivers).
 const PHASE_TRIGGER: u8 = 2;
 
 /// A channel of the DAC, written to by one register access.
@@ -59,9 +59,8 @@ impl DacChannel {
 
     /// From now on a timer outputs the last written code: where torques are latched, each update of the
     /// pacing timer, so that a code written anywhere within a period appears exactly at its end, and
-    /// where they have a phase, each update of the timer behind it. TSEL and TEN of the control register
-    /// (RM0440, 22.7.1; RM0090, 14.5.1); the code in DOR follows a trigger by three clocks of the bus at
-    /// most (RM0440, 22.4.6; RM0090, 14.3.5).
+    /// where they have a phase, each update of the timer behind it. TSEL and TEN of DAC_CR; the code in
+    /// DAC_DOR follows a trigger by a few clocks of the bus.
     pub fn latch(self, timing: OutputTiming) {
         let trigger = match timing {
             OutputTiming::Simultaneous => return,
@@ -79,8 +78,10 @@ impl DacChannel {
         self.registers.dor(self.channel).read().dor()
     }
 
-    /// Zero torque at once, without the timer.
+    /// Zero torque at once, without the timer. Mid-scale is written over the code that waits for the trigger
+    /// before the trigger is taken away: without one, what was written last is put out.
     pub fn stop(self) {
+        self.write(DacCode::MID_SCALE);
         self.registers.cr().modify(|w| w.set_ten(self.channel, false));
         self.write(DacCode::MID_SCALE);
     }

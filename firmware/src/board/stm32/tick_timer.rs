@@ -130,8 +130,7 @@ impl TickTimer {
             rcc::enable_and_reset::<peripherals::TIM7>();
             set_up(PHASE_TIMER, period);
             let behind = period.counts - period.counts_in(phase);
-            // CNT (RM0440, 32.4.6; RM0090, 20.4.6): it overflows that many counts after the start, and
-            // then once a period.
+            // TIM7_CNT: it overflows that many counts after the start, and then once a period.
             PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
         }
         CLOCK.psc().write_value(0);
@@ -183,7 +182,8 @@ impl TickTimer {
 
 /// Gives a basic timer a period and makes its update its trigger output; it stands.
 ///
-/// The registers are those of RM0440, 32.4, and RM0090, 20.4.
+/// The registers TIMx_PSC, ARR, CR1, CR2, EGR and SR of the basic timers are the same in RM0440 and RM0090.
+/// The update that EGR makes here is a trigger, too: the DAC must not listen yet.
 fn set_up(timer: pac::timer::TimBasic, period: Period) {
     timer.psc().write_value((period.prescale - 1) as u16);
     timer.arr().write(|w| w.set_arr((period.counts - 1) as u16));

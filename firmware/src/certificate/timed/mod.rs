@@ -14,6 +14,7 @@ use super::rules::{Rule, paper_limit};
 use super::validity::first_invalid_number;
 use crate::coupling::Coupling;
 use crate::environment::{Environment, EnvironmentModel, Memory};
+use crate::latency::TimeRange;
 use crate::number::Format;
 use crate::output_timing::{OutputMode, OutputTiming, READ_WITHIN, SHORTEST_PHASE, longest_phase};
 use crate::passivity::interval::Interval;
@@ -111,6 +112,13 @@ pub enum TimingError {
         /// That of the board in s.
         board: f64,
     },
+    /// The scene's output delay is known in part only, and a board puts torques out at one time.
+    DelayRange {
+        /// The shortest delay in s.
+        least: f64,
+        /// The longest in s.
+        most: f64,
+    },
     /// No board puts torques out so soon after the beginning of a period, or so late.
     PhaseRange {
         /// The mode's time from there in s.
@@ -160,6 +168,14 @@ impl TimingError {
                 t.push(" s, and this board puts its torques out ");
                 t.push_number(*board);
                 t.push(" s after the beginning of a period");
+            }
+            Self::DelayRange { least, most } => {
+                t.push("a board puts its torques out at one time in the period, and the scene's output \
+                        delay is between ");
+                t.push_number(*least);
+                t.push(" s and ");
+                t.push_number(*most);
+                t.push(" s: give it the one that the board has");
             }
             Self::PhaseRange { phase, shortest, longest } => {
                 t.push("this board would put its torques out ");
@@ -327,6 +343,11 @@ pub(super) const fn agree(
     }
     if !is_at_its_phase(timing, scene) {
         let board = board_delay(timing);
+        if let TimeRange { least, most } = scene.latency.output_delay
+            && least != most
+        {
+            return Err(TimingError::DelayRange { least, most });
+        }
         return Err(TimingError::Phase { scene: scene.latency.output_delay.middle(), board });
     }
     if has_latency(scene) && !matches!(scene.coupling, Coupling::Matched) {

@@ -2,6 +2,7 @@
 
 use super::knots::{Knots, Outline};
 use super::law::ProfileLaw;
+use super::scale::Scale;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
 use super::sum::{Ends, Layout, sampled};
@@ -60,6 +61,11 @@ impl AnyProfile {
     ) -> Self {
         let Layout { torque, count, centre, ends } = layout;
         Self { units, outline, torque, count, centre, ends, damping, delay }
+    }
+
+    /// The numbers by which its law multiplies.
+    pub(crate) const fn scale(&self) -> Scale {
+        Scale::of(&self.layout(), &self.outline)
     }
 
     /// What the certificate asks of its table.

@@ -2,7 +2,13 @@
 //! asks of it.
 
 use super::sum::Layout;
-pub use crate::number::KNOT_FULL_SCALE as FULL_SCALE;
+
+/// The largest unit of a knot: it stands for the profile's torque. The step from one knot to the next
+/// fits 16 bits, too.
+pub const FULL_SCALE: i16 = (1 << 14) - 1;
+
+/// Parts of a cell, as a power of two, in which places in a table are counted.
+pub(super) const PART_BITS: u32 = 14;
 
 /// Knots of a torque profile in parts of its torque, [`FULL_SCALE`] for all of it, over cells of equal
 /// width. After the last knot comes the first one again.
@@ -12,6 +18,7 @@ pub use crate::number::KNOT_FULL_SCALE as FULL_SCALE;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knots<const KNOTS: usize> {
     units: [i16; KNOTS],
+    cells: [Cell; KNOTS],
     outline: Outline,
     layout: Layout,
 }
@@ -39,7 +46,18 @@ pub struct Outline {
 impl<const KNOTS: usize> Knots<KNOTS> {
     pub(super) const fn new(units: [i16; KNOTS], wraps: bool, layout: Layout) -> Self {
         const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
-        Self { units, outline: Outline::of(&units, wraps), layout }
+        let mut cells = [Cell::between(0, 0); KNOTS];
+        let mut i = 0;
+        while i < KNOTS {
+            cells[i] = Cell::between(units[i], units[(i + 1) % KNOTS]);
+            i += 1;
+        }
+        Self { units, cells, outline: Outline::of(&units, wraps), layout }
+    }
+
+    /// The cells from each knot to the next.
+    pub(super) const fn cells(&self) -> &[Cell; KNOTS] {
+        &self.cells
     }
 
     /// Where they are.
@@ -79,29 +97,52 @@ impl Outline {
     }
 }
 
-/// Where a law reads the two knots of a cell.
-pub trait KnotTable: Copy + core::fmt::Debug {
-    /// Knots at the beginning and at the end of a cell; any number is that of a cell.
-    fn around(self, cell: i32) -> (i32, i32);
+/// The straight line from one knot to the next, so that a tick reads both of its numbers at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Units at its beginning, in parts.
+    from: i32,
+    /// Units from there to its end.
+    rise: i32,
 }
 
-impl<const KNOTS: usize> KnotTable for &'static [i16; KNOTS] {
+impl Cell {
+    const fn between(from: i16, to: i16) -> Self {
+        let (from, to) = (from as i32, to as i32);
+        Self { from: from << PART_BITS, rise: to - from }
+    }
+
+    /// Units at a place in the cell, both in parts.
     #[inline(always)]
-    fn around(self, cell: i32) -> (i32, i32) {
-        let from = cell.cast_unsigned() as usize;
-        let (from, to) = (from & (KNOTS - 1), from.wrapping_add(1) & (KNOTS - 1));
-        // Masked by the length less one, a power of two: the compiler sees that both are there.
-        (i32::from(self[from]), i32::from(self[to]))
+    const fn at(self, place: i32) -> i32 {
+        let part = place & ((1 << PART_BITS) - 1);
+        // At most 2^28 and 2^29: no overflow.
+        self.from.wrapping_add(self.rise.wrapping_mul(part))
+    }
+}
+
+/// Where a law reads its table.
+pub trait KnotTable: Copy + core::fmt::Debug {
+    /// Units in parts at a place in parts of a cell from the first knot; any number is that of a place.
+    fn units_at(self, place: i32) -> i32;
+}
+
+impl<const KNOTS: usize> KnotTable for &'static [Cell; KNOTS] {
+    #[inline(always)]
+    fn units_at(self, place: i32) -> i32 {
+        let cell = (place >> PART_BITS).cast_unsigned() as usize;
+        // Masked by the length less one, a power of two: the compiler sees that it is there.
+        self[cell & (KNOTS - 1)].at(place)
     }
 }
 
 /// The knots of a profile that is data.
 impl KnotTable for &'static [i16] {
     #[inline(always)]
-    fn around(self, cell: i32) -> (i32, i32) {
+    fn units_at(self, place: i32) -> i32 {
         let mask = self.len().wrapping_sub(1);
-        let from = cell.cast_unsigned() as usize;
-        let knot = |i: usize| self.get(i & mask).copied().map_or(0, i32::from);
-        (knot(from), knot(from.wrapping_add(1)))
+        let from = (place >> PART_BITS).cast_unsigned() as usize;
+        let knot = |i: usize| self.get(i & mask).copied().unwrap_or(0);
+        Cell::between(knot(from), knot(from.wrapping_add(1))).at(place)
     }
 }

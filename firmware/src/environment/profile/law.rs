@@ -1,6 +1,7 @@
 //! The law of a torque profile: one look into its table a tick.
 
-use super::knots::{FULL_SCALE, KnotTable, Outline};
+use super::knots::{KnotTable, Outline};
+use super::scale::Scale;
 use super::sum::{Ends, Layout};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
@@ -13,25 +14,35 @@ use crate::number::Number;
 /// The law of a torque profile.
 #[derive(Clone, Debug)]
 pub struct ProfileLaw<N: Number, K, V, D> {
+    /// Parts of a cell in a rad.
+    parts: N::Coefficient,
+    /// The place of the lower end in parts from the angle of zero.
+    from: i32,
+    /// Parts between the ends; all that there are where there are none.
+    span: u32,
+    /// The place of the first knot.
+    origin: i32,
     knots: K,
-    /// Middle of the first cell.
-    origin: N,
-    cells: N::Coefficient,
+    /// Torque of a part of a unit.
     torque: N::Coefficient,
-    stops: Option<Stops<N>>,
-    turn: Option<Turn<N>>,
+    /// The lower end, and the upper one.
+    ends: [End<N>; 2],
+    /// Stiffness beyond them.
+    stiffness: N::Coefficient,
+    turn: Turn<N>,
     velocity: V,
     delay: D,
     /// The steepest that it rises in N m/rad.
     steepest: f64,
 }
 
-/// The ends of a range.
+/// An end of the range.
 #[derive(Clone, Copy, Debug)]
-struct Stops<N: Number> {
-    from: N,
-    to: N,
-    stiffness: N::Coefficient,
+struct End<N> {
+    /// Its angle.
+    angle: N,
+    /// The torque there.
+    torque: N,
 }
 
 impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, V, D> {
@@ -42,53 +53,66 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         velocity: V,
         delay: D,
     ) -> Result<Self, BuildError> {
-        let knots_per_rad = layout.knots_per_rad(outline.knots);
-        let rise = layout.torque * f64::from(outline.rise) / f64::from(FULL_SCALE) * knots_per_rad;
-        let stops = match layout.ends {
-            None => None,
-            Some(Ends { from, to, stiffness }) => Some(Stops {
-                from: BuildError::number("lower end stop", from)?,
-                to: BuildError::number("upper end stop", to)?,
-                stiffness: BuildError::coefficient::<N>("stiffness of the end stops", stiffness)?,
-            }),
-        };
-        let turn = match layout.ends {
-            None => Some(Turn::new()?),
-            Some(_) => None,
-        };
-        let out_of_range = |reason| BuildError::Unrepresentable { name: "profile torque", reason };
-        Ok(Self {
+        let scale = Scale::of(layout, outline);
+        let unrepresentable = |name| move |reason| BuildError::Unrepresentable { name, reason };
+        let parts =
+            N::parts_scale(scale.parts_per_rad).map_err(unrepresentable("knots per rad"))?;
+        let torque =
+            N::part_scale(scale.torque_of_part).map_err(unrepresentable("profile torque"))?;
+        let centre: N = BuildError::number("profile centre", layout.centre)?;
+        let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
+        let mut law = Self {
+            parts,
+            from: i32::MIN,
+            span: u32::MAX,
+            origin: centre.parts(parts),
             knots,
-            origin: BuildError::number("profile centre", layout.centre + 0.5 / knots_per_rad)?,
-            cells: BuildError::coefficient::<N>("knots per rad", knots_per_rad)?,
-            torque: N::knot_scale(layout.torque).map_err(out_of_range)?,
-            stops,
-            turn,
+            torque,
+            ends: [End { angle: N::ZERO, torque: N::ZERO }; 2],
+            stiffness: BuildError::coefficient::<N>("stiffness of the end stops", stiffness)?,
+            turn: Turn::none(),
             velocity,
             delay,
-            steepest: layout
-                .ends
-                .map_or(rise, |ends| rise.max(ends.stiffness))
-                .max(f64::MIN_POSITIVE),
-        })
+            steepest: scale.steepest_rise(outline).max(stiffness).max(f64::MIN_POSITIVE),
+        };
+        match &layout.ends {
+            Some(ends) => law.limit(ends)?,
+            None => law.turn = Turn::endless()?,
+        }
+        Ok(law)
+    }
+
+    /// Gives it ends.
+    fn limit(&mut self, ends: &Ends) -> Result<(), BuildError> {
+        let from: N = BuildError::number("lower end stop", ends.from)?;
+        let to: N = BuildError::number("upper end stop", ends.to)?;
+        self.from = from.parts(self.parts);
+        self.span = to.parts(self.parts).wrapping_sub(self.from).cast_unsigned();
+        self.ends = [from, to].map(|angle| {
+            let torque = self.inside(angle.parts(self.parts));
+            End { angle, torque }
+        });
+        Ok(())
     }
 
     /// The torque in N m with the environment at `x` (rad), undelayed.
     #[inline(always)]
     fn torque(&self, x: N) -> N {
-        let torque = match &self.stops {
-            None => self.inside(x),
-            Some(stops) => {
-                let within = x.larger(stops.from).smaller(stops.to);
-                self.inside(within).plus(x.minus(within).times(stops.stiffness))
-            }
+        let place = x.parts(self.parts);
+        let torque = if place.wrapping_sub(self.from).cast_unsigned() <= self.span {
+            self.inside(place)
+        } else {
+            // The spring beyond the nearer end, from the torque there.
+            let [lower, upper] = &self.ends;
+            let end = if place < self.from { lower } else { upper };
+            x.minus(end.angle).times(self.stiffness).plus(end.torque)
         };
         self.velocity.add_to(torque, x)
     }
 
     #[inline(always)]
-    fn inside(&self, x: N) -> N {
-        x.minus(self.origin).between_knots(self.cells, |cell| self.knots.around(cell), self.torque)
+    fn inside(&self, place: i32) -> N {
+        N::of_parts(self.knots.units_at(place.wrapping_sub(self.origin)), self.torque)
     }
 }
 
@@ -124,7 +148,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for Profil
 
     #[inline(always)]
     fn turn(&mut self) -> Option<&mut Turn<N>> {
-        self.turn.as_mut()
+        Some(&mut self.turn)
     }
 
     fn shift(&mut self, by: N) {

@@ -12,12 +12,13 @@
 mod any;
 mod knots;
 mod law;
+mod scale;
 mod shape;
 mod shape_error;
 mod sum;
 
 pub use any::AnyProfile;
-pub use knots::{FULL_SCALE, KnotTable, Knots, Outline};
+pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
 pub use law::ProfileLaw;
 pub use shape::Shape;
 pub use shape_error::ShapeError;
@@ -97,24 +98,24 @@ impl<const KNOTS: usize, const DELAY: usize> NamedParameters for DampedProfile<K
 }
 
 impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N> for Profile<KNOTS, DELAY> {
-    type Law = ProfileLaw<N, &'static [i16; KNOTS], NoDamping, FixedDelay<N, DELAY>>;
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], NoDamping, FixedDelay<N, DELAY>>;
 
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
-        let (knots, outline) = (self.knots.units(), self.knots.outline());
-        ProfileLaw::new(knots, &outline, &self.layout(), NoDamping, FixedDelay::at_rest())
+        let (cells, outline) = (self.knots.cells(), self.knots.outline());
+        ProfileLaw::new(cells, &outline, &self.layout(), NoDamping, FixedDelay::at_rest())
     }
 }
 
 impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N>
     for DampedProfile<KNOTS, DELAY>
 {
-    type Law = ProfileLaw<N, &'static [i16; KNOTS], Difference<N>, FixedDelay<N, DELAY>>;
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], Difference<N>, FixedDelay<N, DELAY>>;
 
     fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
         let Profile { knots, .. } = self.profile;
         let velocity = Difference::new(self.damping, context.period)?;
         let layout = self.profile.layout();
-        ProfileLaw::new(knots.units(), &knots.outline(), &layout, velocity, FixedDelay::at_rest())
+        ProfileLaw::new(knots.cells(), &knots.outline(), &layout, velocity, FixedDelay::at_rest())
     }
 }
 

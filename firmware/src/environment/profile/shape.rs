@@ -189,7 +189,7 @@ impl Shape {
                 [("pitch", pitch, true), ("amplitude", amplitude, true), UNUSED]
             }
             Self::EndStops { from, to, stiffness } => {
-                if !(from < to) {
+                if from.is_nan() || to.is_nan() || from >= to {
                     let bound = "below `to`";
                     return Err(ShapeError::Number { shape, name: "from", value: from, bound });
                 }

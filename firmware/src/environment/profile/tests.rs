@@ -68,7 +68,7 @@ fn end_stops_are_springs_beyond_the_range() {
     assert_eq!(profile.ends, Some(Ends { from: -2.0, to: 2.0, stiffness: 5.0 }));
     let any = profile.as_any();
     let at_end = torque::<f64>(&any, 2.0);
-    assert!((torque::<f64>(&any, 2.5) - at_end - 2.5).abs() < 1e-12);
+    assert!((torque::<f64>(&any, 2.5) - at_end - 2.5).abs() < 1e-4);
     assert!((torque::<f64>(&any, -2.5) + at_end + 2.5).abs() < 1e-4);
 }
 
@@ -178,7 +178,7 @@ fn the_steepest_rise_decides_where_the_torque_is_a_sample_late() {
         certify(&scene(profile.as_data())).is_ok()
     };
     assert!(late(0.999 * limit / 3.0) && !late(1.001 * limit / 3.0));
-    // Without a coupling and a sample late, L/2 + M again (equation 45).
+    // Without a coupling and a sample late, L/2 + M again (equation 48).
     let rigid = |torque: f64| {
         let profile = Profile::<64, 1> { torque, ..Profile::of(&DETENTS) };
         certify(&Scene { coupling: Coupling::Rigid, ..scene(profile.as_data()) }).is_ok()

@@ -125,11 +125,37 @@ impl LagIntervals {
     }
 }
 
+/// The largest `e (1 - e)` of delays in a range, in periods, with `e` what is left of a delay by its whole
+/// samples: no response that is a mixture of them has more ripple `D / T^2` (equation 45).
+pub const fn ripple_of_mixture(least: Interval, most: Interval) -> Interval {
+    let quarter = Interval::ONE.half().half();
+    // From one half to the next it falls and rises: its largest is at an end, or in a half.
+    let halves = (most.hi() + 0.5) as i32 as f64 - 0.5;
+    if halves >= least.lo() {
+        return quarter;
+    }
+    let (first, last) = (lateness(least), lateness(most));
+    let (lo, hi) = (first.lo().max(last.lo()), first.hi().max(last.hi()));
+    Interval::new(lo.max(0.0), hi.max(0.0))
+}
+
+/// `e (1 - e)` of one delay.
+const fn lateness(delay: Interval) -> Interval {
+    let whole = delay.lo().max(0.0) as i32;
+    let part = delay.sub(Interval::exact(whole as f64));
+    part.mul(Interval::ONE.sub(part))
+}
+
 impl SampledResponse {
     /// `z^-whole g`, from torque to position, at this period in s.
     pub const fn transfer(&self, period: Interval) -> Transfer {
         let response = Transfer::new(self.bracket, self.lag);
         Transfer { scale: period, shift: -1 - self.whole, ones: -1, ..response }
+    }
+
+    /// The same with another ripple `D / T^2`, for a response without lags.
+    pub const fn with_ripple(self, ripple: Interval) -> Self {
+        Self { ripple: Series::constant(ripple), ..self }
     }
 
     /// `D / T^2` at `c = cos(theta)`.

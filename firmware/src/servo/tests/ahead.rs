@@ -6,8 +6,14 @@ use crate::servo::Delayed;
 /// In every format: each code that is computed ahead is the next one of the servo that computes in
 /// time, to the bit, and the first code of that one is mid-scale.
 macro_rules! ahead {
-    ($($environment:expr),* $(,)?) => {$({
-        let scene = Scene { torque_limit: Some(0.5), ..scene($environment) };
+    ($($environment:expr),* $(,)?) => {
+        ahead!(@ [$($environment),*], Coupling::Spring { stiffness: 44.0 }, Latency::NONE);
+    };
+    (@ [$($environment:expr),*], $coupling:expr, $latency:expr) => {$({
+        let (coupling, latency) = ($coupling, $latency);
+        let scene = Scene {
+            coupling, latency, torque_limit: Some(0.5), ..scene($environment)
+        };
         fn is_delayed<E: Delayed>(_: &Scene<E>) {}
         is_delayed(&scene);
         ahead!(@ scene, f32);
@@ -61,6 +67,23 @@ fn what_is_latched_is_what_would_have_been_computed_in_time() {
         rational,
         rational.as_data(),
     ];
+}
+
+/// The coupling that absorbs a lag remembers torques, which the servo ahead has one tick later.
+#[test]
+fn so_it_is_behind_the_matched_coupling() {
+    let damper = DamperWall::<1> { stiffness: 12.0, damping: 0.005 };
+    let latency = Latency::NONE.with_actuator_lag(4e-4);
+    ahead!(
+        @ [
+            Matched::<_, 0, 1> { environment: DelayedSpring::<1> { stiffness: 12.0 } },
+            Matched::<_, 0, 1> { environment: OneSided { face: 0.05, wall: damper } },
+            Matched::<_, 0, 1> { environment: FreeMode::<2> { residual: 0.015 } },
+            damper.as_data()
+        ],
+        Coupling::Matched,
+        latency
+    );
 }
 
 proptest! {

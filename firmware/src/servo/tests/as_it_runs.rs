@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::certificate::{LoopTransfers, QuantizationBound, Resolution};
+use crate::matched::MatchedCoupling;
 use crate::number::{Format, OutOfRange, Rounding};
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
 use crate::passivity::transfer::Transfer;
@@ -58,20 +59,17 @@ macro_rules! coarse {
             fn angle(count: i32, scale: f64) -> (Self, bool) {
                 (Self(f64::from(count) * scale), true)
             }
-            fn knot_scale(torque: f64) -> Result<f64, OutOfRange> {
-                Ok($format.knot_scale(torque))
+            fn parts_scale(parts_per_rad: f64) -> Result<f64, OutOfRange> {
+                Ok($format.parts_per_rad(parts_per_rad))
             }
-            fn between_knots(
-                self,
-                cells: f64,
-                around: impl FnOnce(i32) -> (i32, i32),
-                torque: f64,
-            ) -> Self {
-                let place = self.0 * cells;
-                let cell = place.round();
-                let (from, to) = around(cell as i32);
-                let (sum, rise) = (f64::from(from + to), f64::from(to - from));
-                Self((sum + 2.0 * rise * (place - cell)) * torque)
+            fn parts(self, scale: f64) -> i32 {
+                (self.0 * scale).round() as i32
+            }
+            fn part_scale(torque: f64) -> Result<f64, OutOfRange> {
+                Ok($format.torque_of_part(torque))
+            }
+            fn of_parts(parts: i32, scale: f64) -> Self {
+                Self(f64::from(parts) * scale)
             }
             fn code_scale(codes_per_torque: f64) -> Result<f64, OutOfRange> {
                 Ok(codes_per_torque)
@@ -243,5 +241,65 @@ fn an_encoder_moves_the_torque_by_as_much_as_the_certificate_says() {
         let steps = Resolution { encoder: Some(1e-4), ..Resolution::default() };
         let said = QuantizationBound::of(&scene, Format::F64, &steps).unwrap().encoder.unwrap();
         assert!((said - worst).abs() <= 1e-8 * said, "{said} {worst} {environment:?}");
+    }
+}
+
+/// Behind the coupling that absorbs delays of several samples and a lag.
+fn lagging_scenes() -> impl Iterator<Item = Scene> {
+    let delays = [0.0, 4e-4, 2.3e-3];
+    let lags = [0.0, 3e-4];
+    let latencies = delays
+        .into_iter()
+        .flat_map(move |delay| lags.map(|lag| Latency::delayed(delay).with_actuator_lag(lag)));
+    latencies.flat_map(|latency| {
+        let lagging =
+            move |environment| Scene { coupling: Coupling::Matched, latency, ..scene(environment) };
+        environments().map(lagging)
+    })
+}
+
+/// The coupling's memory rounds, too.
+#[test]
+fn so_does_rounding_behind_the_matched_coupling() {
+    let (mut judged, mut largest) = (0, 0.0_f64);
+    for scene in lagging_scenes() {
+        let finite = |format| QuantizationBound::of(&scene, format, &Resolution::default());
+        if finite(Format::F32).is_none() || finite(<FixedI32<U16>>::FORMAT).is_none() {
+            continue;
+        }
+        let found = [rounding::<FixedI32<U16>, AsFixed16>(&scene), rounding::<f32, AsF32>(&scene)];
+        for share in found {
+            assert!(share <= 1.0, "{share} {scene:?}");
+            largest = largest.max(share);
+        }
+        judged += 1;
+    }
+    assert!(judged > 50 && largest > 0.02, "{judged} {largest}");
+}
+
+#[test]
+fn so_does_an_encoder_behind_the_matched_coupling() {
+    for scene in lagging_scenes() {
+        let steps = Resolution { encoder: Some(1e-4), ..Resolution::default() };
+        let Some(said) = QuantizationBound::of(&scene, Format::F64, &steps) else { continue };
+        let response = response(&LoopTransfers::of(&scene).unwrap().controller);
+        let worst: f64 = response.iter().map(|h| h.abs() * 0.5e-4).sum();
+        let said = said.encoder.unwrap();
+        assert!(worst <= said * (1.0 + 1e-8) && worst > 0.9 * said, "{said} {worst} {scene:?}");
+    }
+}
+
+/// The most that the deflection can be, from the coupling's response itself.
+#[test]
+fn the_largest_deflection_is_that_of_a_torque_that_stays() {
+    for latency in [
+        Latency::delayed(2.3e-3).with_actuator_lag(3e-4),
+        Latency::delayed(1e-3),
+        Latency::NONE.with_actuator_lag(5e-3),
+    ] {
+        let coupling = MatchedCoupling::of(1e-3, 0.022, &latency, Format::F64).unwrap();
+        let total = latency.output_delay.most + latency.actuator_lag.most + 1e-3;
+        let found = coupling.largest_deflection();
+        assert!((found * 2.0 * 0.022 / total - 1.0).abs() < 1e-12, "{found} {latency:?}");
     }
 }

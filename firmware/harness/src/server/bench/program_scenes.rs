@@ -1,11 +1,15 @@
 //! The types of the scenes that have a program.
 
-use firmware::environment::{DamperWall, DelayedSpring, Environment, FreeMode, OneSided, Wall};
+use firmware::environment::{
+    DamperWall, DelayedSpring, Environment, FreeMode, Matched, OneSided, Wall,
+};
 use firmware::number::Number;
+use firmware::scene::Coupling;
 
 use super::{BenchJob, HostClosed, SceneSet};
 
-/// The types of the scenes that have a program, and a wall that also pulls.
+/// The types of the scenes that have a program, a wall that also pulls, and a one-sided wall without delay behind
+/// the matched coupling, with one lag and without.
 #[derive(Debug)]
 pub struct ProgramScenes;
 
@@ -13,6 +17,9 @@ impl SceneSet for ProgramScenes {
     fn ticks<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
         let plain = |wall: &Wall| wall.delay == 1 && wall.filter.is_none();
         let centred = |wall: &Wall| plain(wall) && !wall.one_sided && wall.face == 0.0;
+        if matches!(job.scene.coupling, Coupling::Matched) {
+            return behind_matched::<N>(job);
+        }
         match job.scene.environment {
             Environment::DelayedSpring(wall) if centred(&wall) => {
                 job.run::<_, N>(DelayedSpring::<1> { stiffness: wall.stiffness })
@@ -31,5 +38,25 @@ impl SceneSet for ProgramScenes {
             }
             _ => job.refuse(),
         }
+    }
+}
+
+fn behind_matched<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
+    let Environment::DamperWall(Wall {
+        stiffness,
+        damping,
+        face,
+        one_sided: true,
+        delay: 0,
+        filter: None,
+    }) = job.scene.environment
+    else {
+        return job.refuse();
+    };
+    let environment = OneSided { face, wall: DamperWall::<0> { stiffness, damping } };
+    if job.scene.latency.actuator_lag.is_zero() {
+        job.run::<_, N>(Matched::<_, 0, 0> { environment })
+    } else {
+        job.run::<_, N>(Matched::<_, 0, 1> { environment })
     }
 }

@@ -1,0 +1,45 @@
+//! What simulations, responses and curves take for a latency that is known in part: each time by the middle
+//! of its range, and no jitter. The certificate covers all of it.
+
+use firmware::scene::Latency;
+
+/// What is left out of a latency, in a few words; `None` where nothing is.
+pub fn left_out(latency: &Latency) -> Option<&'static str> {
+    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, actuator_response } =
+        latency;
+    let times = [output_delay, actuator_lag, sensor_lag, actuator_response];
+    let exact = times.into_iter().all(|time| time.is_exact());
+    match (exact, *output_jitter == 0.0) {
+        (true, true) => None,
+        (true, false) => Some("without jitter"),
+        (false, true) => Some("middle of each range of latency"),
+        (false, false) => Some("middle of each range of latency, without jitter"),
+    }
+}
+
+/// A title that says what is left out of the latency of one of the scenes.
+pub fn titled<'l>(title: &str, latencies: impl IntoIterator<Item = &'l Latency>) -> String {
+    // The longest says the most.
+    let words = latencies.into_iter().filter_map(left_out).max_by_key(|words| words.len());
+    words.map_or_else(|| title.to_owned(), |words| format!("{title} ({words})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::latency::TimeRange;
+
+    use super::*;
+
+    #[test]
+    fn a_title_says_what_is_left_out() {
+        let delayed = Latency::delayed(1e-5).with_actuator_lag(5e-5);
+        let jitters = Latency { output_jitter: 1e-6, ..delayed };
+        let known_in_part = Latency { sensor_lag: TimeRange::between(0.0, 1e-5), ..delayed };
+        assert_eq!(titled("wall", [&Latency::NONE, &delayed]), "wall");
+        assert_eq!(titled("wall", [&delayed, &jitters]), "wall (without jitter)");
+        let middle = "wall (middle of each range of latency)";
+        assert_eq!(titled("wall", [&known_in_part]), middle);
+        let both = Latency { output_jitter: 1e-6, ..known_in_part };
+        assert_eq!(left_out(&both), Some("middle of each range of latency, without jitter"));
+    }
+}

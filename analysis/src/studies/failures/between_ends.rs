@@ -1,0 +1,71 @@
+//! Certificates of two ends of a range, where the loop between is neither.
+//!
+//! A servo computes `F(k+1) = E (x(k) - V F(k))` ahead and writes it a few microseconds after the
+//! next count. The torque of its count is late behind its coupling, but not at the motor: neither the wall that is
+//! one sample late nor the one that is not, both behind the coupling, is that loop.
+
+use firmware::environment::{Coefficients, Environment, Rational};
+use firmware::scene::{Coupling, Latency, Scene};
+use firmware::servo::Transducers;
+
+use super::case::{CaseResult, FailureError};
+use super::method_result::MethodResult;
+use super::motion::Outcome;
+use super::setting::{PADDLE, PADDLES, PERIOD, coupled, loop_run, rigid, wall_of};
+use crate::simulation::{Experiment, Integration};
+
+/// Stiffness in N m/rad and damping in N m s/rad of the wall.
+const WALL: (f64, f64) = (22.0, 0.01);
+/// Time in s from a count to the torque that was computed of the one before.
+const WRITTEN: f64 = 5e-6;
+
+/// The wall that many samples late behind the standard coupling.
+fn end(delay: usize) -> Scene {
+    coupled(PADDLE, wall_of(WALL.0, WALL.1, delay))
+}
+
+/// The loop that runs: `H = E / (1 + V E / z)` without a coupling, written that late.
+pub fn between() -> Scene {
+    let Coupling::Spring { stiffness } = end(0).coupling else { unreachable!("a spring") };
+    let (stiff, lost) = (WALL.0 + WALL.1 / PERIOD, WALL.1 / PERIOD);
+    let polynomial = |values: &[f64]| Coefficients::new(values).expect("three coefficients fit");
+    let loop_between = Environment::Rational(Rational {
+        numerator: polynomial(&[stiff, -lost, 0.0]),
+        denominator: polynomial(&[1.0, stiff / stiffness, -lost / stiffness]),
+        delay: 0,
+        unit_zeros: 0,
+    });
+    Scene { latency: Latency::delayed(WRITTEN), ..rigid(PADDLE, loop_between) }
+}
+
+/// Both ends pass, and the loop between them shakes the bare device.
+pub fn between_ends() -> Result<CaseResult, FailureError> {
+    let of_end = |method: &str, delay| MethodResult {
+        method: method.into(),
+        ..MethodResult::certificate(&end(delay))
+    };
+    let methods = vec![
+        of_end("certificate of the wall, one sample late", 1),
+        of_end("certificate of the wall, not late", 0),
+    ];
+    let scene = between();
+    let alone = Experiment::still(&scene);
+    let truth =
+        MethodResult::eigenvalues("exact exponential, in no hand", &alone, Integration::default())?;
+    // Steps so small that the motion begins above them.
+    let counts_per_turn = f64::from(1 << 22);
+    let fine = Transducers { counts_per_turn, full_scale_torque: 2.0, ..PADDLES };
+    let mut shakes = loop_run("computed ahead, written 5 us late", &scene, fine, Outcome::Diverges)
+        .pushed(1.0, 300)
+        .with_claimed_passivity(30.0);
+    shakes.experiment.friction = 0.0;
+    let matched = Scene { coupling: Coupling::Matched, latency: scene.latency, ..end(0) };
+    let rests =
+        loop_run("the wall behind the matched coupling", &matched, PADDLES, Outcome::Converges);
+    Ok(CaseResult {
+        methods,
+        certificate: MethodResult::certificate(&scene),
+        truth,
+        runs: vec![shakes, rests.pushed(1.0, 2000)],
+    })
+}
