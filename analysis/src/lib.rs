@@ -41,6 +41,7 @@ pub mod latency_limits;
 pub mod limits;
 pub mod mu_analysis;
 pub mod open_loop;
+pub mod profile_curve;
 pub mod response;
 pub mod run_csv;
 pub mod simulation;

@@ -1,5 +1,6 @@
 //! One page about a scene, with nothing outside of it: verdict, numbers, assumptions, pictures.
 
+use firmware::environment::AnyProfile;
 use firmware::parameter::Parameter;
 use firmware::scene::{Coupling, Latency, Scene, TimeRange};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -22,6 +23,8 @@ pub struct Page<'p> {
     pub path: &'p str,
     /// The day, as 2026-03-14.
     pub date: String,
+    /// Its torque profile; `None` of another environment.
+    pub profile: Option<Picture>,
     /// The curve of its environment.
     pub nyquist: Figure,
     /// The map of its wall.
@@ -57,6 +60,11 @@ figure { margin: 1.5rem 0; break-inside: avoid; }
 figure svg { max-width: 100%; height: auto; display: block; }
 figcaption { font-size: 0.95rem; margin-top: 0.3rem; }
 ";
+
+/// Captions of the pictures of a torque profile.
+const PROFILE: &str =
+    "Torque and potential over angle. The verdict depends on the steepest slopes alone.";
+const MAP_OF_PROFILES: &str = "Largest torques with this scene's device, period and coupling.";
 
 impl Page<'_> {
     /// The page as HTML.
@@ -97,8 +105,13 @@ impl Page<'_> {
                                                               The black curve decides: it must stay \
                                                               right of the critical line. Grey curves \
                                                               are for comparison.", latency)))
-                    (figure("map", &self.map, "Verdicts on walls with this scene's device, period, \
-                                               coupling and delay."))
+                    @if let Some(profile) = &self.profile {
+                        (figure("profile", &Figure::Drawn(profile.clone()), PROFILE))
+                        (figure("map", &self.map, MAP_OF_PROFILES))
+                    } @else {
+                        (figure("map", &self.map, "Verdicts on walls with this scene's device, \
+                                                   period, coupling and delay."))
+                    }
                     (figure("motion", &self.motion, &titled("Simulation of the scene.", latency)))
                 }
             }
@@ -141,6 +154,7 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
         let sides = if wall.one_sided { "felt beyond the face only" } else { "felt everywhere" };
         rows.push(("Sides", sides.to_owned()));
     }
+    rows.extend(environment.profile().map(profile).unwrap_or_default());
     if let Some(rational) = environment.rational() {
         rows.push(("Numerator", format!("{:?}", rational.numerator.as_slice())));
         rows.push(("Denominator", format!("{:?}", rational.denominator.as_slice())));
@@ -157,6 +171,23 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
     );
     rows.extend(file.encoder_step.map(|angle| number("Encoder's step", angle, "rad")));
     rows.extend(file.full_scale.map(|torque| number("Torque at full scale", torque, "N m")));
+    rows
+}
+
+/// What a torque profile has.
+fn profile(profile: &AnyProfile) -> Vec<(&'static str, String)> {
+    let number = |name, value: f64, unit| (name, format!("{} {unit}", significant(value, 6)));
+    let mut rows = vec![number("Largest torque of the profile", profile.torque, "N m")];
+    if profile.outline().wraps {
+        rows.push(number("Repetitions in a turn", profile.count, ""));
+    }
+    if let Some(ends) = profile.ends {
+        rows.push(number("Lower end stop", ends.from, "rad"));
+        rows.push(number("Upper end stop", ends.to, "rad"));
+        rows.push(number("Stiffness of the end stops", ends.stiffness, "N m/rad"));
+    }
+    rows.push(number("Damping", profile.damping, "N m s/rad"));
+    rows.push(number("Cells of the table", f64::from(profile.outline().knots), ""));
     rows
 }
 

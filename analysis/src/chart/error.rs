@@ -87,6 +87,8 @@ fn unbuildable(why: Unbuildable) -> &'static str {
         Unbuildable::Improper => "it needs future samples",
         Unbuildable::IllPosed => "coupling and environment have no unique solution",
         Unbuildable::OutOfRange => "one of its numbers is out of range",
-        Unbuildable::Unstated => "its environment is stated by a bound alone",
+        Unbuildable::Unstated => {
+            "its environment is a torque profile, or stated by a bound alone, and has no transfer function"
+        }
     }
 }

@@ -202,6 +202,7 @@ impl SoughtQuantity {
             design::Answer::Limit(value, _) => match (*unit, *value) {
                 (SAMPLES, 1.0) => "1 sample".to_owned(),
                 (SAMPLES, samples) => format!("{samples} {SAMPLES}"),
+                ("", value) => value.to_string(),
                 (unit, value) => last_that_certifies(value, unit),
             },
             design::Answer::Unlimited(_) => "any value certifies".to_owned(),

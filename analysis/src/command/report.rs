@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::chart::map;
+use super::chart::{map, profile};
 use super::shared_arguments::{CoefficientFormat, SceneArgument};
 use super::status::{CommandError, CommandStatus};
 use crate::chart::nyquist::nyquist;
@@ -45,7 +45,16 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let file = arguments.scene.load()?;
     let report = arguments.arithmetic.judge(&file)?;
     let named = [(file.name.clone(), file.scene)];
-    let map = match map::of_file(&file, (None, None), SIDE) {
+    let profile = match profile::of_file(&file) {
+        Err(CommandError::NoProfile { .. }) => None,
+        drawn => Some(drawn?.picture),
+    };
+    let map = match &profile {
+        Some(_) => map::of_profile(&file, (None, None)),
+        None => map::of_file(&file, (None, None), SIDE),
+    };
+    let map = match map {
+        Err(error @ CommandError::NoDetents { .. }) => missing(&error.to_string()),
         Err(CommandError::Map(MapError::NoWall { .. })) => {
             missing("The environment has no wall, so there is no map of stiffness and damping.")
         }
@@ -64,13 +73,16 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     };
     let nyquist =
         match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named, &Window::default()) {
+            Err(ChartError::NoTransfer { .. }) if profile.is_some() => {
+                missing("A torque profile has no transfer function, and so no Nyquist curve.")
+            }
             Err(ChartError::NoTransfer { .. }) => {
                 missing("The environment has no transfer function to draw.")
             }
             drawn => Figure::Drawn(drawn?),
         };
     let (path, date) = (arguments.scene.file.as_str(), date::today()?);
-    let page = Page { report: &report, file: &file, path, date, nyquist, map, motion };
+    let page = Page { report: &report, file: &file, path, date, profile, nyquist, map, motion };
     std::fs::write(&arguments.output, page.html())
         .map_err(|source| CommandError::Unwritable { path: arguments.output.clone(), source })?;
     let said = format!("{}: {}\n", arguments.output.display(), report.message);

@@ -151,6 +151,23 @@ pub enum CommandError {
         /// Name of the scene.
         scene: String,
     },
+    /// There is no torque profile to draw.
+    #[error(
+        "{scene}: the environment is no torque profile, which has `environment.type` = \"profile\""
+    )]
+    NoProfile {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// A map of torque profiles needs one that repeats.
+    #[error(
+        "{scene}: a map shows torque and repetitions in a turn of a torque profile, but no torque of this \
+         one certifies, or it does not repeat"
+    )]
+    NoDetents {
+        /// Name of the scene.
+        scene: String,
+    },
     /// One file cannot have the pictures of all topics.
     #[error("{}: one chart shows one topic; name one of {topics}", picture.display())]
     NoTopic {

@@ -87,6 +87,12 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
         let longest = (0..=MAX_DELAY).rev().map(|delay| delay as f64).find(|&d| passes(&at(d)));
         return longest.map_or(Answer::Nothing, |delay| Answer::Limit(delay, at(delay)));
     }
+    if quantity == Quantity::Count {
+        return most_repetitions(|count| passes(&at(f64::from(count))))
+            .map_or(Answer::Nothing, |count| {
+                Answer::Limit(f64::from(count), at(f64::from(count)))
+            });
+    }
     let longest = quantity.longest(scene.timing.period);
     if let Some(longest) = longest.filter(|&longest| passes(&at(longest))) {
         return Answer::Limit(longest, at(longest));
@@ -106,6 +112,23 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
     }
 }
 
+/// The most repetitions in a turn that pass: with fewer of them a profile is less steep.
+fn most_repetitions(passes: impl Fn(u32) -> bool) -> Option<u32> {
+    let (mut inside, mut outside) = (1, 2);
+    if !passes(inside) {
+        return None;
+    }
+    // A table has so many cells in a turn that this ends long before.
+    while passes(outside) && outside < 1 << 30 {
+        (inside, outside) = (outside, 2 * outside);
+    }
+    while outside - inside > 1 {
+        let middle = inside + (outside - inside) / 2;
+        if passes(middle) { inside = middle } else { outside = middle }
+    }
+    Some(inside)
+}
+
 /// The border of what may be rendered of two quantities at once: the most of the second at evenly
 /// spaced values of the first, from none of it to the most. Empty where there is no border.
 pub fn border(
@@ -116,12 +139,15 @@ pub fn border(
 ) -> Vec<(f64, f64)> {
     let prepared = prepared(scene, terms);
     let kept = Terms { safety: 1.0, coupling: Choice::Kept };
-    let without = second.set(&prepared, 0.0).unwrap_or(prepared);
+    let without = second.set(&prepared, second.least()).unwrap_or(prepared);
     let Answer::Limit(most, _) = largest(&without, first, &kept) else { return Vec::new() };
+    let least = first.least();
     let value = |index: usize| match first {
         Quantity::Delay => index as f64,
-        _ => most * index as f64 / points.saturating_sub(1).max(1) as f64,
+        _ => least + (most - least) * index as f64 / points.saturating_sub(1).max(1) as f64,
     };
+    // Of whole numbers there may be fewer than points.
+    let value = |index: usize| if first.is_whole() { value(index).round() } else { value(index) };
     let count = if first == Quantity::Delay { most as usize + 1 } else { points };
     let point = |value: f64| {
         let scene = first.set(&prepared, value)?;
@@ -130,7 +156,9 @@ pub fn border(
             _ => None,
         }
     };
-    (0..count).filter_map(|index| point(value(index))).collect()
+    let mut values: Vec<f64> = (0..count).map(value).collect();
+    values.dedup();
+    values.into_iter().filter_map(point).collect()
 }
 
 /// The least damping in N m s/rad that the motor's mass needs on a device for all of these

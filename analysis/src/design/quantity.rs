@@ -22,6 +22,10 @@ pub enum Quantity {
     ActuatorLag,
     /// Time in s from a count to its torque: the longest latency.
     OutputDelay,
+    /// Torque in N m of a torque profile: the strongest detents.
+    Torque,
+    /// Repetitions of a torque profile in a turn: the most detents.
+    Count,
 }
 
 impl Quantity {
@@ -34,17 +38,23 @@ impl Quantity {
             Self::Cancellation => ("cancellation", "N m s/rad"),
             Self::ActuatorLag => Parameter::ActuatorLag.name_and_unit(),
             Self::OutputDelay => Parameter::OutputDelay.name_and_unit(),
+            Self::Torque => Parameter::ProfileTorque.name_and_unit(),
+            Self::Count => Parameter::Count.name_and_unit(),
         }
     }
 
     /// The scene with this much of it; `None` where its environment has no such number.
-    pub(super) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
+    pub(crate) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
         match self {
             Self::Stiffness => scene.with(Parameter::Stiffness, value),
             Self::Damping => scene.with(Parameter::Damping, value),
             Self::Delay => scene.with(Parameter::Delay, value),
             Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
             Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
+            Self::Torque => scene.with(Parameter::ProfileTorque, value),
+            // What does not repeat has no number of repetitions to choose.
+            Self::Count if !scene.environment.profile()?.outline().wraps => None,
+            Self::Count => scene.with(Parameter::Count, value),
             Self::OutputDelay => {
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
                 delayed.latency.output_jitter =
@@ -52,6 +62,20 @@ impl Quantity {
                 Some(delayed)
             }
         }
+    }
+
+    /// The least of it that a scene may have: none, or next to none.
+    pub(super) fn least(self) -> f64 {
+        match self {
+            Self::Torque => 1e-12,
+            Self::Count => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it is a whole number.
+    pub(super) fn is_whole(self) -> bool {
+        matches!(self, Self::Delay | Self::Count)
     }
 
     /// The largest that a scene of this period in s may have, whatever its certificate says; `None` where

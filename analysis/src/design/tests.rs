@@ -25,7 +25,8 @@ fn file(scene: Scene) -> SceneFile {
     let name = "designed".to_owned();
     let (simulation, hand) = (None, None);
     let (encoder_step, full_scale, friction) = (None, None, None);
-    SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction }
+    let shapes = None;
+    SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction, shapes }
 }
 
 /// The scene, as it is read from what is written.

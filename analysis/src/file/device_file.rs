@@ -47,7 +47,7 @@ pub fn read(source: (&str, &Faults), root: Node) -> Read<DeviceFile> {
 /// The chain behind its amplifier. No lag that was read is refused.
 fn lagging(faults: &Faults, chain: Chain, lag: TimeRange, span: Span) -> Read<Chain> {
     chain.with_actuator_lag(lag.middle()).map_err(|error| {
-        let (key, value) = (key::ACTUATOR_LAG.path, lag.middle().to_string());
+        let (key, value) = (key::ACTUATOR_LAG.path.to_owned(), lag.middle().to_string());
         let problem = Problem::Conflict { key, value, reason: error.to_string() };
         faults.report(Fault { span, problem })
     })

@@ -1,7 +1,8 @@
 //! A commented scene file of each type of environment, and one of a device that is a chain.
 
 use super::key::{self, Key, Presence};
-use super::kind::{self, Kind};
+use super::kind::{self, Kind, PROFILE};
+use super::shape;
 
 /// The example of a device that is a chain of masses.
 pub const CHAIN: &str = "chain";
@@ -48,10 +49,35 @@ fn is_set(key: &Key) -> bool {
 fn environment(lines: &mut Vec<String>, kind: &Kind) {
     lines.push(format!("# {}", kind.doc));
     lines.push(format!("{} = \"{}\"", key::TYPE.name(), kind.name));
+    if kind.name == PROFILE {
+        return profile(lines, kind);
+    }
     for key in kind.keys() {
         let own = kind.values.iter().find(|(own, _)| *own == key);
         let value = own.map_or(key.example, |(_, value)| value);
         line(lines, key, value, kind.needed.contains(&key));
+    }
+}
+
+/// The keys of a torque profile, and two shapes; knots are another way to the same.
+fn profile(lines: &mut Vec<String>, kind: &Kind) {
+    let is_table = |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE].contains(key);
+    for key in kind.keys().filter(is_table) {
+        let value = if *key == key::STIFFNESS { "15.0" } else { key.example };
+        line(lines, key, value, kind.needed.contains(&key));
+    }
+    lines.push(format!("# {} Types, with their keys:", key::SHAPE.doc));
+    for kind in shape::ALL {
+        let keys: Vec<&str> = kind.keys().map(Key::name).collect();
+        let text = format!("\"{}\" ({}): {}", kind.name, keys.join(", "), kind.doc);
+        lines.extend(textwrap::wrap(&text, WIDTH - 2).iter().map(|line| format!("#   {line}")));
+    }
+    for name in ["detents", "end_stops"] {
+        let kind = shape::ALL.iter().filter(|kind| kind.name == name);
+        lines.push(format!("[[{}]]", key::SHAPE.path));
+        lines.push(format!("{} = \"{name}\"", key::SHAPE_TYPE.name()));
+        let keys = kind.flat_map(|kind| kind.keys());
+        lines.extend(keys.map(|key| set(key, key.example)));
     }
 }
 

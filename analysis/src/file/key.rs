@@ -31,6 +31,8 @@ pub enum Form {
     Boolean,
     /// Numbers in a row.
     Numbers,
+    /// Pairs of numbers in a row.
+    Pairs,
     /// A table.
     Table,
     /// Tables in a row.
@@ -172,6 +174,11 @@ const DELAYED_POLYNOMIAL: Bound = Bound::Other(
      delay, and may be 8 more, together with `delay`",
 );
 
+const KNOTS_IN_ORDER: Bound = Bound::Other(
+    Form::Pairs,
+    "a list of 2 to 2048 pairs, [angle in rad, torque in N m], the angles in rising order",
+);
+
 keys! {
     /// Name of the scene, as reports and pictures show it.
     NAME = other("name", "", Bound::Other(Form::Text, "a string")),
@@ -263,13 +270,13 @@ keys! {
     /// Which environment.
     TYPE = other("environment.type", "", Bound::Other(
         Form::OneOf(&[]),
-        "\"delayed-spring\", \"damper-wall\", \"free-mode\", \"free-mode-wall\" or \"rational\""
+        "\"delayed-spring\", \"damper-wall\", \"free-mode\", \"free-mode-wall\", \"rational\" or \"profile\""
     )),
         Needed, "\"damper-wall\"";
-    /// Stiffness of the spring or wall.
+    /// Stiffness of the spring or wall; of a torque profile, that beyond its end stops.
     STIFFNESS = of(Parameter::Stiffness),
         Needed, "20.0";
-    /// Damping of the wall.
+    /// Damping of the wall, or of a damper beside the torque profile.
     DAMPING = of(Parameter::Damping),
         Needed, "0.005";
     /// Delay from a sample to its torque: 1 where the torque is latched at the next tick, as on every
@@ -297,6 +304,81 @@ keys! {
     /// Zeros at z = 1 that multiply the numerator. With them its degree is at most 8.
     UNIT_ZEROS = of(Parameter::UnitZeros),
         Default(0.0), "0";
+    /// Knots of a torque profile, joined by straight lines; a positive torque pushes back from a positive
+    /// angle. They add to the shapes.
+    KNOTS = other("environment.knots", "", KNOTS_IN_ORDER),
+        Optional("the shapes are all"), "[[0.0, 0.0], [0.1, 0.02], [0.3, -0.02], [0.4, 0.0]]";
+    /// Period of the knots, which their last one closes with the torque of the first; a whole number of
+    /// them is a turn, unless there are end stops.
+    KNOTS_PERIOD = other("environment.period", "rad", POSITIVE),
+        Optional("the knots do not repeat, and end stops hold the angle within their range"), "0.4";
+    /// Largest torque of the profile: all torques in proportion, but not the end stops.
+    PROFILE_TORQUE = of(Parameter::ProfileTorque),
+        Optional("what shapes and knots add up to"), "0.05";
+    /// How often the profile repeats in a turn.
+    COUNT = of(Parameter::Count),
+        Optional("what shapes and knots have in common"), "24";
+    /// Angle at which the first repetition begins.
+    CENTRE = of(Parameter::Centre),
+        Optional("that of the first detents, or 0"), "0.0";
+    /// Lower end stop.
+    FROM = of(Parameter::From),
+        Optional("that of the shapes, or no end stops"), "-2.618";
+    /// Upper end stop.
+    TO = of(Parameter::To),
+        Optional("that of the shapes, or no end stops"), "2.618";
+    /// Number of equal cells, each a straight line, of the table that shapes and knots become: a power of
+    /// two.
+    CELLS = other("environment.cells", "", whole(16, 4096)),
+        Optional("the fewest that show every straight piece"), "64";
+    /// Named shapes of a torque profile, which add up.
+    SHAPE = other("environment.shape", "", Bound::Other(Form::Tables, "a list of 1 to 16 tables")),
+        Optional("the knots are all"), "";
+    /// Which shape.
+    SHAPE_TYPE = other("environment.shape.type", "", Bound::Other(
+        Form::OneOf(&[]),
+        "\"detents\", \"end_stops\", \"centre\", \"bistable\", \"texture\", \"magnet\" or \"table\""
+    )),
+        Needed, "\"detents\"";
+    /// Number of detents in a turn.
+    SHAPE_COUNT = other("environment.shape.count", "", whole(1, 4096)),
+        Needed, "24";
+    /// Largest torque of the shape.
+    SHAPE_TORQUE = other("environment.shape.torque", "N m", POSITIVE),
+        Needed, "0.05";
+    /// Angle of the first detent.
+    SHAPE_CENTRE = other("environment.shape.centre", "rad", FINITE),
+        Default(0.0), "0.0";
+    /// Lower end.
+    SHAPE_FROM = other("environment.shape.from", "rad", FINITE),
+        Needed, "-2.618";
+    /// Upper end.
+    SHAPE_TO = other("environment.shape.to", "rad", FINITE),
+        Needed, "2.618";
+    /// Stiffness of the spring.
+    SHAPE_STIFFNESS = other("environment.shape.stiffness", "N m/rad", POSITIVE),
+        Needed, "15.0";
+    /// How far the shape reaches to either side.
+    SHAPE_WIDTH = other("environment.shape.width", "rad", POSITIVE),
+        Needed, "0.3";
+    /// Angle of either place to rest at.
+    SHAPE_DISTANCE = other("environment.shape.distance", "rad", POSITIVE),
+        Needed, "0.3";
+    /// Distance of two ridges.
+    SHAPE_PITCH = other("environment.shape.pitch", "rad", POSITIVE),
+        Needed, "0.05";
+    /// Largest torque of the ridges.
+    SHAPE_AMPLITUDE = other("environment.shape.amplitude", "N m", POSITIVE),
+        Needed, "0.005";
+    /// Angle of the place that pulls.
+    SHAPE_ANGLE = other("environment.shape.angle", "rad", FINITE),
+        Default(0.0), "0.5";
+    /// Knots, as `environment.knots`.
+    SHAPE_KNOTS = other("environment.shape.knots", "", KNOTS_IN_ORDER),
+        Needed, "[[0.0, 0.0], [0.1, 0.02], [0.3, -0.02], [0.4, 0.0]]";
+    /// Their period, as `environment.period`.
+    SHAPE_PERIOD = other("environment.shape.period", "rad", POSITIVE),
+        Optional("they do not repeat"), "0.4";
 
     /// What a simulation starts from, and the torque of the hand. `run` does not read it.
     SIMULATION = other("simulation", "", TABLE),

@@ -1,6 +1,6 @@
 //! The types of environment, and which keys each takes.
 
-use firmware::environment::{Coefficients, Environment, Rational, Wall};
+use firmware::environment::{Coefficients, Environment, Knots, Profile, Rational, Shape, Wall};
 
 use super::key::{self, Key};
 
@@ -77,7 +77,32 @@ pub const ALL: &[Kind] = &[
         }),
         values: &[],
     },
+    Kind {
+        name: PROFILE,
+        doc: "A torque profile: torque over angle in straight lines, for detents, end stops and textures.",
+        needed: &[&key::DELAY_SAMPLES],
+        optional: &[
+            &key::DAMPING,
+            &key::KNOTS,
+            &key::KNOTS_PERIOD,
+            &key::PROFILE_TORQUE,
+            &key::COUNT,
+            &key::CENTRE,
+            &key::FROM,
+            &key::TO,
+            &key::STIFFNESS,
+            &key::CELLS,
+            &key::SHAPE,
+        ],
+        blank: Environment::Profile(Profile::<16, 1>::of(&DETENT).as_any()),
+        values: &[],
+    },
 ];
+
+/// The type with shapes.
+pub const PROFILE: &str = "profile";
+
+static DETENT: Knots<16> = Knots::of(&[Shape::detents(1, 1.0)]);
 
 impl Kind {
     /// The type of that name.

@@ -10,9 +10,11 @@ mod device_file;
 pub mod example;
 pub mod key;
 pub mod kind;
+pub mod profile;
 pub mod reference;
 pub mod scene;
 pub mod schema;
+pub mod shape;
 pub mod simulation;
 pub mod write;
 

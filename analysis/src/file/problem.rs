@@ -61,7 +61,7 @@ pub enum Problem {
     #[error("`{key}` is missing; it must be {bound}")]
     Missing {
         /// Full name of the key.
-        key: &'static str,
+        key: String,
         /// Its range.
         bound: String,
     },
@@ -111,10 +111,18 @@ pub enum Problem {
     #[error("`{key}` = {value} {reason}")]
     Conflict {
         /// Full name of the key.
-        key: &'static str,
+        key: String,
         /// The value as written.
         value: String,
         /// Why it cannot stand beside another key, or alone.
+        reason: String,
+    },
+    /// Shapes that do not add up to a torque profile.
+    #[error("`{key}`: {reason}")]
+    Shapes {
+        /// Full name of the key.
+        key: String,
+        /// Why they do not.
         reason: String,
     },
 }
@@ -131,9 +139,9 @@ impl Problem {
     }
 
     /// A value of the wrong kind for a key.
-    pub fn wrong_kind(key: &Key, value: &str, found: &'static str) -> Self {
+    pub fn wrong_kind(key: &Key, name: &str, value: &str, found: &'static str) -> Self {
         let bound = key.requirement();
-        let key = if key.path.is_empty() { "the file" } else { key.path }.to_owned();
+        let key = if name.is_empty() { "the file" } else { name }.to_owned();
         Self::WrongKind { key, value: excerpt(value), found, bound }
     }
 

@@ -3,6 +3,7 @@
 use super::example;
 use super::key::{self, Key, Presence};
 use super::kind;
+use super::shape;
 
 const INTRODUCTION: &str = "\
 # Scene files
@@ -33,7 +34,12 @@ pub fn markdown() -> String {
         }
         text += &format!("\n## {}\n\n{}{}\n\n", heading(table), table.doc, absent(table));
         if **table == key::ENVIRONMENT {
-            text += &types();
+            let kinds = kind::ALL.iter().map(|it| (it.name, it.needed, it.optional, it.doc));
+            text += &types(kinds);
+        }
+        if **table == key::SHAPE {
+            let kinds = shape::ALL.iter().map(|it| (it.name, it.needed, it.optional, it.doc));
+            text += &types(kinds);
         }
         text += &rows(&keys);
     }
@@ -77,14 +83,17 @@ fn rows(keys: &[&Key]) -> String {
     text
 }
 
-fn types() -> String {
+/// Name, keys that there must be, keys that there may be, and words of a type.
+type Row = (&'static str, &'static [&'static Key], &'static [&'static Key], &'static str);
+
+fn types(kinds: impl Iterator<Item = Row>) -> String {
     let mut text = "| `type` | must have | may have | |\n|---|---|---|---|\n".to_owned();
-    for kind in kind::ALL {
+    for (name, needed, optional, doc) in kinds {
         let names = |keys: &[&Key]| {
             keys.iter().map(|key| format!("`{}`", key.name())).collect::<Vec<_>>().join(", ")
         };
-        let (needed, optional) = (names(kind.needed), names(kind.optional));
-        text += &format!("| `{}` | {needed} | {optional} | {} |\n", kind.name, kind.doc);
+        let (needed, optional) = (names(needed), names(optional));
+        text += &format!("| `{name}` | {needed} | {optional} | {doc} |\n");
     }
     text + "\nEach key is an error with the types that do not have it.\n\n"
 }

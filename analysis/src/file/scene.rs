@@ -9,6 +9,7 @@ use super::device::{self, DeviceTable, Purpose};
 use super::faults::{Faults, Read, all};
 use super::key::{self, Key};
 use super::kind::Kind;
+use super::profile::{self, ProfileTable, Shapes};
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
 use super::tree::{Node, Value};
@@ -35,6 +36,8 @@ pub struct SceneFile {
     pub full_scale: Option<f64>,
     /// Dry friction of the device in N m.
     pub friction: Option<f64>,
+    /// What the scene's torque profile was sampled from.
+    pub shapes: Option<Shapes>,
 }
 
 impl SceneFile {
@@ -68,12 +71,29 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
     let (name, table) = (name?.value, device?);
     let [torque_limit, encoder_step, full_scale] = limits?;
     let (servo, coupling, environment) = (servo?, coupling?, environment?);
+    let (environment, shapes) = match environment {
+        EnvironmentTable::Profile(table) => {
+            table.within(&top, full_scale)?;
+            (table.environment, Some(table.shapes))
+        }
+        EnvironmentTable::Other(environment) => (environment, None),
+    };
     let latency = latency_of(&top, &servo, &table, environment.is_late())?;
     let DeviceTable { chain, device, friction, .. } = table;
     let timing = servo.timing;
     let scene = Scene { device, timing, coupling, environment, latency, torque_limit };
     let (simulation, hand) = (simulation?, hand?);
-    Ok(SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction })
+    Ok(SceneFile {
+        name,
+        scene,
+        chain,
+        simulation,
+        hand,
+        encoder_step,
+        full_scale,
+        friction,
+        shapes,
+    })
 }
 
 /// The file as a whole: it has no name, and must be a table.
@@ -190,7 +210,13 @@ fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
     Ok([torque?, encoder?, full_scale?])
 }
 
-fn environment_of(mut section: Section<'_>) -> Read<Environment> {
+/// What `[environment]` says.
+enum EnvironmentTable {
+    Profile(Box<ProfileTable>),
+    Other(Environment),
+}
+
+fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
     let name = section.needed_text(&key::TYPE);
     let kind = name.and_then(|Found { value, span }| match Kind::find(&value) {
         Some(kind) => Ok(kind),
@@ -199,7 +225,11 @@ fn environment_of(mut section: Section<'_>) -> Read<Environment> {
     let environment = match kind {
         Ok(kind) => {
             section.specialize(format!("a {} [environment]", kind.name), kind.needed);
-            of_kind(kind, &mut section)
+            match kind.blank {
+                Environment::Profile(_) => profile::profile(&mut section)
+                    .map(|table| EnvironmentTable::Profile(Box::new(table))),
+                _ => of_kind(kind, &mut section).map(EnvironmentTable::Other),
+            }
         }
         Err(reported) => {
             // Of what type it was to be is not known: a key of any is a good one.

@@ -5,7 +5,8 @@ use firmware::parameter::Range;
 use serde_json::{Map, Value, json};
 
 use super::key::{self, Bound, Form, Key, Presence};
-use super::kind::{self, Kind};
+use super::kind;
+use super::shape;
 
 /// The schema, of draft 7, which is the latest that editors of TOML know.
 pub fn json() -> Value {
@@ -19,7 +20,15 @@ pub fn json() -> Value {
 fn table(path: &str) -> Value {
     let keys = key::ALL.iter().filter(|key| key.table() == path).copied();
     match path {
-        "environment" => json!({ "oneOf": kind::ALL.iter().map(of_kind).collect::<Vec<_>>() }),
+        "environment" => one_of(kind::ALL.iter().map(|kind| {
+            let keys = [&key::TYPE].into_iter().chain(kind.keys());
+            of_kind(&key::TYPE, kind.name, kind.doc, object(keys, |key| needs(kind.needed, key)))
+        })),
+        "environment.shape" => one_of(shape::ALL.iter().map(|kind| {
+            let keys = [&key::SHAPE_TYPE].into_iter().chain(kind.keys());
+            let keys = object(keys, |key| needs(kind.needed, key));
+            of_kind(&key::SHAPE_TYPE, kind.name, kind.doc, keys)
+        })),
         // Inertia and damping are those of a rigid body, and a chain's masses have their own.
         "coupling" => {
             let mut schema = object(keys, |_| false);
@@ -48,11 +57,18 @@ fn table(path: &str) -> Value {
     }
 }
 
-fn of_kind(kind: &Kind) -> Value {
-    let is_needed = |key: &Key| *key == key::TYPE || kind.needed.contains(&key);
-    let mut schema = object([&key::TYPE].into_iter().chain(kind.keys()), is_needed);
-    schema["properties"][key::TYPE.name()] = json!({ "const": kind.name });
-    schema["description"] = kind.doc.into();
+fn one_of(kinds: impl Iterator<Item = Value>) -> Value {
+    json!({ "oneOf": kinds.collect::<Vec<_>>() })
+}
+
+fn needs(needed: &[&Key], key: &Key) -> bool {
+    *key == key::TYPE || *key == key::SHAPE_TYPE || needed.contains(&key)
+}
+
+/// The table of a type, by the key that names it.
+fn of_kind(type_key: &Key, name: &str, doc: &str, mut schema: Value) -> Value {
+    schema["properties"][type_key.name()] = json!({ "const": name });
+    schema["description"] = doc.into();
     schema
 }
 
@@ -88,6 +104,12 @@ fn property(key: &Key) -> Value {
             Form::OneOf(words) => json!({ "enum": words }),
             Form::Boolean => json!({ "type": "boolean" }),
             Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
+            Form::Pairs => {
+                let pair = json!({
+                    "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2
+                });
+                json!({ "type": "array", "minItems": 2, "items": pair })
+            }
             Form::Time => {
                 let time = json!({ "type": "number", "minimum": 0 });
                 let range = json!({
@@ -128,7 +150,7 @@ mod tests {
     #[test]
     fn every_key_is_in_it_with_its_words() {
         let schema = json();
-        for key in key::ALL.iter().filter(|key| **key != &key::TYPE) {
+        for key in key::ALL.iter().filter(|key| ![&key::TYPE, &key::SHAPE_TYPE].contains(key)) {
             let words = of(&schema, key.path)["description"].as_str();
             assert!(words.is_some_and(|words| words.starts_with(key.doc)), "{}", key.path);
         }

@@ -18,6 +18,8 @@ pub struct Section<'t> {
     text: &'t str,
     faults: &'t Faults,
     path: &'static str,
+    /// Its name with its number among others, such as `environment.shape[0]`, where messages give that.
+    numbered: Option<String>,
     title: String,
     span: Span,
     entries: Vec<Entry>,
@@ -45,9 +47,23 @@ impl<'t> Section<'t> {
         match node.value {
             Value::Table(entries) => {
                 let (path, span, asked) = (key.path, node.span, Vec::new());
-                Ok(Self { text, faults, path, title, span, entries, asked, needed: &[] })
+                let (numbered, needed) = (None, [].as_slice());
+                Ok(Self { text, faults, path, numbered, title, span, entries, asked, needed })
             }
-            other => Err(faults.report(wrong_kind(text, key, &node.span, &other))),
+            other => Err(faults.report(wrong_kind(text, key, key.path, &node.span, &other))),
+        }
+    }
+
+    /// From here on messages call the table's keys by this name of the table.
+    pub fn number_as(&mut self, name: String) {
+        self.numbered = Some(name);
+    }
+
+    /// The full name of a key of this table, as messages give it.
+    pub fn name_of(&self, key: &Key) -> String {
+        match &self.numbered {
+            Some(table) => format!("{table}.{}", key.name()),
+            None => key.path.to_owned(),
         }
     }
 
@@ -107,7 +123,7 @@ impl<'t> Section<'t> {
     /// The number of that key with its place, if it is there.
     pub fn found(&mut self, key: &Key) -> Read<Option<Found<f64>>> {
         let Some(node) = self.take(key) else { return Ok(None) };
-        let value = self.number_of(key, key.path, &node)?;
+        let value = self.number_of(key, &self.name_of(key), &node)?;
         Ok(Some(Found { value, span: node.span }))
     }
 
@@ -221,6 +237,50 @@ impl<'t> Section<'t> {
         Ok(Some(Found { value, span: node.span }))
     }
 
+    /// The pairs of finite numbers of that key with their places, if it is there.
+    pub fn pairs(&mut self, key: &Key) -> Read<Option<Found<Vec<[Found<f64>; 2]>>>> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let Value::List(items) = &node.value else {
+            return Err(self.wrong_kind(key, &node.span, &node.value));
+        };
+        let pair = |(index, item): (usize, &Node)| {
+            let name = format!("{}[{index}]", self.name_of(key));
+            let Value::List(numbers) = &item.value else {
+                return Err(self.no_pair(name, item, item.value.kind()));
+            };
+            let [a, b] = &numbers[..] else {
+                return Err(self.no_pair(name, item, "a list of another length"));
+            };
+            let [a, b] = [(0, a), (1, b)].map(|(place, node)| match node.value {
+                Value::Number(value) if value.is_finite() => {
+                    Ok(Found { value, span: node.span.clone() })
+                }
+                ref other => {
+                    let name = format!("{name}[{place}]");
+                    Err(self.no_finite(name, &node.span, other))
+                }
+            });
+            Ok([a?, b?])
+        };
+        let value = all(items.iter().enumerate().map(pair))?;
+        Ok(Some(Found { value, span: node.span }))
+    }
+
+    fn no_pair(&self, key: String, node: &Node, found: &'static str) -> Reported {
+        let value = excerpt(&self.text[node.span.clone()]);
+        let bound = "a pair of finite numbers, [angle in rad, torque in N m]".to_owned();
+        self.report(node.span.clone(), Problem::WrongKind { key, value, found, bound })
+    }
+
+    fn no_finite(&self, key: String, span: &Span, value: &Value) -> Reported {
+        let (text, bound) = (excerpt(&self.text[span.clone()]), "a finite number".to_owned());
+        let problem = match value {
+            Value::Number(_) => Problem::OutOfBounds { key, value: text, bound },
+            _ => Problem::WrongKind { key, value: text, found: value.kind(), bound },
+        };
+        self.report(span.clone(), problem)
+    }
+
     /// Reports a key whose value is out of its bound.
     pub fn out_of_bounds(&self, key: &Key, path: &str, span: &Span) -> Reported {
         let value = &self.text[span.clone()];
@@ -230,7 +290,7 @@ impl<'t> Section<'t> {
     /// Reports a key that contradicts another one, or a rule.
     pub fn conflict(&self, key: &Key, span: Span, reason: String) -> Reported {
         let value = excerpt(&self.text[span.clone()]);
-        self.report(span, Problem::Conflict { key: key.path, value, reason })
+        self.report(span, Problem::Conflict { key: self.name_of(key), value, reason })
     }
 
     /// Reports a key that is not there, or the slip that was written in its place.
@@ -241,7 +301,7 @@ impl<'t> Section<'t> {
                 self.unknown(&entry)
             }
             None => {
-                let problem = Problem::Missing { key: key.path, bound: key.requirement() };
+                let problem = Problem::Missing { key: self.name_of(key), bound: key.requirement() };
                 self.report(self.span.start..self.span.start, problem)
             }
         }
@@ -267,7 +327,7 @@ impl<'t> Section<'t> {
     }
 
     fn wrong_kind(&self, key: &Key, span: &Span, value: &Value) -> Reported {
-        self.faults.report(wrong_kind(self.text, key, span, value))
+        self.faults.report(wrong_kind(self.text, key, &self.name_of(key), span, value))
     }
 
     fn number_of(&self, key: &Key, path: &str, node: &Node) -> Read<f64> {
@@ -284,8 +344,9 @@ impl<'t> Section<'t> {
             Some(name) => format!("`{name}` is"),
             None => format!("its keys are {}", self.asked.join(", ")),
         };
-        let dot = if self.path.is_empty() { "" } else { "." };
-        let key = format!("{}{dot}{}", self.path, excerpt(&entry.name));
+        let table = self.numbered.as_deref().unwrap_or(self.path);
+        let dot = if table.is_empty() { "" } else { "." };
+        let key = format!("{table}{dot}{}", excerpt(&entry.name));
         let problem = Problem::Unknown { key, table: self.title.clone(), advice };
         self.report(entry.span.clone(), problem)
     }
@@ -296,7 +357,7 @@ fn alike(written: &str, name: &str) -> bool {
     written.len() <= 2 * name.len() && strsim::jaro_winkler(written, name) >= ALIKE
 }
 
-fn wrong_kind(text: &str, key: &Key, span: &Span, value: &Value) -> Fault {
-    let problem = Problem::wrong_kind(key, &text[span.clone()], value.kind());
+fn wrong_kind(text: &str, key: &Key, name: &str, span: &Span, value: &Value) -> Fault {
+    let problem = Problem::wrong_kind(key, name, &text[span.clone()], value.kind());
     Fault { span: span.clone(), problem }
 }

@@ -1,6 +1,7 @@
 //! A [`SceneFile`] written as the text that reads back as the same, to the last bit.
 
 mod moving;
+mod shaped;
 
 use std::fmt::Write;
 
@@ -15,8 +16,17 @@ use crate::chain::{Chain, EncoderPlace};
 
 /// The text of a scene file in TOML: all keys of the file, and no others.
 pub fn toml(file: &SceneFile) -> String {
-    let SceneFile { name, scene, chain, simulation, hand, encoder_step, full_scale, friction } =
-        file;
+    let SceneFile {
+        name,
+        scene,
+        chain,
+        simulation,
+        hand,
+        encoder_step,
+        full_scale,
+        friction,
+        shapes,
+    } = file;
     let mut lines = vec![format!("name = {}", quoted(name)), "[device]".to_owned()];
     device(&mut lines, chain, scene, *friction);
     lines.push(format!("[servo]\nperiod = {:?}", scene.timing.period));
@@ -33,7 +43,12 @@ pub fn toml(file: &SceneFile) -> String {
         }
     }
     lines.push("[environment]".to_owned());
-    environment(&mut lines, &scene.environment);
+    match (&scene.environment, shapes) {
+        (Environment::Profile(profile), Some(shapes)) => {
+            shaped::profile(&mut lines, profile, shapes);
+        }
+        (other, _) => environment(&mut lines, other),
+    }
     if let Some(simulation) = simulation {
         moving::simulation(&mut lines, simulation);
     }

@@ -12,6 +12,7 @@ mod identify_port;
 mod identify_target;
 mod own_scene;
 mod pictures;
+mod profiles;
 mod python_client;
 mod readme;
 mod reference;

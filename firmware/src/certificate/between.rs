@@ -26,6 +26,11 @@
 //! cancelled: `be`, and `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them
 //! are convex in `T`, too, where nothing is added.
 //!
+//! **Torque profiles** (equations 43 to 45). The bound grows with each slope and with the damper's
+//! magnitude, and so do slopes with the torque of the table and with the stiffness of its end stops: with
+//! less of one of them what passes goes on passing, rounded or not, since rounding keeps the order. It is
+//! affine in the period, and without a damper in proportion to it, as is the coupling's limit.
+//!
 //! **Coefficients that are rounded.** Rounding does not turn the order around: of a number between
 //! two others the coefficient is between theirs, and a law that is affine in the coefficient passes
 //! there as well. That is so of a wall that is late, where the gain that solves a tick does not
@@ -33,7 +38,7 @@
 
 use super::model::LoopIntervals;
 use super::rules::is_nonlinear;
-use crate::environment::Environment;
+use crate::environment::{AnyProfile, Environment};
 use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
@@ -59,6 +64,9 @@ pub(super) const fn between(
     value: f64,
 ) -> Between {
     let n = LoopIntervals::of(scene, format);
+    if let Some(profile) = scene.environment.profile() {
+        return between_profiles(profile, &n, parameter);
+    }
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
         Parameter::Residual => is_affine_in_residual(scene, &n),
@@ -68,6 +76,22 @@ pub(super) const fn between(
         _ => false,
     };
     if passes { Between::Passes } else { Between::Unknown }
+}
+
+const fn between_profiles(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+    parameter: Parameter,
+) -> Between {
+    match parameter {
+        Parameter::Stiffness | Parameter::Damping | Parameter::ProfileTorque => {
+            Between::PassesDownToZero
+        }
+        Parameter::Period if n.latency.is_some() => Between::Unknown,
+        Parameter::Period if profile.damping == 0.0 => Between::PassesDownToZero,
+        Parameter::Period if matches!(n.format, Format::F64) => Between::Passes,
+        _ => Between::Unknown,
+    }
 }
 
 const fn is_affine_in_wall(scene: &Scene, n: &LoopIntervals) -> bool {

@@ -55,6 +55,8 @@ pub struct PassivityProblem {
     pub(super) environment: Transfer,
     /// The index that is stated where there is no transfer function.
     stated: Option<Interval>,
+    /// Why nothing linear can be said of it, where there is no transfer function.
+    no_transfer: Option<UndecidedReason>,
     pub(super) rule: Rule,
     /// Bound on the index of a one-sided or limited scene.
     pub(super) bound: Option<Interval>,
@@ -119,7 +121,12 @@ impl PassivityProblem {
             return Err(Rejection::IllPosed { loop_gain });
         }
         let stated = if scene.environment.has_transfer() { None } else { bound };
-        Ok(Self { numbers, environment, stated, rule, bound })
+        let no_transfer = match &scene.environment {
+            Environment::Profile(_) => Some(UndecidedReason::NoProfileBound),
+            environment if environment.has_transfer() => None,
+            _ => Some(UndecidedReason::NoTransferFunction),
+        };
+        Ok(Self { numbers, environment, stated, no_transfer, rule, bound })
     }
 
     /// The verdict: whether the rule that it follows proves the scene, that is, whether
@@ -237,6 +244,9 @@ impl PassivityProblem {
     }
 
     const fn nonlinear_shortage(&self) -> Option<Interval> {
+        if let (Some(bound), true) = (self.bound, self.numbers.is_at_port) {
+            return Some(bound.sub(self.numbers.delta));
+        }
         let (Some(bound), Some(coupling)) = (self.bound, self.numbers.coupling_damping()) else {
             return None;
         };
@@ -270,6 +280,11 @@ impl PassivityProblem {
             Rule::Exact => match self.at_port(&Precision::within(ROUGHLY)) {
                 Ok(found) => Some(found.minimum.midpoint()),
                 Err(_) => None,
+            },
+            // Where a part of a sample is late, a greater passivity lowers the bound.
+            Rule::Nonlinear if self.numbers.is_at_port => match self.bound {
+                Some(bound) => Some(bound.hi()),
+                None => None,
             },
             Rule::Nonlinear => match (self.bound, self.numbers.coupling_damping()) {
                 (Some(bound), Some(coupling)) if bound.is_below(coupling) => Some(coupling.hi()),
@@ -305,6 +320,9 @@ impl PassivityProblem {
         if let Some(minimum) = self.stated {
             return Ok(RealPart { minimum, cos_theta: Interval::new(-1.0, 1.0) });
         }
+        if let Some(doubt) = self.no_transfer {
+            return Err(IndexError::Undecided(doubt));
+        }
         index_looked_at(&self.environment, self.numbers.period, true, closeness)
     }
 
@@ -319,8 +337,8 @@ impl PassivityProblem {
         alone: Option<Result<RealPart, IndexError>>,
         closeness: &Precision,
     ) -> Result<RealPart, IndexError> {
-        if self.stated.is_some() {
-            return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
+        if let Some(doubt) = self.no_transfer {
+            return Err(IndexError::Undecided(doubt));
         }
         if self.numbers.latency.is_some() {
             return self.port_index(closeness);
@@ -350,9 +368,9 @@ impl PassivityProblem {
         }
     }
 
-    /// Whether only a bound is stated.
+    /// Whether there is no transfer function, and at most a bound.
     pub(super) const fn has_no_transfer(&self) -> bool {
-        self.stated.is_some()
+        self.no_transfer.is_some()
     }
 
     /// Index of `E'` for a coupling with this much compliance over the standard one.
@@ -378,8 +396,8 @@ impl PassivityProblem {
         compliance: Interval,
         a_sample_late: bool,
     ) -> Result<Reduced, IndexError> {
-        if self.stated.is_some() {
-            return Err(IndexError::Undecided(UndecidedReason::NoTransferFunction));
+        if let Some(doubt) = self.no_transfer {
+            return Err(IndexError::Undecided(doubt));
         }
         let mut controller = match self.controller(compliance) {
             Ok(controller) => controller,
@@ -413,7 +431,8 @@ const fn profile_rejection(
     if profile.delay > 0 || ExtremeSlopes::of(profile, n).is_some() {
         return None;
     }
-    Some(Rejection::Steep { coupling: Interval::ONE.div(n.compliance) })
+    let coupling = Interval::ONE.div(n.compliance);
+    Some(Rejection::Steep { coupling, remedies: Remedies::NONE })
 }
 
 /// Enough to decide on which side of `limit` an index is.

@@ -1,7 +1,7 @@
 //! The index of a torque profile: by its extreme slopes alone (theory, section 14).
 
 use super::model::LoopIntervals;
-use crate::environment::{AnyProfile, Ends, Scale};
+use crate::environment::{AnyProfile, Ends};
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;
 
@@ -19,16 +19,7 @@ impl ExtremeSlopes {
     /// `None` where there is none: a torque in front of the coupling that rises faster than the coupling's
     /// own.
     pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
-        let outline = profile.outline();
-        let Scale { parts_per_rad, torque_of_part } = profile.scale();
-        let parts = around(n.format.parts_per_rad(parts_per_rad));
-        let unit = around(n.format.torque_of_part(torque_of_part)).mul(parts);
-        let inside = unit.mul(Interval::exact(outline.rise as f64));
-        let rise = match profile.ends {
-            Some(Ends { stiffness, .. }) => inside.max(n.coefficient(Interval::decimal(stiffness))),
-            None => inside,
-        };
-        let fall = unit.mul(Interval::exact(outline.fall as f64));
+        let Self { rise, fall } = Self::of_table(profile, n);
         if profile.delay > 0 {
             return Some(Self { rise, fall });
         }
@@ -38,6 +29,20 @@ impl ExtremeSlopes {
         }
         let fed_back = Interval::ONE.add(fall.mul(n.compliance));
         Some(Self { rise: rise.div(left), fall: fall.div(fed_back) })
+    }
+
+    /// Those of the table and its end stops, wherever the coupling is.
+    pub const fn of_table(profile: &AnyProfile, n: &LoopIntervals) -> Self {
+        let outline = profile.outline();
+        let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
+        let unit = unit.mul(parts_per_rad(profile, n));
+        let inside = unit.mul(Interval::exact(outline.rise as f64));
+        let rise = match profile.ends {
+            Some(Ends { stiffness, .. }) => inside.max(n.coefficient(Interval::decimal(stiffness))),
+            None => inside,
+        };
+        let fall = unit.mul(Interval::exact(outline.fall as f64));
+        Self { rise, fall }
     }
 
     /// The steeper of the two.
@@ -73,12 +78,36 @@ pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Opt
     Some(slopes.steepest().mul(n.period).add(damping.double()))
 }
 
+/// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to
+/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`. Torques of ticks before are fed back
+/// through a coupling whose compliances add up to `V`, and add up to `M / (1 - M V)`. `None` where that does
+/// not end.
+pub(super) const fn peak_gain(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+    compliance: f64,
+) -> Option<f64> {
+    let steepest = ExtremeSlopes::of_table(profile, n).steepest();
+    let gain = steepest.add(damper(profile, n).abs().double());
+    if profile.delay == 0 && !n.is_matched {
+        // In front of the coupling.
+        return Some(gain.hi());
+    }
+    let left = Interval::ONE.sub(gain.mul(Interval::exact(compliance)));
+    if left.is_positive() { Some(gain.div(left).hi()) } else { None }
+}
+
+/// Torque in N m over a part of a cell of the table, the smallest step of a place, at most.
+pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
+    ExtremeSlopes::of_table(profile, n).steepest().div(parts_per_rad(profile, n)).hi()
+}
+
 /// Whether a torque that is not zero in the mean would turn the device for ever.
 pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
     let outline = profile.outline();
     match profile.ends {
         // Nothing but springs that push back beyond them keeps the device within its ends.
-        Some(Ends { stiffness, .. }) => !(stiffness > 0.0),
+        Some(Ends { stiffness, .. }) => stiffness.is_nan() || stiffness <= 0.0,
         None => outline.sum != 0 || !outline.wraps,
     }
 }
@@ -92,6 +121,11 @@ pub(super) const fn is_motor_where_limited(profile: &AnyProfile) -> bool {
 /// `B / T` in N m/rad of the damper beside it.
 const fn damper(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
     n.coefficient(Interval::decimal(profile.damping).div(n.period))
+}
+
+/// Parts of a cell in a rad, as a law multiplies by them.
+const fn parts_per_rad(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+    around(n.format.parts_per_rad(profile.scale().parts_per_rad))
 }
 
 /// Around a number that was computed in a few roundings.

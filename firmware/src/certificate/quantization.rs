@@ -16,6 +16,7 @@ use core::f64::consts::TAU;
 use core::fmt;
 
 use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
+use super::profile::{peak_gain, step_of_part};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
 use crate::environment::Rational;
@@ -154,7 +155,14 @@ struct Peak {
 /// environment of norm `e` behind a coupling whose compliances add up to `V`, no torque is more than `e`
 /// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
 /// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
+///
+/// A torque profile has no impulse response, and is bounded by its steepest slope alone.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
+    if let Some(profile) = scene.environment.profile() {
+        let n = LoopIntervals::of(scene, format);
+        let norm = peak_gain(profile, &n, compliance(scene, format))?;
+        return Some(Peak { norm, in_any_motion: true });
+    }
     let LoopTransfers { controller, environment, .. } =
         LoopTransfers::in_format(scene, format).ok()?;
     let linear = l1_norm(&controller)?;
@@ -209,6 +217,15 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         None => torque * roundings(format, 4.0, 3.0) + states(scene, format, angle),
     };
     let at_position = angle * roundings(format, 2.0, 3.0) + deflection(scene, format, limit);
+    let (at_torque, at_position) = match scene.environment.profile() {
+        // Places in its table, and those of its end stops, are whole parts of a cell; a product and a sum
+        // more lead to them.
+        Some(profile) => {
+            let part = step_of_part(profile, &LoopIntervals::of(scene, format));
+            (at_torque + 2.0 * part, at_position + angle * roundings(format, 1.0, 1.0))
+        }
+        None => (at_torque, at_position),
+    };
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
 }
 
@@ -293,4 +310,99 @@ fn l1_norm(g: &Transfer) -> Option<f64> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::environment::{AnyProfile, Environment, Shape};
+    use crate::number::Number;
+    use crate::scene::{Coupling, Device, Latency, Timing};
+    use crate::servo::Servo;
+    use fixed::types::I8F24;
+
+    const COUNTS_PER_TURN: f64 = 4096.0;
+    const FULL_SCALE: f64 = 1.0;
+
+    fn scene(torque: f64, delay: usize) -> Scene {
+        let units = vec![0; 16].leak();
+        let profile = AnyProfile::sampled(&[Shape::detents(24, torque)], units, delay).unwrap();
+        Scene {
+            device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+            timing: Timing { period: 0.001, worst_period: None },
+            coupling: Coupling::Spring { stiffness: 44.0 },
+            environment: Environment::Profile(profile),
+            latency: Latency::NONE,
+            torque_limit: Some(FULL_SCALE),
+        }
+    }
+
+    fn bound(scene: &Scene, format: Format) -> Option<QuantizationBound> {
+        let steps = Resolution {
+            encoder: Some(TAU / COUNTS_PER_TURN),
+            full_scale: Some(FULL_SCALE),
+            friction: None,
+        };
+        QuantizationBound::of(scene, format, &steps)
+    }
+
+    /// `M / (1 - M V)` of a slope of 20 N m/rad behind 44 N m/rad; `M` where nothing is late.
+    #[test]
+    fn the_peak_of_a_profile_is_its_steepest_slope() {
+        let torque = 20.0 * TAU / (4.0 * 24.0);
+        let half_a_count = 0.5 * TAU / COUNTS_PER_TURN;
+        let late = bound(&scene(torque, 1), Format::F64).unwrap();
+        let expected = half_a_count * 20.0 / (1.0 - 20.0 / 44.0);
+        assert!((late.encoder.unwrap() / expected - 1.0).abs() < 1e-3, "{late:?}");
+        let at_once = bound(&scene(torque, 0), Format::F64).unwrap();
+        assert!((at_once.encoder.unwrap() / (half_a_count * 20.0) - 1.0).abs() < 1e-3);
+        assert!(late.in_any_motion && at_once.in_any_motion);
+        assert_eq!(bound(&scene(2.3 * torque, 1), Format::F64), None);
+    }
+
+    /// A servo with a coarse encoder and a DAC against one that has the positions as they are, in `f64`.
+    fn largest_error<N: Number>(scene: &Scene) -> f64 {
+        let transducers = |counts_per_turn: f64| Transducers {
+            counts_per_turn,
+            counter: crate::encoder::CounterWidth::Bits32,
+            full_scale_torque: FULL_SCALE,
+            largest_speed: 1e4,
+        };
+        let certified = scene.certify().unwrap();
+        let mut coarse = Servo::<_, N>::new(&certified, &transducers(COUNTS_PER_TURN)).unwrap();
+        let fine = 4096.0 * 1024.0;
+        let mut exact = Servo::<_, f64>::new(&certified, &transducers(fine)).unwrap();
+        let mut largest = 0.0_f64;
+        for tick in 0..20_000 {
+            // Slow and fast, through many detents and back.
+            let angle =
+                3.0 * (f64::from(tick) * 7e-4).sin() + 0.05 * (f64::from(tick) * 0.13).sin();
+            let count = |counts: f64| (angle * counts / TAU).round() as i32;
+            coarse.tick(crate::encoder::RawCount::from(count(COUNTS_PER_TURN).cast_unsigned()));
+            exact.tick(crate::encoder::RawCount::from(count(fine).cast_unsigned()));
+            largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
+        }
+        largest
+    }
+
+    #[test]
+    fn no_motion_has_a_torque_farther_off_than_the_bound() {
+        for delay in [0, 1] {
+            let scene = scene(20.0 * TAU / (4.0 * 24.0), delay);
+            // What is finer than the coarse one is not exact, either.
+            let allowed = |format| {
+                let bound = bound(&scene, format).unwrap();
+                let fine = bound.encoder.unwrap() / 1024.0;
+                (bound.encoder.unwrap() + bound.numbers + fine, bound.encoder.unwrap())
+            };
+            for (found, format) in [
+                (largest_error::<f32>(&scene), Format::F32),
+                (largest_error::<I8F24>(&scene), Format::Fixed { fraction_bits: 24 }),
+            ] {
+                let (most, encoder) = allowed(format);
+                assert!(found <= most, "{delay} {format}: {found} {most}");
+                assert!(found > 0.3 * encoder, "{delay} {format}: {found} {encoder}");
+            }
+        }
+    }
 }

@@ -39,6 +39,8 @@ pub enum Rejection {
     Steep {
         /// Stiffness of the coupling in N m/rad, for the torque of the same tick.
         coupling: Interval,
+        /// Changes of one number that would pass.
+        remedies: Remedies,
     },
     /// A pole outside the unit circle.
     UnstablePole {
@@ -147,6 +149,7 @@ impl Rejection {
     pub const fn remedies(&self) -> Remedies {
         match self {
             Self::UnstablePole { remedies, .. }
+            | Self::Steep { remedies, .. }
             | Self::Shortage { remedies, .. }
             | Self::Missed { remedies, .. }
             | Self::Coupling { remedies, .. }
@@ -197,7 +200,7 @@ impl Rejection {
             Self::Uneven => t.push(
                 "a torque limit would clip this torque profile on one side more than on the other, and what is left turns the device as a motor does: make it odd about its centre, or give it end stops",
             ),
-            Self::Steep { coupling } => {
+            Self::Steep { coupling, .. } => {
                 t.push("without delay a torque profile must rise by less than the coupling's ");
                 t.push_number(coupling.lo());
                 t.push(" N m/rad everywhere");
@@ -324,6 +327,10 @@ const fn write_doubt(
         UndecidedReason::MissedWithLatency => {
             "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
+        UndecidedReason::NoProfileBound => {
+            "no bound is known for a torque profile that no coupling separates from a damper, a lag, jitter or \
+             missed updates; couple it by a spring, or where torques lag by the matched coupling"
+        }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"
         }
@@ -361,7 +368,8 @@ mod tests {
         let all = [
             (Parameter::Stiffness, RANGE),
             (Parameter::Damping, RANGE),
-            (Parameter::Residual, RANGE),
+            (Parameter::ProfileTorque, (None, Some(1.23e-22))),
+            (Parameter::Count, (None, Some(4096.0))),
             (Parameter::CouplingStiffness, exactly),
             (Parameter::Period, RANGE),
             (Parameter::Passivity, least),
@@ -370,7 +378,14 @@ mod tests {
             (Parameter::SensorLag, RANGE),
         ];
         let all = all.map(|(parameter, (lowest, highest))| Remedy { parameter, lowest, highest });
-        let remedies = Remedies::of(all);
+        let of_profile = Remedies::of(all);
+        // What is no profile has no number of repetitions, and may have a residual.
+        let mut others = all;
+        let (lowest, highest) = RANGE;
+        others[2] = Remedy { parameter: Parameter::Residual, lowest, highest };
+        let mut remedies = Remedies::NONE;
+        (0..others.len()).filter(|&i| i != 3).for_each(|i| remedies.put(i, Some(others[i])));
+        let steep = Rejection::Steep { coupling: Interval::exact(LONG), remedies: of_profile };
         let long = Interval::exact(LONG);
         let coupling = Rejection::Coupling {
             alpha: Some(long),
@@ -393,7 +408,16 @@ mod tests {
             behind_standard,
         };
         let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
-        let all = [(coupling, last), (shortage, last), (undecided, last), (pole, range)];
+        let shortage_of_profile =
+            Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies: of_profile };
+        let all = [
+            (coupling, last),
+            (shortage, last),
+            (undecided, last),
+            (pole, range),
+            (steep, last),
+            (shortage_of_profile, last),
+        ];
         for (rejection, end) in all {
             let sentence = rejection.sentence_in(Format::Fixed { fraction_bits: 16 });
             let sentence = sentence.as_str();

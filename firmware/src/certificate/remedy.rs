@@ -13,8 +13,8 @@ use crate::text::Text;
 pub struct Remedy {
     /// Which number.
     pub parameter: Parameter,
-    /// The least value. `None`: the scene passes down to 0, for a period with all that are longer
-    /// than 0.
+    /// The least value. `None`: the scene passes down to 0; with a period, and with torque, end stops and
+    /// number of repetitions of a torque profile, with all that are greater than 0.
     pub lowest: Option<f64>,
     /// The greatest value. `None`: the scene passes with any larger value, up to the device's
     /// damping where that bounds it: no device has more passivity, and a residual above it adds
@@ -53,8 +53,10 @@ impl Remedy {
             }
             (None, None) => {}
         }
-        t.push(" ");
-        t.push(unit);
+        if !unit.is_empty() {
+            t.push(" ");
+            t.push(unit);
+        }
     }
 }
 
@@ -66,14 +68,16 @@ impl fmt::Display for Remedy {
     }
 }
 
-pub(super) const CANDIDATES: usize = 9;
+pub(super) const CANDIDATES: usize = 10;
 
 /// The numbers that are looked at, in the order in which they are printed. What more of a device
-/// would help is the damping where its passivity is not declared.
+/// would help is the damping where its passivity is not declared. In the place of a residual, which a torque
+/// profile does not have, is its torque.
 pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::Stiffness,
     Parameter::Damping,
     Parameter::Residual,
+    Parameter::Count,
     Parameter::CouplingStiffness,
     Parameter::Period,
     Parameter::Passivity,
@@ -99,6 +103,7 @@ impl Range {
 pub struct Remedies {
     ranges: [Range; CANDIDATES],
     is_damping: bool,
+    is_of_profile: bool,
     is_matched: bool,
 }
 
@@ -107,8 +112,12 @@ const MATCHED: &str = "behind the matched coupling";
 
 impl Remedies {
     /// No remedy.
-    pub const NONE: Self =
-        Self { ranges: [Range::EMPTY; CANDIDATES], is_damping: false, is_matched: false };
+    pub const NONE: Self = Self {
+        ranges: [Range::EMPTY; CANDIDATES],
+        is_damping: false,
+        is_of_profile: false,
+        is_matched: false,
+    };
 
     #[cfg(test)]
     pub(super) fn of(found: [Remedy; CANDIDATES]) -> Self {
@@ -140,6 +149,7 @@ impl Remedies {
         Some(Remedy {
             parameter: match ORDER[i] {
                 Parameter::Passivity if self.is_damping => Parameter::DeviceDamping,
+                Parameter::Residual if self.is_of_profile => Parameter::ProfileTorque,
                 parameter => parameter,
             },
             lowest: if lowest.is_finite() { Some(lowest) } else { None },
@@ -159,8 +169,10 @@ impl Remedies {
                 None => f64::INFINITY,
             },
         };
-        if matches!(parameter, Parameter::DeviceDamping) {
-            self.is_damping = true;
+        match parameter {
+            Parameter::DeviceDamping => self.is_damping = true,
+            Parameter::ProfileTorque => self.is_of_profile = true,
+            _ => {}
         }
     }
 

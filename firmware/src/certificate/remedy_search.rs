@@ -21,6 +21,7 @@ pub(super) const fn with_remedies(
     let mut out = rejection;
     match &mut out {
         Rejection::Shortage { remedies, .. }
+        | Rejection::Steep { remedies, .. }
         | Rejection::Missed { remedies, .. }
         | Rejection::Coupling { remedies, .. }
         | Rejection::Undecided { remedies, .. } => *remedies = search(scene, format),
@@ -45,8 +46,15 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
     }
     let mut i = 0;
     while i < CANDIDATES {
-        let varied = Varied { scene, format, parameter: ORDER[i] };
+        let parameter = match ORDER[i] {
+            Parameter::Residual if scene.environment.profile().is_some() => {
+                Parameter::ProfileTorque
+            }
+            parameter => parameter,
+        };
+        let varied = Varied { scene, format, parameter };
         let remedy = match ORDER[i] {
+            Parameter::Count => varied.fewer_repetitions(),
             Parameter::CouplingStiffness => standard_coupling(&varied),
             Parameter::Passivity => more_damping(scene, format),
             _ => varied.remedy(own),
@@ -165,7 +173,7 @@ const fn needed_passivity(scene: &Scene, format: Format) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::certificate::certify;
-    use crate::environment::Wall;
+    use crate::environment::{AnyProfile, Shape, Wall};
     use crate::scene::{Device, Latency, Timing};
 
     fn scene(stiffness: f64, coupling: Coupling) -> Scene {
@@ -244,5 +252,68 @@ mod tests {
         let rejection = certify(&alone).unwrap_err();
         assert_eq!((rejection.reason(), rejection.remedies()), ("unstable_pole", Remedies::NONE));
         assert!(!rejection.to_string().contains("coupling"), "{rejection}");
+    }
+
+    fn detents(count: u32, torque: f64, delay: usize, coupling: Coupling) -> Scene {
+        let units = vec![0; 16].leak();
+        let profile = AnyProfile::sampled(&[Shape::detents(count, torque)], units, delay).unwrap();
+        Scene { environment: Environment::Profile(profile), ..scene(0.0, coupling) }
+    }
+
+    /// The largest values by the formulas of the theory: slope `4 count torque / (2 pi)`, to be below
+    /// `2 delta / T` behind the coupling a sample late, at the port below `delta / (1.5 T)`, and without
+    /// delay below the coupling's.
+    #[test]
+    fn a_profile_that_is_too_steep_has_remedies() {
+        let standard = Coupling::Spring { stiffness: 44.0 };
+        let cases = [
+            (24, 5.0, 1, standard, 44.0, None),
+            (24, 1.0, 1, Coupling::Rigid, 22.0 / 1.5, Some(22.0 / 1.5)),
+            (1000, 0.5, 2, standard, 44.0 / 3.0, None),
+            (24, 5.0, 0, standard, 44.0, None),
+        ];
+        for (count, torque, delay, coupling, slope, at_port) in cases {
+            let scene = detents(count, torque, delay, coupling);
+            let rejection = certify(&scene).unwrap_err();
+            let sentence = rejection.sentence();
+            let sentence = sentence.as_str();
+            let found = |parameter| {
+                rejection.remedies().iter().find(|remedy| remedy.parameter == parameter)
+            };
+            let most = |parameter| {
+                let remedy: Remedy = found(parameter).unwrap_or_else(|| panic!("{sentence}"));
+                assert_eq!(remedy.lowest, None, "{sentence}");
+                let highest = remedy.highest.unwrap();
+                assert!(certify(&scene.with(parameter, highest).unwrap()).is_ok(), "{sentence}");
+                for part in [0.5, 0.1] {
+                    let less = (part * highest).ceil().min(highest);
+                    let less = if parameter == Parameter::Count { less } else { part * highest };
+                    assert!(certify(&scene.with(parameter, less).unwrap()).is_ok(), "{sentence}");
+                }
+                highest
+            };
+            let per_torque = 4.0 * f64::from(count) / core::f64::consts::TAU;
+            let limit = slope / per_torque;
+            let highest = most(Parameter::ProfileTorque);
+            assert!(highest < limit && highest > 0.99 * limit, "{limit}: {sentence}");
+            let fewer = most(Parameter::Count);
+            let fewest = slope / (4.0 * torque / core::f64::consts::TAU);
+            assert_eq!(fewer, fewest.floor(), "{sentence}");
+            assert!(sentence.contains(&format!("turn <= {fewer}")), "{sentence}");
+            match at_port {
+                Some(slope) => {
+                    let limit = 1e-3 * slope / (per_torque * torque);
+                    let period = most(Parameter::Period);
+                    assert!(period < limit && period > 0.99 * limit, "{limit}: {sentence}");
+                    let least = found(Parameter::DeviceDamping).unwrap().lowest.unwrap();
+                    assert!((least - 1.5e-3 * per_torque * torque).abs() < 1e-3, "{sentence}");
+                    let mut more = scene;
+                    more.device.damping = least;
+                    assert!(certify(&more).is_ok(), "{sentence}");
+                }
+                None => assert!(found(Parameter::Period).is_none() || delay != 1, "{sentence}"),
+            }
+            assert!(found(Parameter::Residual).is_none(), "{sentence}");
+        }
     }
 }

@@ -16,6 +16,8 @@ pub(super) const FARTHEST: f64 = 64.0;
 const FIRST_STEP: f64 = 1.25;
 /// The factor of a step where next to nothing is lacking.
 const LEAST_STEP: f64 = 1.01;
+/// More than any turn has.
+const MOST_REPETITIONS: f64 = 1e6;
 /// Values that are certified in the end: the one found, then one more of its last digit each, as
 /// next to a limit only the certificate decides.
 const CANDIDATES: u32 = 3;
@@ -86,6 +88,31 @@ impl Varied<'_> {
             Some(end) if (end < nearest) == (last < nearest) => Some(end),
             _ => Some(nearest),
         }
+    }
+
+    /// The most repetitions in a turn that pass, a whole number. With fewer a profile is less steep, so that
+    /// it passes with all of them.
+    pub const fn fewer_repetitions(&self) -> Option<Remedy> {
+        let Some(profile) = self.scene.environment.profile() else { return None };
+        if !profile.outline().wraps || profile.count > MOST_REPETITIONS {
+            return None;
+        }
+        let mut fails = profile.count as u32;
+        let mut passes = (profile.count / FARTHEST) as u32;
+        if passes == 0 {
+            passes = 1;
+        }
+        if !self.is_certified(passes as f64) {
+            return None;
+        }
+        while fails > passes + 1 {
+            let middle = passes + (fails - passes) / 2;
+            if self.is_certified(middle as f64) { passes = middle } else { fails = middle }
+        }
+        if passes as f64 >= profile.count {
+            return None;
+        }
+        Some(Remedy { parameter: self.parameter, lowest: None, highest: Some(passes as f64) })
     }
 
     /// The value in a bracket next to those that fail, to three digits and certified.

@@ -68,7 +68,6 @@ pub use late::{Delayed, SupportsTiming};
 pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
-pub(crate) use profile::Scale;
 pub use profile::{
     AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, Outline, Profile,
     ProfileLaw, Shape, ShapeError,

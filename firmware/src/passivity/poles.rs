@@ -73,6 +73,8 @@ pub enum UndecidedReason {
     NoTransferFunction,
     /// Updates may be missed and the torque lags.
     MissedWithLatency,
+    /// No bound is known for a torque profile with this damper, lag or missed updates.
+    NoProfileBound,
 }
 
 /// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.

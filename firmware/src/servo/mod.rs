@@ -191,16 +191,16 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
     #[inline(always)]
     fn angle(&mut self, raw: RawCount, action: &mut impl Action<N>) -> (N, LimitReason) {
         self.position.follow(raw);
-        if let Some(turn) = self.law.turn() {
-            if let Some((count, turns)) = turn.within(self.position.low()) {
-                if turns != 0 {
-                    cold_path();
-                    let by = turn.left(turns);
-                    self.law.shift(by);
-                    action.shift(by);
-                }
-                return self.angle_of(count);
+        if let Some(turn) = self.law.turn()
+            && let Some((count, turns)) = turn.within(self.position.low())
+        {
+            if turns != 0 {
+                cold_path();
+                let by = turn.left(turns);
+                self.law.shift(by);
+                action.shift(by);
             }
+            return self.angle_of(count);
         }
         let reading = self.position.reading();
         if reading.saturated {

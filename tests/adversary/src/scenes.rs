@@ -520,7 +520,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
             // What is cancelled is scaled.
             *residual = damping - (damping - *residual) * by;
         }
-        Environment::FreeMode { .. } | Environment::Stated(_) | Environment::Profile(_) => {}
+        Environment::FreeMode { .. } | Environment::Stated(_) => {}
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => match knob {
@@ -531,6 +531,10 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
             let scaled: Vec<f64> = rational.numerator.as_slice().iter().map(|c| c * by).collect();
             rational.numerator = coefficients(&scaled);
         }
+        Environment::Profile(profile) => match knob {
+            Knob::Damping => profile.damping *= by,
+            _ => profile.torque *= by,
+        },
     }
     scene
 }
@@ -616,7 +620,8 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
             other = scaled(&other, Knob::Residual, log_uniform(rng, 0.1, 1.0));
         }
         Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
-        Environment::Stated(_) | Environment::Profile(_) => {}
+        Environment::Profile(profile) => profile.torque *= log_uniform(rng, 0.1, 1.0),
+        Environment::Stated(_) => {}
     }
     passes(&other, format.format()).then_some(other)
 }

@@ -74,6 +74,7 @@ fn drawn(rng: &mut ChaCha8Rng) -> SceneFile {
         encoder_step: None,
         full_scale: None,
         friction: None,
+        shapes: None,
     }
 }
 

@@ -8,6 +8,7 @@ pub mod limits;
 pub mod map;
 pub mod nyquist;
 mod output;
+pub mod profile;
 pub mod trace;
 pub mod tradeoff;
 
@@ -41,7 +42,11 @@ pub enum Single {
     Nyquist(nyquist::Arguments),
     /// Draw gain and phase of the open loop of device and controller, with the margins
     Bode(bode::Arguments),
-    /// Draw a map of certified, stable and unstable walls over stiffness and damping (Z-width)
+    /// Draw torque and potential of a torque profile over angle, its steepest slopes, and the slope that
+    /// still certifies
+    Profile(profile::Arguments),
+    /// Draw a map of certified, stable and unstable walls over stiffness and damping (Z-width), or of
+    /// torque profiles over torque and repetitions in a turn
     Map(map::Arguments),
     /// Draw the largest certified stiffness over the sample rate, with the encoder's torque ripple
     Limits(limits::Arguments),
@@ -60,6 +65,7 @@ impl Single {
         match self {
             Self::Nyquist(arguments) => &arguments.output,
             Self::Bode(arguments) => &arguments.output,
+            Self::Profile(arguments) => &arguments.output,
             Self::Map(arguments) => &arguments.output,
             Self::Limits(arguments) => &arguments.output,
             Self::Latency(arguments) => &arguments.output,
@@ -80,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let chart = match kind {
         Single::Nyquist(arguments) => nyquist::draw(arguments)?,
         Single::Bode(arguments) => bode::draw(arguments)?,
+        Single::Profile(arguments) => profile::draw(arguments)?,
         Single::Map(arguments) => map::draw(arguments)?,
         Single::Limits(arguments) => limits::draw(arguments)?,
         Single::Latency(arguments) => latency::draw(arguments)?,

@@ -20,7 +20,6 @@ mod sum;
 pub use any::AnyProfile;
 pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
 pub use law::ProfileLaw;
-pub(crate) use scale::Scale;
 pub use shape::Shape;
 pub use shape_error::ShapeError;
 pub use sum::{Ends, Layout};

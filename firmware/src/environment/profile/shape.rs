@@ -167,7 +167,7 @@ impl Shape {
     }
 
     /// Width in rad of the narrowest straight piece that a table has to show.
-    pub(super) const fn narrowest(&self) -> f64 {
+    pub const fn narrowest(&self) -> f64 {
         match *self {
             Self::Detents { count, .. } => 0.25 * TAU / count as f64,
             Self::Texture { pitch, .. } => 0.25 * pitch,
@@ -189,7 +189,7 @@ impl Shape {
                 [("pitch", pitch, true), ("amplitude", amplitude, true), UNUSED]
             }
             Self::EndStops { from, to, stiffness } => {
-                if !(from < to) {
+                if from.is_nan() || to.is_nan() || from >= to {
                     let bound = "below `to`";
                     return Err(ShapeError::Number { shape, name: "from", value: from, bound });
                 }

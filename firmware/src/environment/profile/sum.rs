@@ -193,24 +193,24 @@ impl Frame {
                 return Err(error);
             }
             narrowest = narrowest.min(shapes[i].narrowest());
-            if let Some(of_this) = shapes[i].extent() {
-                if of_this.stiffness > 0.0 {
-                    let is_stops = matches!(shapes[i], Shape::EndStops { .. });
-                    let reach =
-                        Ends { from: of_this.from, to: of_this.to, stiffness: of_this.stiffness };
-                    match &mut ends {
-                        Some(widest) => {
-                            if is_stops && (reach.to - reach.from > widest.to - widest.from) {
-                                outermost = Some(i);
-                            }
-                            widest.from = widest.from.min(reach.from);
-                            widest.to = widest.to.max(reach.to);
-                            widest.stiffness = widest.stiffness.max(reach.stiffness);
+            if let Some(of_this) = shapes[i].extent()
+                && of_this.stiffness > 0.0
+            {
+                let is_stops = matches!(shapes[i], Shape::EndStops { .. });
+                let reach =
+                    Ends { from: of_this.from, to: of_this.to, stiffness: of_this.stiffness };
+                match &mut ends {
+                    Some(widest) => {
+                        if is_stops && (reach.to - reach.from > widest.to - widest.from) {
+                            outermost = Some(i);
                         }
-                        None => {
-                            ends = Some(reach);
-                            outermost = if is_stops { Some(i) } else { None };
-                        }
+                        widest.from = widest.from.min(reach.from);
+                        widest.to = widest.to.max(reach.to);
+                        widest.stiffness = widest.stiffness.max(reach.stiffness);
+                    }
+                    None => {
+                        ends = Some(reach);
+                        outermost = if is_stops { Some(i) } else { None };
                     }
                 }
             }

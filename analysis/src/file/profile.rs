@@ -1,0 +1,394 @@
+//! The torque profile of a file: knots and named shapes, which add up to one table.
+
+use firmware::environment::{AnyProfile, Ends, Environment, Shape, ShapeError};
+use firmware::parameter::Parameter;
+
+use super::faults::{Read, Reported, all};
+use super::key::{self, Key};
+use super::problem::Problem;
+use super::section::{Found, Section};
+use super::shape::ShapeKind;
+use super::tree::Span;
+
+/// Most shapes of a profile.
+const MOST_SHAPES: usize = 16;
+/// Most knots of a table: each piece between two of them takes two cells to show.
+const MOST_KNOTS: usize = 2048;
+/// Cells of the smallest and of the largest table.
+const CELLS: [usize; 2] = [16, 4096];
+/// Cells in the narrowest straight piece, so that one at the least is all within it.
+const CELLS_OF_A_PIECE: f64 = 2.0;
+/// How far the last knot may be from where the period ends, as a part of the period: it is written with a
+/// few digits.
+const CLOSED: f64 = 1e-6;
+
+/// The shapes of a torque profile as a file has them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shapes {
+    /// Those of `environment.knots` first.
+    pub shapes: Vec<Shape>,
+    /// End stops that keys of `[environment]` itself give.
+    pub ends: Option<Ends>,
+    /// Number of the table's cells, where the file says it.
+    pub cells: Option<usize>,
+}
+
+impl Shapes {
+    /// Their sum as a table, with as many cells as show every straight piece.
+    ///
+    /// # Errors
+    /// Why they are no profile.
+    pub fn sampled(&self, delay: usize) -> Result<AnyProfile, ShapeError> {
+        let mut shapes = self.shapes.clone();
+        shapes.extend(self.ends.map(|Ends { from, to, stiffness }| Shape::EndStops {
+            from,
+            to,
+            stiffness,
+        }));
+        let sampled = |cells: usize| AnyProfile::sampled(&shapes, vec![0; cells].leak(), delay);
+        if let Some(cells) = self.cells {
+            return sampled(cells);
+        }
+        let [least, most] = CELLS;
+        let narrowest = shapes.iter().map(narrowest_piece).fold(f64::INFINITY, f64::min);
+        let mut cells = least;
+        loop {
+            let found = sampled(cells).and_then(|profile| {
+                let in_piece = narrowest * profile.knots_per_rad();
+                if in_piece >= CELLS_OF_A_PIECE * (1.0 - 1e-9) {
+                    return Ok(profile);
+                }
+                let needed = (cells as f64 * CELLS_OF_A_PIECE / in_piece).ceil();
+                Err(ShapeError::TooFewKnots { knots: cells, needed })
+            });
+            match found {
+                Err(ShapeError::TooFewKnots { .. }) if cells < most => cells *= 2,
+                done => return done,
+            }
+        }
+    }
+}
+
+/// Width in rad of the narrowest straight piece of a shape.
+fn narrowest_piece(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Table(knots) | Shape::Periodic(knots) => {
+            knots.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min)
+        }
+        named => named.narrowest(),
+    }
+}
+
+/// From the first knot to the last one in rad.
+pub fn span(knots: &[(f64, f64)]) -> f64 {
+    match knots {
+        [(first, _), .., (last, _)] => last - first,
+        _ => 0.0,
+    }
+}
+
+/// A torque profile, and where its numbers stood.
+pub struct ProfileTable {
+    /// The environment.
+    pub environment: Environment,
+    /// What it was sampled from.
+    pub shapes: Shapes,
+    places: Vec<Place>,
+    torque: Option<Span>,
+}
+
+/// Where a shape stood.
+struct Place {
+    /// The table that its keys stand in.
+    table: String,
+    span: Span,
+    /// Its numbers by name.
+    numbers: Vec<(&'static str, f64, Span)>,
+    /// Its knots, each an angle and a torque.
+    knots: Vec<[Found<f64>; 2]>,
+}
+
+/// A shape and where it stood.
+type Placed = (Shape, Place);
+
+/// Reads `[environment]` of a torque profile.
+pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
+    let delay = section.whole(&key::DELAY_SAMPLES);
+    let numbers = [&key::DAMPING, &key::PROFILE_TORQUE, &key::COUNT, &key::CENTRE]
+        .map(|key| section.found(key));
+    let ends = [&key::FROM, &key::TO, &key::STIFFNESS].map(|key| section.found(key));
+    let cells = cells(section);
+    let knots = table(section, &key::KNOTS, &key::KNOTS_PERIOD, key::ENVIRONMENT.path);
+    let shapes = shapes(section);
+    let (delay, cells, knots, shapes) = (delay?, cells?, knots?, shapes?);
+    let [damping, torque, count, centre] = numbers;
+    let [from, to, stiffness] = ends;
+    let (from, to, stiffness) = (from?, to?, stiffness?);
+    let (damping, torque, count, centre) = (damping?, torque?, count?, centre?);
+    let (shapes, mut places): (Vec<Shape>, Vec<Place>) = knots.into_iter().chain(shapes).unzip();
+    if shapes.is_empty() {
+        return Err(section.missing(&key::SHAPE));
+    }
+    let has_ends = shapes.iter().any(|shape| {
+        matches!(shape, Shape::EndStops { .. } | Shape::Centre { .. } | Shape::Bistable { .. })
+    });
+    let is_given = from.is_some() || to.is_some() || stiffness.is_some();
+    let mut shapes = Shapes { shapes, ends: None, cells };
+    if is_given && !has_ends {
+        let ends = [(&key::FROM, &from), (&key::TO, &to), (&key::STIFFNESS, &stiffness)];
+        shapes.ends = Some(own_ends(section, ends, &mut places)?);
+    }
+    let mut profile =
+        shapes.sampled(delay).map_err(|error| refused(section, &shapes, &places, &error))?;
+    if !profile.outline().wraps {
+        for (key, found) in [(&key::COUNT, &count), (&key::CENTRE, &centre)] {
+            if let Some(Found { span, .. }) = found {
+                let reason = "stands beside shapes that do not repeat, which stay where they are";
+                return Err(section.conflict(key, span.clone(), reason.to_owned()));
+            }
+        }
+    }
+    profile.damping = value(&damping).unwrap_or(0.0);
+    profile.torque = value(&torque).unwrap_or(profile.torque);
+    profile.count = value(&count).unwrap_or(profile.count);
+    profile.centre = value(&centre).unwrap_or(profile.centre);
+    if let (Some(ends), true) = (&mut profile.ends, has_ends) {
+        ends.from = value(&from).unwrap_or(ends.from);
+        ends.to = value(&to).unwrap_or(ends.to);
+        ends.stiffness = value(&stiffness).unwrap_or(ends.stiffness);
+    }
+    let (environment, torque) = (Environment::Profile(profile), torque.map(|found| found.span));
+    Ok(ProfileTable { environment, shapes, places, torque })
+}
+
+fn value(found: &Option<Found<f64>>) -> Option<f64> {
+    found.as_ref().map(|found| found.value)
+}
+
+fn cells(section: &mut Section<'_>) -> Read<Option<usize>> {
+    let Some(Found { value, span }) = section.found(&key::CELLS)? else { return Ok(None) };
+    let cells = value as usize;
+    if cells.is_power_of_two() {
+        return Ok(Some(cells));
+    }
+    let below = cells.next_power_of_two() / 2;
+    let reason = format!("is no power of two; next to it are {below} and {}", 2 * below);
+    Err(section.conflict(&key::CELLS, span, reason))
+}
+
+/// The end stops that the environment's own keys give, all three of them.
+fn own_ends(
+    section: &mut Section<'_>,
+    keys: [(&'static Key, &Option<Found<f64>>); 3],
+    places: &mut Vec<Place>,
+) -> Read<Ends> {
+    let mut numbers = Vec::new();
+    for (key, found) in keys {
+        match found {
+            Some(Found { value, span }) => numbers.push((key.name(), *value, span.clone())),
+            None => return Err(section.missing(key)),
+        }
+    }
+    let [from, to, stiffness] = [0, 1, 2].map(|i| numbers[i].1);
+    let (table, span) = (key::ENVIRONMENT.path.to_owned(), section.span());
+    places.push(Place { table, span, numbers, knots: Vec::new() });
+    Ok(Ends { from, to, stiffness })
+}
+
+fn shapes(section: &mut Section<'_>) -> Read<Vec<Placed>> {
+    let Some(Found { value: tables, span }) = section.tables(&key::SHAPE)? else {
+        return Ok(Vec::new());
+    };
+    if tables.is_empty() || tables.len() > MOST_SHAPES {
+        let reason = format!("are {} shapes; there must be 1 to {MOST_SHAPES}", tables.len());
+        return Err(section.conflict(&key::SHAPE, span, reason));
+    }
+    all(tables.into_iter().enumerate().map(|(index, table)| shape(index, table)))
+}
+
+fn shape(index: usize, mut section: Section<'_>) -> Read<Placed> {
+    let name = format!("{}[{index}]", key::SHAPE.path);
+    section.number_as(name.clone());
+    let kind = section.needed_text(&key::SHAPE_TYPE).and_then(|Found { value, span }| {
+        ShapeKind::find(&value).map(|kind| (kind, span.clone())).ok_or_else(|| {
+            section.out_of_bounds(&key::SHAPE_TYPE, &section.name_of(&key::SHAPE_TYPE), &span)
+        })
+    });
+    let shape = match kind {
+        Ok((kind, span)) => {
+            section.specialize(format!("a {} [[{}]]", kind.name, key::SHAPE.path), kind.needed);
+            of_kind(kind, name, span, &mut section)
+        }
+        Err(reported) => {
+            // Of what type it was to be is not known: a key of any is a good one.
+            let keys = key::ALL.iter().filter(|key| key.table() == key::SHAPE.path);
+            keys.for_each(|key| section.skip(key));
+            Err(reported)
+        }
+    };
+    section.finish();
+    shape
+}
+
+fn of_kind(kind: &ShapeKind, table: String, span: Span, section: &mut Section<'_>) -> Read<Placed> {
+    if kind.name == super::shape::TABLE {
+        let found = self::table(section, &key::SHAPE_KNOTS, &key::SHAPE_PERIOD, &table)?;
+        return found.ok_or_else(|| section.missing(&key::SHAPE_KNOTS));
+    }
+    let numbers = all(kind.keys().map(|key| {
+        Ok(match section.found(key)? {
+            Some(Found { value, span }) => (key, value, span),
+            // With its default, or missing.
+            None => (key, section.number(key)?, span.clone()),
+        })
+    }))?;
+    let number = |key: &Key| {
+        numbers.iter().find(|(other, ..)| *other == key).map_or(0.0, |(_, value, _)| *value)
+    };
+    let shape = kind.shape(number).ok_or_else(|| section.missing(&key::SHAPE_KNOTS))?;
+    let numbers = numbers.into_iter().map(|(key, value, span)| (key.name(), value, span)).collect();
+    Ok((shape, Place { table, span, numbers, knots: Vec::new() }))
+}
+
+/// The table of knots with these keys, if it is there.
+fn table(
+    section: &mut Section<'_>,
+    key: &'static Key,
+    period_key: &'static Key,
+    name: &str,
+) -> Read<Option<Placed>> {
+    let knots = section.pairs(key);
+    let period = section.found(period_key)?;
+    let Some(Found { value: knots, span }) = knots? else {
+        return match period {
+            None => Ok(None),
+            Some(Found { span, .. }) => {
+                let reason = format!("stands without `{}`", section.name_of(key));
+                Err(section.conflict(period_key, span, reason))
+            }
+        };
+    };
+    if knots.len() < 2 || knots.len() > MOST_KNOTS {
+        let reason = format!("are {} knots; there must be 2 to {MOST_KNOTS}", knots.len());
+        return Err(section.conflict(key, span, reason));
+    }
+    let pairs: Vec<(f64, f64)> =
+        knots.iter().map(|[angle, torque]| (angle.value, torque.value)).collect();
+    let place = Place { table: name.to_owned(), span, numbers: Vec::new(), knots };
+    if let Some(Found { value: period, .. }) = period {
+        closes(section, key, period, &place)?;
+    }
+    let pairs: &'static [(f64, f64)] = pairs.leak();
+    let shape = if period.is_some() { Shape::Periodic(pairs) } else { Shape::Table(pairs) };
+    Ok(Some((shape, place)))
+}
+
+/// Whether the last knot is where the period ends.
+fn closes(section: &Section<'_>, key: &Key, period: f64, place: &Place) -> Read<()> {
+    let ([first, _], [last, _]) = (&place.knots[0], &place.knots[place.knots.len() - 1]);
+    let end = first.value + period;
+    if (last.value - end).abs() <= CLOSED * period {
+        return Ok(());
+    }
+    let name = format!("{}[{}][0]", section.name_of(key), place.knots.len() - 1);
+    let bound = format!(
+        "{end}, where the period of {period} rad ends: the last knot closes it, with the torque of \
+         the first"
+    );
+    Err(out_of_bounds(section, name, &last.span, bound))
+}
+
+fn out_of_bounds(section: &Section<'_>, key: String, span: &Span, bound: String) -> Reported {
+    let value = section.written(span);
+    section.report(span.clone(), Problem::OutOfBounds { key, value, bound })
+}
+
+/// What the library says against the shapes, with the place in the file.
+fn refused(
+    section: &Section<'_>,
+    shapes: &Shapes,
+    places: &[Place],
+    error: &ShapeError,
+) -> Reported {
+    let whole = |key: &Key, span: Span| {
+        let (key, reason) = (section.name_of(key), error.to_string());
+        section.report(span, Problem::Shapes { key, reason })
+    };
+    match *error {
+        ShapeError::Number { shape, name, bound, .. } => {
+            let place = &places[shape];
+            let number = place.numbers.iter().find(|(other, ..)| *other == name);
+            let span = number.map_or(&place.span, |(.., span)| span);
+            out_of_bounds(section, format!("{}.{name}", place.table), span, bound.to_owned())
+        }
+        ShapeError::Knot { shape, knot, value, bound, limit } => {
+            let place = &places[shape];
+            let [angle, torque] = &place.knots[knot];
+            let (part, span) =
+                if angle.value == value { (0, &angle.span) } else { (1, &torque.span) };
+            let limit = limit.map_or_else(String::new, |limit| format!(" {limit}"));
+            let name = format!("{}.{}[{knot}][{part}]", place.table, key::KNOTS.name());
+            out_of_bounds(section, name, span, format!("{bound}{limit}"))
+        }
+        ShapeError::Endless { shape } => {
+            let place = &places[shape];
+            let (key, reason) = (place.table.clone(), NEEDS_ENDS.to_owned());
+            section.report(place.span.clone(), Problem::Shapes { key, reason })
+        }
+        ShapeError::TooFewKnots { needed, .. } => {
+            let [least, most] = CELLS;
+            let cells = shapes.cells.unwrap_or(most);
+            let reason = format!(
+                "are {cells}, and the narrowest straight piece takes {needed} cells; a table has {least} \
+                 to {most}"
+            );
+            section.report(
+                places[0].span.clone(),
+                Problem::Shapes { key: section.name_of(&key::CELLS), reason },
+            )
+        }
+        ShapeError::Mean { .. } => {
+            let tables = places.iter().find(|place| !place.knots.is_empty());
+            whole(&key::KNOTS, tables.map_or(section.span(), |place| place.span.clone()))
+        }
+        ShapeError::Flat | ShapeError::Empty => whole(&key::SHAPE, places[0].span.clone()),
+    }
+}
+
+const NEEDS_ENDS: &str = "repeats no whole number of times in a turn, so that it needs end stops, which hold the angle within \
+     its range: a shape of type \"end_stops\", or `from`, `to` and `stiffness`";
+
+impl ProfileTable {
+    /// Checks that no torque of the profile is beyond the DAC's full scale in N m.
+    pub fn within(&self, section: &Section<'_>, full_scale: Option<f64>) -> Read<()> {
+        let (Some(full_scale), Some(torque)) =
+            (full_scale, self.environment.get(Parameter::ProfileTorque))
+        else {
+            return Ok(());
+        };
+        if torque <= full_scale {
+            return Ok(());
+        }
+        let bound = format!("a torque of at most `{}` = {full_scale} N m", key::FULL_SCALE.path);
+        if let Some(span) = &self.torque {
+            let name = key::PROFILE_TORQUE.path.to_owned();
+            return Err(out_of_bounds(section, name, span, bound));
+        }
+        for Place { table, numbers, knots, .. } in &self.places {
+            let is_torque = |name: &str| name == "torque" || name == "amplitude";
+            if let Some((name, _, span)) =
+                numbers.iter().find(|(name, value, _)| is_torque(name) && *value > full_scale)
+            {
+                return Err(out_of_bounds(section, format!("{table}.{name}"), span, bound));
+            }
+            let beyond = knots.iter().position(|[_, torque]| torque.value.abs() > full_scale);
+            if let Some(knot) = beyond {
+                let name = format!("{table}.{}[{knot}][1]", key::KNOTS.name());
+                return Err(out_of_bounds(section, name, &knots[knot][1].span, bound));
+            }
+        }
+        let (key, span) = (key::SHAPE.path.to_owned(), self.places[0].span.clone());
+        let reason = format!("the shapes add up to {torque} N m, and must give {bound}");
+        Err(section.report(span, Problem::Shapes { key, reason }))
+    }
+}

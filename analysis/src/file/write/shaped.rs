@@ -1,0 +1,64 @@
+//! `[environment]` of a torque profile: its shapes as they were read, and what is no longer theirs.
+
+use firmware::environment::{AnyProfile, Ends, Shape};
+
+use super::{number, quoted};
+use crate::file::key::{self, Bound, Key};
+use crate::file::kind::PROFILE;
+use crate::file::profile::{Shapes, span};
+use crate::file::shape;
+
+/// A torque profile.
+pub fn profile(lines: &mut Vec<String>, profile: &AnyProfile, shapes: &Shapes) {
+    lines.push(format!("type = {}\ndelay = {}", quoted(PROFILE), profile.delay));
+    // By its bits: -0.0 is another number than 0.0.
+    number(lines, "damping", Some(profile.damping).filter(|damping| damping.to_bits() != 0));
+    let own = shapes.sampled(profile.delay).ok();
+    let mut changed = |key: &Key, value: Option<f64>, own: Option<f64>| {
+        let is_same = value.map(f64::to_bits) == own.map(f64::to_bits);
+        number(lines, key.name(), value.filter(|_| !is_same));
+    };
+    let was = |of: fn(&AnyProfile) -> f64| own.as_ref().map(of);
+    changed(&key::PROFILE_TORQUE, Some(profile.torque), was(|own| own.torque));
+    changed(&key::COUNT, Some(profile.count), was(|own| own.count));
+    changed(&key::CENTRE, Some(profile.centre), was(|own| own.centre));
+    // Those of keys are in no shape.
+    let of_shapes = own.and_then(|own| own.ends).filter(|_| shapes.ends.is_none());
+    let of_ends: [(&Key, fn(Ends) -> f64); 3] = [
+        (&key::FROM, |ends| ends.from),
+        (&key::TO, |ends| ends.to),
+        (&key::STIFFNESS, |ends| ends.stiffness),
+    ];
+    for (key, of) in of_ends {
+        changed(key, profile.ends.map(of), of_shapes.map(of));
+    }
+    lines.extend(shapes.cells.map(|cells| format!("cells = {cells}")));
+    match shapes.shapes[..] {
+        [Shape::Table(knots)] => self::knots(lines, knots, false),
+        [Shape::Periodic(knots)] => self::knots(lines, knots, true),
+        _ => shapes.shapes.iter().for_each(|shape| named(lines, shape)),
+    }
+}
+
+fn knots(lines: &mut Vec<String>, knots: &[(f64, f64)], is_periodic: bool) {
+    let pairs: Vec<String> =
+        knots.iter().map(|(angle, torque)| format!("[{angle:?}, {torque:?}]")).collect();
+    lines.push(format!("knots = [{}]", pairs.join(", ")));
+    number(lines, "period", Some(span(knots)).filter(|_| is_periodic));
+}
+
+fn named(lines: &mut Vec<String>, shape: &Shape) {
+    let (name, numbers) = shape::written(shape);
+    lines.push(format!("[[{}]]\ntype = {}", key::SHAPE.path, quoted(name)));
+    if let Shape::Table(knots) | Shape::Periodic(knots) = shape {
+        return self::knots(lines, knots, matches!(shape, Shape::Periodic(_)));
+    }
+    for (key, value) in numbers {
+        match key.bound {
+            Bound::Number(firmware::parameter::Range::Whole(..)) => {
+                lines.push(format!("{} = {value}", key.name()));
+            }
+            _ => number(lines, key.name(), Some(value)),
+        }
+    }
+}

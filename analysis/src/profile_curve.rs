@@ -1,0 +1,241 @@
+//! A torque profile over angle, with its steepest slopes and the slope that would still certify.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use firmware::coupling::Response;
+use firmware::environment::{AnyProfile, Discretize, Ends, FULL_SCALE, Law};
+use firmware::scene::Scene;
+
+use crate::design::{Answer, Choice, Quantity, Terms, largest};
+
+/// Points of a curve.
+const POINTS: usize = 4000;
+/// Part of a range between end stops that is shown beyond either of them at most.
+const BEYOND: f64 = 0.08;
+/// Torque of the end stops that is shown, in torques of the profile: else they hide it.
+const PUSHED: f64 = 1.5;
+/// Repetitions that are shown of a profile without end stops.
+const REPETITIONS: f64 = 3.0;
+
+/// A straight piece of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Slope in N m/rad: positive where the torque pushes back.
+    pub slope: f64,
+    /// Angle in rad in its middle.
+    pub angle: f64,
+    /// Torque in N m there.
+    pub torque: f64,
+    /// Width in rad.
+    pub width: f64,
+}
+
+/// A torque profile over angle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileCurve {
+    /// Angle in rad, torque in N m and potential in J, from its least on.
+    pub points: Vec<[f64; 3]>,
+    /// The piece that rises most.
+    pub rise: Piece,
+    /// The piece that falls most.
+    pub fall: Piece,
+    /// The steepest rise in N m/rad with which the scene certifies, all torques in proportion, or the end
+    /// stops where these are steepest; `None` where there is none.
+    pub certified: Option<f64>,
+}
+
+impl ProfileCurve {
+    /// Of a scene with a torque profile; `None` of another.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        let profile = scene.environment.profile()?;
+        let shown = shown(profile);
+        let torque = undelayed(scene, profile)?;
+        let angle =
+            |i: usize| shown.start + (shown.end - shown.start) * i as f64 / (POINTS - 1) as f64;
+        let mut points: Vec<[f64; 3]> = Vec::with_capacity(POINTS);
+        for i in 0..POINTS {
+            let (x, f) = (angle(i), torque(angle(i)));
+            let energy = points
+                .last()
+                .map_or(0.0, |[before, at, energy]| energy + 0.5 * (at + f) * (x - before));
+            points.push([x, f, energy]);
+        }
+        let least = points.iter().map(|point| point[2]).fold(f64::INFINITY, f64::min);
+        points.iter_mut().for_each(|point| point[2] -= least);
+        let [rise, fall] = steepest(profile, &shown, &torque);
+        Some(Self { points, rise, fall, certified: certified_rise(scene, profile, rise.slope) })
+    }
+}
+
+/// The angles in rad to show: between end stops and a little beyond, a turn, or some repetitions.
+fn shown(profile: &AnyProfile) -> Range<f64> {
+    match profile.ends {
+        Some(Ends { from, to, stiffness }) => {
+            let beyond = (PUSHED * profile.torque / stiffness).min(BEYOND * (to - from));
+            from - beyond..to + beyond
+        }
+        None => {
+            let width = TAU / profile.count * REPETITIONS.min(profile.count);
+            profile.centre - 0.5 * width..profile.centre + 0.5 * width
+        }
+    }
+}
+
+/// The torque in N m at an angle in rad, neither late nor damped, by the law that runs.
+fn undelayed(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64) -> f64> {
+    let mut still = *profile;
+    (still.delay, still.damping) = (0, 0.0);
+    let law = Discretize::<f64>::law(&still, &scene.context()).ok()?;
+    Some(move |angle: f64| match law.evaluate(angle) {
+        Response::Held(torque) => torque,
+        _ => f64::NAN,
+    })
+}
+
+/// The steepest pieces, up and down, next to the middle of what is shown.
+fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f64) -> [Piece; 2] {
+    let (units, per_rad) = (profile.units(), profile.knots_per_rad());
+    let width = 1.0 / per_rad;
+    let unit = profile.torque / f64::from(FULL_SCALE) * per_rad;
+    let within = profile.ends.map_or(shown.clone(), |ends| ends.from..ends.to);
+    let middle = 0.5 * (within.start + within.end);
+    let cells = units.len() - usize::from(!profile.outline().wraps);
+    let slope = |cell: usize| {
+        let next = units[(cell + 1) % units.len()];
+        f64::from(i32::from(next) - i32::from(units[cell])) * unit
+    };
+    let repeats = TAU / profile.count;
+    let best = |sign: f64| {
+        let steepest = (0..cells).map(|cell| sign * slope(cell)).fold(f64::NEG_INFINITY, f64::max);
+        let angles = (0..cells).filter(|&cell| sign * slope(cell) == steepest).map(|cell| {
+            let angle = profile.centre + (cell as f64 + 0.5) * width;
+            // The same one in the repetition next to the middle.
+            if profile.outline().wraps {
+                angle - ((angle - middle) / repeats).round() * repeats
+            } else {
+                angle
+            }
+        });
+        let angle = angles.min_by(|a, b| (a - middle).abs().total_cmp(&(b - middle).abs()));
+        let angle = angle.unwrap_or(middle);
+        // As far as the line goes on, but for the rounding of knots to units.
+        let is_same = |at: f64| {
+            let rise = torque(at + 0.5 * width) - torque(at - 0.5 * width);
+            (rise / width - sign * steepest).abs() <= 2.5 * unit
+        };
+        let go_on = |step: f64| {
+            let cells = (1..units.len()).take_while(|&cell| is_same(angle + step * cell as f64));
+            step * cells.count() as f64
+        };
+        let (down, up) = (go_on(-width), go_on(width));
+        let angle = angle + 0.5 * (down + up);
+        Piece { slope: sign * steepest, angle, torque: torque(angle), width: width + up - down }
+    };
+    let [mut rise, fall] = [best(1.0), best(-1.0)];
+    if let Some(Ends { to, stiffness, .. }) = profile.ends
+        && stiffness > rise.slope
+    {
+        let width = shown.end - to;
+        let angle = to + 0.5 * width;
+        rise = Piece { slope: stiffness, angle, torque: torque(angle), width };
+    }
+    [rise, fall]
+}
+
+/// The design's answer with everything else as it is.
+const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
+
+fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64) -> Option<f64> {
+    let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness >= rise);
+    if is_of_stops {
+        return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
+            Answer::Limit(stiffness, _) => Some(stiffness),
+            _ => None,
+        };
+    }
+    match largest(scene, Quantity::Torque, &AS_IT_IS) {
+        Answer::Limit(torque, _) => Some(rise * torque / profile.torque),
+        _ => None,
+    }
+}
+
+/// The largest torque in N m of a profile for each number of repetitions in a turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DetentLimits {
+    /// Delay in samples.
+    pub delay: usize,
+    /// Number of repetitions, and torque.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl DetentLimits {
+    /// Of a scene with another delay, for these numbers of repetitions.
+    pub fn of(scene: &Scene, delay: usize, counts: impl Iterator<Item = u32>) -> Self {
+        let late = Quantity::Delay.set(scene, delay as f64).unwrap_or(*scene);
+        let point = |count: u32| {
+            let scene = Quantity::Count.set(&late, f64::from(count))?;
+            match largest(&scene, Quantity::Torque, &AS_IT_IS) {
+                Answer::Limit(torque, _) => Some((f64::from(count), torque)),
+                _ => None,
+            }
+        };
+        Self { delay, points: counts.filter_map(point).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Format, parse};
+
+    const DETENTS: &str = "name = \"knob\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n[servo]\n\
+        period = 0.001\n[coupling]\nstiffness = 44.0\n[environment]\ntype = \"profile\"\ndelay = 1\n\
+        [[environment.shape]]\ntype = \"detents\"\ncount = 24\ntorque = 0.05\n";
+
+    fn curve(text: &str) -> ProfileCurve {
+        ProfileCurve::of(&parse("a.toml", Format::Toml, text).unwrap().scene).unwrap()
+    }
+
+    /// A wave of straight lines: slope `4 n F / (2 pi)`, and the area of a triangle between a place to
+    /// rest at and the top beside it.
+    #[test]
+    fn detents_have_their_slope_and_their_height() {
+        let curve = curve(DETENTS);
+        let slope = 4.0 * 24.0 * 0.05 / TAU;
+        assert!((curve.rise.slope / slope - 1.0).abs() < 1e-3, "{:?}", curve.rise);
+        assert!((curve.fall.slope / slope + 1.0).abs() < 1e-3, "{:?}", curve.fall);
+        assert!((curve.certified.unwrap() / 44.0 - 1.0).abs() < 1e-6, "{:?}", curve.certified);
+        assert!((curve.rise.width / (TAU / 48.0) - 1.0).abs() < 1e-3, "{:?}", curve.rise);
+        let height = curve.points.iter().map(|point| point[2]).fold(0.0, f64::max);
+        let triangle = 0.5 * (TAU / 48.0) * 0.05;
+        assert!((height / triangle - 1.0).abs() < 1e-3, "{height} {triangle}");
+        let torques = curve.points.iter().map(|point| point[1]);
+        assert!((torques.fold(0.0, f64::max) / 0.05 - 1.0).abs() < 1e-2);
+    }
+
+    #[test]
+    fn the_steepest_rise_may_be_that_of_the_end_stops() {
+        let stops = "[[environment.shape]]\ntype = \"end_stops\"\nfrom = -1.0\nto = 1.0\n";
+        let curve = curve(&format!("{DETENTS}{stops}stiffness = 15.0\n"));
+        assert_eq!(curve.rise.slope, 15.0);
+        assert!(curve.rise.angle > 1.0 && curve.fall.angle.abs() < 1.0);
+        assert!((curve.certified.unwrap() / 44.0 - 1.0).abs() < 1e-6, "{:?}", curve.certified);
+        let beyond = 1.5 * 0.05 / 15.0;
+        assert!((curve.points[POINTS - 1][0] - 1.0 - beyond).abs() < 1e-6);
+        assert!((curve.points[0][0] + 1.0 + beyond).abs() < 1e-6);
+    }
+
+    #[test]
+    fn more_repetitions_leave_less_torque() {
+        let scene = parse("a.toml", Format::Toml, DETENTS).unwrap().scene;
+        for (delay, slope) in [(1, 44.0), (2, 44.0 / 3.0)] {
+            let limits = DetentLimits::of(&scene, delay, [1, 6, 48].into_iter());
+            for (count, torque) in &limits.points {
+                let expected = slope * TAU / (4.0 * count);
+                assert!((torque / expected - 1.0).abs() < 1e-3, "{count}: {torque} {expected}");
+            }
+            assert_eq!(limits.points.len(), 3);
+        }
+    }
+}
