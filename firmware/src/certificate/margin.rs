@@ -103,6 +103,16 @@ pub(super) struct Limited {
     missed: Option<Missed>,
     /// Whether torques lag.
     lags: bool,
+    /// Whether it takes torques beside its own: one that is solved in front of its coupling does not.
+    takes_more: bool,
+}
+
+/// Whether it is a torque profile without delay, which knows nothing of torques that are added to its own.
+const fn is_solved_in_front(environment: &Environment) -> bool {
+    match environment.profile() {
+        Some(profile) => profile.delay == 0,
+        None => false,
+    }
 }
 
 impl Limited {
@@ -139,12 +149,13 @@ impl Limited {
             delta: n.delta,
             missed: n.missed,
             lags: n.latency.is_some(),
+            takes_more: !(E::HAS_KNOTS && is_solved_in_front(&scene.environment)),
         })
     }
 
     /// Limit less bound, in N m s/rad.
     pub const fn injectable_damping(&self) -> f64 {
-        self.limit.sub(self.bound).lo()
+        if self.takes_more { self.limit.sub(self.bound).lo() } else { 0.0 }
     }
 
     /// The margin while a damper of `injected` N m s/rad may be switched on and off, one sample late,

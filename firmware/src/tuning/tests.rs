@@ -1,7 +1,8 @@
 use super::*;
 use crate::encoder::CounterWidth;
 use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, OneSided, Placed,
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, Knots, OneSided,
+    Placed, Profile, Shape,
 };
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::Latched;
@@ -66,6 +67,10 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
     for (i, (name, wanted)) in TUNABLE.into_iter().enumerate() {
         assert_eq!(parameter(name), Some(wanted));
         assert_eq!(super::name(wanted), Some(name));
+        if matches!(wanted, Parameter::ProfileTorque | Parameter::Count | Parameter::Centre) {
+            // Of a torque profile alone.
+            continue;
+        }
         let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
         let before =
             scene(FreeModeWall { residual: 0.02, wall: OneSided { face: 0.1, wall: filtered } });
@@ -81,6 +86,30 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
 }
 
 #[test]
+fn a_torque_profile_has_its_own() {
+    static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
+    static KNOB: Knots<16> =
+        Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-1.0, 1.0, 5.0)]);
+    static RANGE: Knots<64> = Knots::of(&[Shape::bistable(0.4, 0.05)]);
+    let names = |parameters: Parameters| parameters.to_string();
+    let endless = scene(Profile::<16, 1>::of(&KNOTS));
+    assert_eq!(
+        names(parameters(&endless)),
+        "coupling.stiffness, torque_limit, torque, count, centre"
+    );
+    let knob = scene(Profile::<16, 1>::of(&KNOB).damped(0.001));
+    assert_eq!(
+        names(parameters(&knob)),
+        "stiffness, damping, coupling.stiffness, torque_limit, torque, count, centre"
+    );
+    let range = scene(Profile::<64, 1>::of(&RANGE));
+    assert_eq!(names(parameters(&range)), "stiffness, coupling.stiffness, torque_limit, torque");
+    let more = apply(&knob, &[(Parameter::Count, 36.0), (Parameter::ProfileTorque, 0.03)]).unwrap();
+    let Profile { count, torque, .. } = more.environment.profile;
+    assert_eq!((count, torque), (36.0, 0.03));
+}
+
+#[test]
 fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Residual, 0.001)]),
@@ -90,7 +119,7 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Period, 0.002)]),
         "the period is fixed while the program runs; the tunable parameters are stiffness, damping, \
-         filter, face, residual, coupling.stiffness, torque_limit"
+         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre"
     );
     assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
     let twice = [(Parameter::Face, 0.1), (Parameter::Stiffness, 1.0), (Parameter::Face, 0.1)];

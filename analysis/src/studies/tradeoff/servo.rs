@@ -75,9 +75,10 @@ impl Case {
     }
 }
 
-/// The programs' scenes, and a wall that also pulls.
+/// The programs' scenes that are linear but for faces and limits, and a wall that also pulls.
 pub fn cases() -> Vec<Case> {
-    let mut cases: Vec<_> = program::ALL.iter().map(Case::of).collect();
+    let is_linear = |program: &&Program| program.scene.environment.has_transfer();
+    let mut cases: Vec<_> = program::ALL.iter().filter(is_linear).map(Case::of).collect();
     let pulls = |case: &Case| match case.problem.scene.environment {
         Environment::DamperWall(wall) => {
             let wall = Wall { one_sided: false, ..wall };

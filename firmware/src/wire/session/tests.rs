@@ -11,7 +11,7 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DamperWall, OneSided};
+use crate::environment::{DamperWall, Ends, Knots, OneSided, Profile, Shape};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
@@ -195,8 +195,17 @@ fn largest_description() -> Description {
         transducers: program.transducers,
         rendering: RenderingOptions { fade: 1.0, injection: Some(1.0) },
         format: Format::Fixed { fraction_bits: u32::MAX },
-        timing: crate::servo::OutputTiming::Latched,
+        timing: crate::servo::OutputTiming::AtPhase(u32::MAX),
     }
+}
+
+/// The same of a torque profile.
+fn largest_profile() -> Description {
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
+    let mut profile = Profile::<1024, 8>::of(&KNOTS).damped(1.0);
+    profile.profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
+    let largest = largest_description();
+    Description { scene: Scene { environment: profile.as_data(), ..largest.scene }, ..largest }
 }
 
 fn done(id: Id) -> Said {
@@ -388,6 +397,7 @@ fn every_message_fits_its_frame() {
             values: changes,
         }),
         ToHost::Described(largest_description()),
+        ToHost::Described(largest_profile()),
     ] {
         assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");
     }
