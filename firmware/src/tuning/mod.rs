@@ -41,8 +41,10 @@ pub fn name(parameter: Parameter) -> Option<&'static str> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
     /// One bit each, in the table's order.
-    bits: u8,
+    bits: u16,
 }
+
+const _: () = assert!(TUNABLE.len() <= u16::BITS as usize, "a bit for each");
 
 impl Parameters {
     /// The given ones of [`TUNABLE`].
@@ -79,7 +81,7 @@ pub fn parameters<E: NamedParameters + Copy>(scene: &Scene<E>) -> Parameters {
     let mut scene = *scene;
     let mut bits = 0;
     for (i, (_, parameter)) in TUNABLE.iter().enumerate() {
-        bits |= u8::from(scene.value(*parameter).is_some()) << i;
+        bits |= u16::from(scene.value(*parameter).is_some()) << i;
     }
     Parameters { bits }
 }
