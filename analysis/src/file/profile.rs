@@ -6,7 +6,7 @@ use firmware::parameter::Parameter;
 use super::faults::{Read, Reported, all};
 use super::key::{self, Key};
 use super::problem::Problem;
-use super::section::{Found, Section};
+use super::section::{Found, Pair, Section};
 use super::shape::ShapeKind;
 use super::tree::Span;
 
@@ -105,7 +105,7 @@ struct Place {
     /// Its numbers by name.
     numbers: Vec<(&'static str, f64, Span)>,
     /// Its knots, each an angle and a torque.
-    knots: Vec<[Found<f64>; 2]>,
+    knots: Vec<Pair>,
 }
 
 /// A shape and where it stood.

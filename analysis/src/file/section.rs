@@ -35,6 +35,9 @@ pub struct Found<T> {
     pub span: Span,
 }
 
+/// Two numbers, each with its place.
+pub type Pair = [Found<f64>; 2];
+
 impl<'t> Section<'t> {
     /// Starts on a node that must be a table; `title` is what messages call it.
     pub fn new(
@@ -238,7 +241,7 @@ impl<'t> Section<'t> {
     }
 
     /// The pairs of finite numbers of that key with their places, if it is there.
-    pub fn pairs(&mut self, key: &Key) -> Read<Option<Found<Vec<[Found<f64>; 2]>>>> {
+    pub fn pairs(&mut self, key: &Key) -> Read<Option<Found<Vec<Pair>>>> {
         let Some(node) = self.take(key) else { return Ok(None) };
         let Value::List(items) = &node.value else {
             return Err(self.wrong_kind(key, &node.span, &node.value));

@@ -458,3 +458,22 @@ fn every_command_answers_or_says_why_not() {
     let count = program(&["design", "largest", "count"]).arg(&wall).output().unwrap();
     assert_eq!(count.status.code(), Some(2));
 }
+
+/// Without a coupling nothing linear is said of a profile beside a lag, and what would help.
+#[test]
+fn a_profile_without_a_bound_is_undecided_by_every_rule() {
+    let lagging = text(DETENTS)
+        .replace("damping = 0.022", "damping = 0.022\nactuator_lag = 1e-4")
+        .replace("[coupling]\nstiffness = 44.0\n", "");
+    let judged = haptic_reading(&["certify", "-", "--json"], lagging.as_bytes());
+    assert_eq!(judged.status.code(), Some(1));
+    let judged = answer(&judged);
+    assert_eq!(judged["verdict"], "undecided");
+    assert_eq!(judged["rules"], serde_json::json!({"paper": "undecided", "exact": "undecided"}));
+    assert_eq!(judged["alpha"], serde_json::json!({"lo": null, "hi": null}));
+    let message = judged["message"].as_str().unwrap();
+    assert!(
+        message.contains("torque profile") && message.contains("matched coupling"),
+        "{message}"
+    );
+}

@@ -46,6 +46,8 @@ pub struct Parameters {
     bits: u16,
 }
 
+const _: () = assert!(TUNABLE.len() <= u16::BITS as usize, "a bit for each");
+
 impl Parameters {
     /// The given ones of [`TUNABLE`].
     pub fn of(given: impl Iterator<Item = Parameter>) -> Self {

@@ -24,13 +24,10 @@ pub fn profile(lines: &mut Vec<String>, profile: &AnyProfile, shapes: &Shapes) {
     changed(&key::CENTRE, Some(profile.centre), was(|own| own.centre));
     // Those of keys are in no shape.
     let of_shapes = own.and_then(|own| own.ends).filter(|_| shapes.ends.is_none());
-    let of_ends: [(&Key, fn(Ends) -> f64); 3] = [
-        (&key::FROM, |ends| ends.from),
-        (&key::TO, |ends| ends.to),
-        (&key::STIFFNESS, |ends| ends.stiffness),
-    ];
-    for (key, of) in of_ends {
-        changed(key, profile.ends.map(of), of_shapes.map(of));
+    let numbers = |Ends { from, to, stiffness }: Ends| [from, to, stiffness].map(Some);
+    let [now, before] = [profile.ends, of_shapes].map(|ends| ends.map_or([None; 3], numbers));
+    for (i, key) in [&key::FROM, &key::TO, &key::STIFFNESS].into_iter().enumerate() {
+        changed(key, now[i], before[i]);
     }
     lines.extend(shapes.cells.map(|cells| format!("cells = {cells}")));
     match shapes.shapes[..] {
