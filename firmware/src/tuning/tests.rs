@@ -55,11 +55,26 @@ fn every_scene_has_the_parameters_that_its_type_has() {
     let both = Scene { coupling: Coupling::Rigid, ..scene(both) };
     assert_eq!(names(parameters(&both)), "stiffness, damping, face, residual, torque_limit");
     assert_eq!(parameters(&both.as_data()), parameters(&both));
+    assert_eq!(
+        names(parameters(&scene(Profile::<16, 1>::of(&DETENTS)))),
+        "coupling.stiffness, torque_limit, torque, count, centre"
+    );
     let spring: Environment = DelayedSpring::<1> { stiffness: 2.0 }.as_data();
     assert_eq!(
         names(parameters(&scene(spring))),
         "stiffness, face, coupling.stiffness, torque_limit"
     );
+}
+
+static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
+
+fn changes_one<E: NamedParameters + Copy>(before: Scene<E>, wanted: Parameter, value: f64) {
+    let after = apply(&before, &[(wanted, value)]).unwrap();
+    for (name, parameter) in TUNABLE {
+        let expected = if parameter == wanted { Some(value) } else { get(&before, parameter) };
+        assert_eq!(get(&after, parameter), expected, "{name}");
+    }
+    assert_eq!((after.device, after.timing), (before.device, before.timing));
 }
 
 #[test]
@@ -72,15 +87,15 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
             continue;
         }
         let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
-        let before =
-            scene(FreeModeWall { residual: 0.02, wall: OneSided { face: 0.1, wall: filtered } });
-        let after = apply(&before, &[(wanted, 0.125 + i as f64)]).unwrap();
-        for (_, parameter) in TUNABLE {
-            let expected =
-                if parameter == wanted { Some(0.125 + i as f64) } else { get(&before, parameter) };
-            assert_eq!(get(&after, parameter), expected, "{name}");
+        let wall = FreeModeWall { residual: 0.02, wall: OneSided { face: 0.1, wall: filtered } };
+        let value = 0.125 + i as f64;
+        // No scene has the numbers of both.
+        match wanted {
+            Parameter::ProfileTorque | Parameter::Count | Parameter::Centre => {
+                changes_one(scene(Profile::<16, 1>::of(&DETENTS)), wanted, value);
+            }
+            _ => changes_one(scene(wall), wanted, value),
         }
-        assert_eq!((after.device, after.timing), (before.device, before.timing));
     }
     assert_eq!(parameter("period"), None);
 }
