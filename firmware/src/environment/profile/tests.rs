@@ -316,7 +316,8 @@ fn keeps_moving(
             return true;
         }
     }
-    late > 1e-3
+    // Places in whole parts of a cell let it creep on by a few of them a tick.
+    late > 0.02
 }
 
 static FOUND: AtomicU32 = AtomicU32::new(0);
