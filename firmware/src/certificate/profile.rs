@@ -51,7 +51,7 @@ impl ExtremeSlopes {
     }
 }
 
-/// Upper bound on the index of a profile (equations 46 and 47): `T L/2` for a torque that is a sample
+/// Upper bound on the index of a profile (equation 46; equation 47 where it is not late): `T L/2` for a torque that is a sample
 /// late and rises by up to `L`, `T M` for each sample more, where `M` is the steepest slope. One that is not
 /// late has `T/2` times the steepest fall.
 ///

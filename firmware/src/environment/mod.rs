@@ -69,8 +69,8 @@ pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
 pub use profile::{
-    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, Outline, Profile,
-    ProfileLaw, Shape, ShapeError,
+    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, MODES, Mode,
+    Outline, Profile, ProfileLaw, Shape, ShapeError,
 };
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};

@@ -81,8 +81,10 @@ impl<N: Number> Turn<N> {
 
     /// The angle in rad by which positions move when these turns are left.
     pub(crate) fn left(&self, turns: i32) -> N {
+        /// What moves by more in a tick is a fault.
+        const MOST: u32 = 16;
         let mut angle = N::ZERO;
-        for _ in 0..turns.unsigned_abs() {
+        for _ in 0..turns.unsigned_abs().min(MOST) {
             angle = if turns > 0 { angle.minus(self.angle) } else { angle.plus(self.angle) };
         }
         angle

@@ -229,7 +229,7 @@ impl Held {
 
 #[test]
 fn certified_profiles_come_to_rest_and_most_others_are_shown_not_to() {
-    let runs: usize = std::env::var("PROFILE_RUNS").map_or(300, |runs| runs.parse().unwrap());
+    let runs: usize = std::env::var("PROFILE_RUNS").map_or(2400, |runs| runs.parse().unwrap());
     let mut random = ChaCha8Rng::seed_from_u64(17);
     let (mut rejected, mut shown) = (0, 0);
     for _ in 0..runs.div_ceil(HANDS) {

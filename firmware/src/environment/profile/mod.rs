@@ -12,6 +12,7 @@
 mod any;
 mod knots;
 mod law;
+mod modes;
 mod scale;
 mod shape;
 mod shape_error;
@@ -20,6 +21,7 @@ mod sum;
 pub use any::AnyProfile;
 pub use knots::{Cell, FULL_SCALE, KnotTable, Knots, Outline};
 pub use law::ProfileLaw;
+pub use modes::{MODES, Mode};
 pub use shape::Shape;
 pub use shape_error::ShapeError;
 pub use sum::{Ends, Layout};

@@ -84,7 +84,11 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
         i += 1;
     }
     if torque == 0.0 {
-        return Err(ShapeError::Flat);
+        if frame.ends.is_none() {
+            return Err(ShapeError::Flat);
+        }
+        // All units are zero, whatever they stand for.
+        torque = 1.0;
     }
     let mut i = 0;
     while i < units.len() {
@@ -234,9 +238,11 @@ impl Frame {
                 let (count, centre) = (TAU / (cell * knots as f64), from - cell);
                 Self { cell, count, centre, ends, outermost, wraps: false }
             }
-            (None, _) if repeats == 0 => return Err(ShapeError::Flat),
+            (None, None) if repeats == 0 => return Err(ShapeError::Flat),
             (None, ends) => {
-                let (count, cell) = (repeats as f64, TAU / repeats as f64 / knots as f64);
+                // What is nothing between its ends repeats as often as one likes.
+                let count = if repeats == 0 { 1.0 } else { repeats as f64 };
+                let cell = TAU / count / knots as f64;
                 Self { cell, count, centre, ends, outermost, wraps: true }
             }
         };

@@ -5,11 +5,11 @@ use fixed::types::{I8F24, I16F16};
 use proptest::prelude::*;
 
 use super::*;
-use crate::certificate::{Rejection, certify};
+use crate::certificate::{Rejection, certify, certify_in};
 use crate::coupling::Response;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{Environment, Law};
-use crate::number::Truncated;
+use crate::number::{Format, Truncated};
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
 use crate::servo::{Servo, Transducers};
 
@@ -229,6 +229,23 @@ fn motors_are_refused() {
 
 const LOPSIDED: &[(f64, f64)] =
     &[(0.0, 0.0), (0.05, 0.03), (0.1, 0.0), (0.18, -0.003 / (TAU / 24.0 - 0.1)), (TAU / 24.0, 0.0)];
+
+/// On the paper's paddle at 1 kHz, in the board's number formats.
+#[test]
+fn every_mode_of_a_knob_is_certified() {
+    for mode in MODES.iter().filter(|mode| !mode.shapes.is_empty()) {
+        let sampled = |knots| AnyProfile::sampled(mode.shapes, vec![0; knots].leak(), 1);
+        let profile = [16, 64, 512].into_iter().find_map(|knots| sampled(knots).ok());
+        let profile = profile.unwrap_or_else(|| panic!("{}: too few knots", mode.name));
+        let scene = Scene { torque_limit: Some(1.0), ..scene(Environment::Profile(profile)) };
+        for format in [Format::F64, Format::F32, I8F24::FORMAT] {
+            let assessment = certify_in(&scene, format)
+                .unwrap_or_else(|error| panic!("{}: {}", mode.name, error.sentence().as_str()));
+            let renders = assessment.renders_in::<crate::servo::Latched>(&scene);
+            assert!(renders.is_ok(), "{}: {renders:?}", mode.name);
+        }
+    }
+}
 
 /// A position that is far away is that of a turn, to the bit.
 #[test]

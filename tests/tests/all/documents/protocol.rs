@@ -25,10 +25,11 @@ fn body(path: &str, kind: &str, name: &str) -> String {
     found[1].to_owned()
 }
 
-/// The fields of a struct in a source file in order, each with its type.
+/// The fields of a struct in a source file that go over the wire, in order, each with its type.
 fn fields(path: &str, name: &str) -> Vec<(String, String)> {
     let field = regex(r"(?m)^    (?:pub )?(\w+): (.+),$");
-    let body = body(path, "struct", name);
+    let skipped = regex(r"(?m)^.*serde\(skip\)\)\]\n.*\n");
+    let body = skipped.replace_all(&body(path, "struct", name), "").into_owned();
     field.captures_iter(&body).map(|field| (field[1].to_owned(), field[2].to_owned())).collect()
 }
 

@@ -1,0 +1,67 @@
+//! Ways for a knob to feel, as shapes: what open haptic knobs are known for, each in one table.
+
+use core::f64::consts::TAU;
+
+use super::shape::Shape;
+
+/// A way for a knob to feel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Its name.
+    pub name: &'static str,
+    /// What adds up to it; nothing for a knob that turns freely.
+    pub shapes: &'static [Shape],
+}
+
+/// All of them. [`Knots::of`](super::Knots::of) makes a table of each but the first: 16 knots show those
+/// that repeat, 512 the others.
+pub const MODES: [Mode; 11] = [
+    Mode { name: "unbounded", shapes: &[] },
+    Mode { name: "bounded 0 to 10", shapes: &[Shape::end_stops(0.0, 10.0 * TENTH, STOP)] },
+    Mode {
+        name: "many turns, light detents",
+        shapes: &[Shape::detents(36, 0.01), Shape::end_stops(0.0, 2.0 * TAU, STOP)],
+    },
+    Mode {
+        name: "on and off",
+        shapes: &[Shape::bistable(30.0 * DEGREE, 0.06), Shape::end_stops(-ON, ON, STOP)],
+    },
+    Mode { name: "return to centre", shapes: &[Shape::centre(60.0 * DEGREE, 0.05)] },
+    Mode {
+        name: "return to centre, with detents",
+        shapes: &[Shape::centre(60.0 * DEGREE, 0.05), Shape::detents(24, 0.02)],
+    },
+    Mode { name: "fine steps", shapes: &[Shape::end_stops(0.0, 255.0 * DEGREE, STOP)] },
+    Mode {
+        name: "fine steps with detents",
+        shapes: &[Shape::detents(360, 0.005), Shape::end_stops(0.0, 255.0 * DEGREE, STOP)],
+    },
+    Mode {
+        name: "coarse steps, strong",
+        shapes: &[Shape::detents(44, 0.08), Shape::end_stops(0.0, 31.0 / 44.0 * TAU, STOP)],
+    },
+    Mode {
+        name: "coarse steps, weak",
+        shapes: &[Shape::detents(44, 0.01), Shape::end_stops(0.0, 31.0 / 44.0 * TAU, STOP)],
+    },
+    Mode {
+        name: "magnetic places",
+        shapes: &[
+            Shape::magnet(14.0 * DEGREE, MAGNET, 0.05),
+            Shape::magnet(70.0 * DEGREE, MAGNET, 0.05),
+            Shape::magnet(147.0 * DEGREE, MAGNET, 0.05),
+            Shape::magnet(161.0 * DEGREE, MAGNET, 0.05),
+            Shape::end_stops(0.0, 217.0 * DEGREE, STOP),
+        ],
+    },
+];
+
+const DEGREE: f64 = TAU / 360.0;
+/// A tenth of a range that a hand turns through without letting go.
+const TENTH: f64 = 10.0 * DEGREE;
+/// Where a switch ends, beyond its two places.
+const ON: f64 = 42.0 * DEGREE;
+/// How far a magnetic place pulls.
+const MAGNET: f64 = 6.0 * DEGREE;
+/// Stiffness in N m/rad of the end stops.
+const STOP: f64 = 15.0;
