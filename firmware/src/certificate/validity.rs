@@ -65,7 +65,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    match (first_invalid_number(scene), scene.environment.rational()) {
+    match (first_invalid_number(scene, true), scene.environment.rational()) {
         (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
             Some(value) => Some(not_finite(Parameter::Numerator, value)),
             None => match first_not_finite(rational.denominator.as_slice()) {
@@ -77,24 +77,32 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     }
 }
 
-/// The same without polynomials, on which no bound for a board depends.
-pub(super) const fn first_invalid_number(scene: &Scene) -> Option<InvalidParameter> {
+/// The same without polynomials, on which no bound for a board depends. A program whose environment has no
+/// knots omits the code for those of torque profiles.
+pub(super) const fn first_invalid_number(
+    scene: &Scene,
+    has_knots: bool,
+) -> Option<InvalidParameter> {
     let environment = &scene.environment;
-    if let Some(invalid) = first_of(scene, &scene.own_numbers()) {
+    if let Some(invalid) = first_of(scene, &scene.own_numbers(), false) {
         return Some(invalid);
     }
-    if let Some(invalid) = first_of(scene, &environment.numbers()) {
+    if let Some(invalid) = first_of(scene, &environment.numbers(), has_knots) {
         return Some(invalid);
     }
     let whole = [
         (Parameter::Delay, environment.get(Parameter::Delay)),
         (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
     ];
-    first_of(scene, &whole)
+    first_of(scene, &whole, has_knots)
 }
 
 /// The first of these numbers of the scene that is out of its range or conflicts with another.
-const fn first_of(scene: &Scene, numbers: &[(Parameter, Option<f64>)]) -> Option<InvalidParameter> {
+const fn first_of(
+    scene: &Scene,
+    numbers: &[(Parameter, Option<f64>)],
+    has_knots: bool,
+) -> Option<InvalidParameter> {
     let mut i = 0;
     while i < numbers.len() {
         if let (parameter, Some(value)) = numbers[i] {
@@ -105,6 +113,12 @@ const fn first_of(scene: &Scene, numbers: &[(Parameter, Option<f64>)]) -> Option
             if let Some(invalid) = conflict(scene, parameter, value) {
                 return Some(invalid);
             }
+            if has_knots
+                && let Some(profile) = scene.environment.profile()
+                && let Some(invalid) = profile_conflict(profile, parameter, value)
+            {
+                return Some(invalid);
+            }
         }
         i += 1;
     }
@@ -113,11 +127,6 @@ const fn first_of(scene: &Scene, numbers: &[(Parameter, Option<f64>)]) -> Option
 
 /// A number in its range that conflicts with another one of the scene.
 const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
-    if let Some(profile) = scene.environment.profile()
-        && let Some(invalid) = profile_conflict(profile, parameter, value)
-    {
-        return Some(invalid);
-    }
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
             (NO_MORE_THAN_DAMPING, Some(scene.device.damping))
