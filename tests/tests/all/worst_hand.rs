@@ -138,7 +138,7 @@ fn number(name: &str) -> Option<u64> {
 /// `WORST_HAND_LOOPS` and `WORST_HAND_SEED` for more of them.
 #[test]
 fn above_the_limit_a_hand_is_shown_and_below_it_none() {
-    let loops = number("WORST_HAND_LOOPS").unwrap_or(64) as usize;
+    let loops = number("WORST_HAND_LOOPS").unwrap_or(24) as usize;
     let mut rng = ChaCha8Rng::seed_from_u64(number("WORST_HAND_SEED").unwrap_or(1));
     let mut found = Found::default();
     while found.loops < loops {
