@@ -26,7 +26,7 @@
 //! cancelled: `be`, and `K T be / (K T - 2 be)` in its magnitude where damping is added. All of them
 //! are convex in `T`, too, where nothing is added.
 //!
-//! **Torque profiles** (equations 43 to 45). The bound grows with each slope and with the damper's
+//! **Torque profiles** (equations 46 to 48). The bound grows with each slope and with the damper's
 //! magnitude, and so do slopes with the torque of the table and with the stiffness of its end stops: with
 //! less of one of them what passes goes on passing, rounded or not, since rounding keeps the order. It is
 //! affine in the period, and without a damper in proportion to it, as is the coupling's limit.

@@ -51,9 +51,9 @@ impl ExtremeSlopes {
     }
 }
 
-/// Upper bound on the index of a profile (equation 46; equation 47 where it is not late): `T L/2` for a torque that is a sample
-/// late and rises by up to `L`, `T M` for each sample more, where `M` is the steepest slope. One that is not
-/// late has `T/2` times the steepest fall.
+/// Upper bound on the index of a profile: `T L/2` for a torque that is a sample late and rises by up to `L`,
+/// `T M` for each sample more, where `M` is the steepest slope (equation 46). One that is not late has `T/2`
+/// times the steepest fall (equation 47).
 ///
 /// A limit on the torque takes from slopes, and adds none.
 pub(super) const fn profile_bound(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {

@@ -202,8 +202,9 @@ fn roundings(format: Format, products: f64, sums: f64) -> f64 {
 /// norm from where it happens to the torque.
 ///
 /// Positions are rounded as the count becomes an angle and behind the coupling and its
-/// [memory](deflection), and differ from a face and from a state; torques by stiffness, damper and the two gains of the coupling. These
-/// come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times the controller's.
+/// [memory](deflection), and differ from a face and from a state; torques by stiffness, damper and the
+/// two gains of the coupling. These come out through `1 / (1 + V E)`, whose norm is at most `1 + V` times
+/// the controller's.
 fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Option<f64> {
     // Torques where none is stated are small beside the positions that they come from.
     let limit = scene.torque_limit.or(steps.full_scale).unwrap_or(0.0);

@@ -61,10 +61,7 @@ const CASES: &[Case] = &[
         cause: "all interrupts are masked for three periods",
         program: "damper_wall",
         bound: MASKED as f64 + 1.0,
-        provoke: |bench| {
-            let instructions = MASKED * bench.period();
-            hold_up(bench, instructions, Masks::All)
-        },
+        provoke: misses_ticks,
         resets: false,
         expected: Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
     },
@@ -117,10 +114,7 @@ const CASES: &[Case] = &[
         cause: "a torque has a phase, and all interrupts are masked for three periods",
         program: "undelayed_wall",
         bound: MASKED as f64 + 1.0,
-        provoke: |bench| {
-            let instructions = MASKED * bench.period();
-            hold_up(bench, instructions, Masks::All)
-        },
+        provoke: misses_ticks,
         resets: false,
         expected: Some(Fault::MissedTick { missed: MASKED as u32 - 1, tolerated: 0 }),
     },
@@ -269,6 +263,12 @@ fn breaks_in_a_tick(bench: &mut Bench, register: Register) -> u64 {
     let board = bench.machine.board_mut();
     board.broken = Some(register.address(board.chip()));
     board.now
+}
+
+/// Masks all interrupts for [`MASKED`] periods. Gives when.
+fn misses_ticks(bench: &mut Bench) -> u64 {
+    let instructions = MASKED * bench.period();
+    hold_up(bench, instructions, Masks::All)
 }
 
 /// Sends the core into a panic of line 12, column 34. Gives when.
