@@ -112,9 +112,6 @@ pub const fn minimum(
         upper: f64::INFINITY,
         at: Interval::ZERO,
         lower: f64::INFINITY,
-        pool: [Interval::ZERO; POOL],
-        waiting: [Waiting::NONE; MAX_WAITING],
-        waiting_len: 0,
     };
     let mut root = Pieces { p: from_chebyshev(p, degree), r: from_chebyshev(r, degree) };
     root.r[0] = root.r[0].and(ends[0]);
@@ -148,29 +145,45 @@ struct Search {
     at: Interval,
     /// Smallest lower bound among the boxes that were given up.
     lower: f64,
+}
+
+/// Boxes that wait to be looked at.
+struct Queue {
     pool: [Interval; POOL],
     waiting: [Waiting; MAX_WAITING],
-    waiting_len: usize,
+    len: usize,
 }
 
 impl Search {
     /// Searches from the whole interval on, in the memory of its pieces.
     const fn run(&mut self, pieces: &mut Pieces) {
-        let mut current = Waiting { left: -1.0, level: 0, bound: self.look(pieces, -1.0, 2.0) };
-        let mut boxes = 0;
+        let whole = Waiting { left: -1.0, level: 0, bound: self.look(pieces, -1.0, 2.0) };
+        if self.upper < self.clearly_below || self.is_settled(whole.bound) {
+            // Most searches end here, and need no memory for boxes.
+            self.lower = whole.bound.lower;
+        } else {
+            self.run_through_boxes(pieces, whole);
+        }
+    }
+
+    #[inline(never)]
+    const fn run_through_boxes(&mut self, pieces: &mut Pieces, whole: Waiting) {
+        let mut queue = Queue::EMPTY;
+        let mut current = self.split(&mut queue, pieces, whole);
+        let mut boxes = 1;
         loop {
             boxes += 1;
             if self.upper < self.clearly_below {
-                self.give_up(current.bound);
+                self.give_up(&queue, current.bound);
                 return;
             }
             if boxes > MAX_BOXES || current.level >= MAX_LEVEL || self.is_settled(current.bound) {
                 self.lower = self.lower.min(current.bound.lower);
             } else {
-                current = self.split(pieces, current);
+                current = self.split(&mut queue, pieces, current);
                 continue;
             }
-            match self.take(pieces) {
+            match queue.take(pieces, self.degree) {
                 Some(next) => current = next,
                 None => return,
             }
@@ -178,11 +191,12 @@ impl Search {
     }
 
     /// Ends the search with the boxes that are left as they are.
-    const fn give_up(&mut self, current: Bound) {
+    const fn give_up(&mut self, queue: &Queue, current: Bound) {
         self.lower = self.lower.min(current.lower);
-        while self.waiting_len > 0 {
-            self.waiting_len -= 1;
-            self.lower = self.lower.min(self.waiting[self.waiting_len].bound.lower);
+        let mut i = 0;
+        while i < queue.len {
+            self.lower = self.lower.min(queue.waiting[i].bound.lower);
+            i += 1;
         }
     }
 
@@ -228,7 +242,7 @@ impl Search {
     /// Halves the box. Returns the half with the smaller lower bound and queues the other one; a
     /// half that cannot hold a smaller value is settled at once.
     #[inline(never)]
-    const fn split(&mut self, pieces: &mut Pieces, parent: Waiting) -> Waiting {
+    const fn split(&mut self, queue: &mut Queue, pieces: &mut Pieces, parent: Waiting) -> Waiting {
         let n = self.degree;
         let width = box_width(parent.level + 1);
         let middle = parent.left + width;
@@ -241,47 +255,58 @@ impl Search {
         let a = Waiting { left: parent.left, level, bound: low };
         let b = Waiting { left: middle, level, bound: high };
         if low.lower <= high.lower {
-            self.put_aside(&right, b);
+            self.put_aside(queue, &right, b);
             a
         } else {
-            self.put_aside(pieces, a);
+            self.put_aside(queue, pieces, a);
             *pieces = right;
             b
         }
     }
 
-    #[inline(never)]
-    const fn put_aside(&mut self, pieces: &Pieces, waiting: Waiting) {
-        let stride = 2 * (self.degree + 1);
-        let base = self.waiting_len * stride;
-        let full = base + stride > POOL || self.waiting_len >= MAX_WAITING;
-        if full || self.is_settled(waiting.bound) {
+    const fn put_aside(&mut self, queue: &mut Queue, pieces: &Pieces, waiting: Waiting) {
+        if self.is_settled(waiting.bound) || !queue.put(pieces, self.degree, waiting) {
             self.lower = self.lower.min(waiting.bound.lower);
-            return;
+        }
+    }
+}
+
+impl Queue {
+    const EMPTY: Self =
+        Self { pool: [Interval::ZERO; POOL], waiting: [Waiting::NONE; MAX_WAITING], len: 0 };
+
+    /// Whether there was room.
+    #[inline(never)]
+    const fn put(&mut self, pieces: &Pieces, degree: usize, waiting: Waiting) -> bool {
+        let stride = 2 * (degree + 1);
+        let base = self.len * stride;
+        if base + stride > POOL || self.len >= MAX_WAITING {
+            return false;
         }
         let mut i = 0;
-        while i <= self.degree {
+        while i <= degree {
             self.pool[base + i] = pieces.p[i];
-            self.pool[base + self.degree + 1 + i] = pieces.r[i];
+            self.pool[base + degree + 1 + i] = pieces.r[i];
             i += 1;
         }
-        self.waiting[self.waiting_len] = waiting;
-        self.waiting_len += 1;
+        self.waiting[self.len] = waiting;
+        self.len += 1;
+        true
     }
 
-    const fn take(&mut self, pieces: &mut Pieces) -> Option<Waiting> {
-        if self.waiting_len == 0 {
+    const fn take(&mut self, pieces: &mut Pieces, degree: usize) -> Option<Waiting> {
+        if self.len == 0 {
             return None;
         }
-        self.waiting_len -= 1;
-        let base = self.waiting_len * 2 * (self.degree + 1);
+        self.len -= 1;
+        let base = self.len * 2 * (degree + 1);
         let mut i = 0;
-        while i <= self.degree {
+        while i <= degree {
             pieces.p[i] = self.pool[base + i];
-            pieces.r[i] = self.pool[base + self.degree + 1 + i];
+            pieces.r[i] = self.pool[base + degree + 1 + i];
             i += 1;
         }
-        Some(self.waiting[self.waiting_len])
+        Some(self.waiting[self.len])
     }
 }
 

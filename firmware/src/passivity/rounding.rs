@@ -66,7 +66,9 @@ pub(super) const fn half_down(value: f64) -> f64 {
 
 /// `value == 0.0`.
 pub(super) const fn is_zero(value: f64) -> bool {
-    value.to_bits() & MAGNITUDE == 0
+    let bits = value.to_bits();
+    // In halves: of the whole the compiler makes a comparison of doubles again.
+    (bits >> 32) as u32 & (u32::MAX >> 1) | bits as u32 == 0
 }
 
 /// `value >= 0.0`.
