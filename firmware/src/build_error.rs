@@ -99,6 +99,8 @@ pub enum BuildError {
 
 impl BuildError {
     /// Rejects all but positive, finite values.
+    // Stands once on a board, as the two below: in line, it would be there for each number.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) const fn unless_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             Ok(())
@@ -111,6 +113,7 @@ impl BuildError {
     ///
     /// # Errors
     /// Where the number format does not hold it.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn coefficient<N: Number>(name: &'static str, value: f64) -> Result<N::Coefficient, Self> {
         N::coefficient(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }
@@ -119,6 +122,7 @@ impl BuildError {
     ///
     /// # Errors
     /// Where the number format does not hold it.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn number<N: Number>(name: &'static str, value: f64) -> Result<N, Self> {
         N::from_f64(value).map_err(|reason| Self::Unrepresentable { name, reason })
     }

@@ -246,13 +246,13 @@ fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
     assert!(most <= 50 && with_a_lag <= 60, "{most}, {with_a_lag}");
 }
 
-/// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.
+/// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM. The largest programs: the
+/// others are built for all boards that there are.
 #[test]
 fn programs_without_a_log_fit_the_smallest_board() {
-    let scenes = TOOLCHAIN.scenes().unwrap();
-    let scenes: Vec<_> = scenes.iter().map(String::as_str).collect();
-    let built = TOOLCHAIN.build_bare(&scenes).unwrap_or_else(|error| panic!("{error}"));
-    for (scene, Program { sizes, .. }) in scenes.iter().zip(built) {
+    let largest = ["undelayed_wall", "knob"];
+    let built = TOOLCHAIN.build_bare(&largest).unwrap_or_else(|error| panic!("{error}"));
+    for (scene, Program { sizes, .. }) in largest.iter().zip(built) {
         println!("{scene} {sizes:?}");
         assert!(sizes.text > 0 && sizes.flash() <= 128 << 10);
         assert!(sizes.bss > 0 && sizes.ram() <= 22 << 10);
