@@ -123,6 +123,11 @@ impl LoopRun {
         }
     }
 
+    /// Whether the emulated board can have the scene: the table of a torque profile stays where it is built.
+    pub fn goes_to_a_board(&self) -> bool {
+        self.experiment.scene.environment.profile().is_none()
+    }
+
     /// The scene that is sent to the board, with the device that is claimed.
     pub fn scene_for_board(&self) -> Scene {
         let scene = self.experiment.scene;
