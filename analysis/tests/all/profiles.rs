@@ -288,6 +288,12 @@ fn bad_keys_of_the_environment_are_named() {
     );
     let texture = shape("texture", "pitch = 0.001\namplitude = 0.01");
     refused(&format!("delay = 1\n{STOPS}{texture}"), 6, &["`environment.cells`", "16 to 4096"]);
+    let narrow = "delay = 1\nknots = [[0, 0], [0.5, 0.1], [0.50001, 0.0], [1, 0]]\n";
+    refused(
+        &format!("{narrow}{STOPS}"),
+        2,
+        &["`environment.cells`: are 4096", "1e-5 rad from `environment.knots[1]` to [2], takes"],
+    );
     refused(
         &format!("cells = 16\ndelay = 1\n{STOPS}{}", texture.replace("0.001", "0.1")),
         7,

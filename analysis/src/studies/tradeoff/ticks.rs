@@ -193,21 +193,15 @@ fn of_sides(wall: Wall) -> [Wall; 6] {
     [wall, placed(wall), one_sided(wall), filtered, placed(filtered), one_sided(filtered)]
 }
 
-/// The knob with ends and without, each without a damper and with one.
-fn of_ends(delay: usize) -> [Environment; 4] {
-    let mut knob = knob::SCENE.environment.as_any();
-    knob.delay = delay;
+/// The knob as it is and without ends: a profile that boards latch. Others are too large for the board's
+/// program beside all that is there.
+fn of_ends(delay: usize) -> Vec<Environment> {
+    let knob = knob::SCENE.environment.as_any();
     let mut endless = knob;
     endless.ends = None;
-    let damped = |mut profile: AnyProfile| {
-        profile.damping = DAMPING;
-        profile
-    };
-    [knob, endless, damped(knob), damped(endless)].map(Environment::Profile)
+    let both = [knob, endless].into_iter().filter(|profile| profile.delay == delay);
+    both.map(Environment::Profile).collect()
 }
-
-/// Damping in N m s/rad beside a torque profile.
-const DAMPING: f64 = 1e-3;
 
 /// A spring of about 1 N m/rad with as many coefficients that are not zero as there can be.
 fn of_degree(degree: usize, delay: usize) -> Rational {

@@ -43,7 +43,7 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
             None => as_data::<N>(job),
         },
         Environment::Rational(rational) => job.run::<_, N>(rational),
-        Environment::Profile(profile) => with_table::<DELAY, N>(job, &profile),
+        Environment::Profile(profile) => with_table::<N>(job, &profile),
         Environment::DelayedSpring(_) | Environment::Stated(_) => as_data::<N>(job),
     }
 }
@@ -54,17 +54,15 @@ fn as_data<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
     job.run::<_, N>(environment)
 }
 
-/// A profile of detents: other tables take a tick the same instructions.
-fn with_table<const DELAY: usize, N: Number>(
-    job: BenchJob<'_>,
-    profile: &AnyProfile,
-) -> Result<(), HostClosed> {
-    if profile.units() != DETENTS.units() {
+/// A latched profile of detents, as programs have it, in its own type: other tables take a tick the same
+/// instructions, and more types do not fit the flash.
+fn with_table<N: Number>(job: BenchJob<'_>, profile: &AnyProfile) -> Result<(), HostClosed> {
+    let is_known = profile.units() == DETENTS.units();
+    if !is_known || profile.delay != 1 || profile.damping != 0.0 {
         return as_data::<N>(job);
     }
-    let AnyProfile { torque, count, centre, ends, damping, .. } = *profile;
-    let detents = Profile::<16, DELAY> { knots: &DETENTS, torque, count, centre, ends };
-    if damping == 0.0 { job.run::<_, N>(detents) } else { job.run::<_, N>(detents.damped(damping)) }
+    let AnyProfile { torque, count, centre, ends, .. } = *profile;
+    job.run::<_, N>(Profile::<16, 1> { knots: &DETENTS, torque, count, centre, ends })
 }
 
 /// A wall at zero.
