@@ -30,6 +30,11 @@ fn main() {
     if any(&["LOG", "EMULATED"]) {
         arguments.push(format!("-T{}", measured.display()));
     }
+    let harness = root.join("firmware/src/board/qemu/harness.x");
+    println!("cargo:rerun-if-changed={}", harness.display());
+    if any(&["EMULATED"]) {
+        arguments.push(format!("-T{}", harness.display()));
+    }
     // A server of the harness certifies any scene with all of its remedies, which no board does: its stack
     // is in the RAM of the emulated board above that of the smallest.
     if any(&["EMULATED"]) {

@@ -19,6 +19,7 @@ pub mod studies;
 // it; and the device that was measured so.
 pub mod compare_run;
 pub mod counts_csv;
+pub mod felt_turn;
 pub mod identify;
 pub mod program;
 

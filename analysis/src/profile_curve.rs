@@ -48,8 +48,12 @@ pub struct ProfileCurve {
 impl ProfileCurve {
     /// Of a scene with a torque profile; `None` of another.
     pub fn of(scene: &Scene) -> Option<Self> {
+        Self::over(scene, &shown(scene.environment.profile()?))
+    }
+
+    /// The same over these angles in rad.
+    pub fn over(scene: &Scene, shown: &Range<f64>) -> Option<Self> {
         let profile = scene.environment.profile()?;
-        let shown = shown(profile);
         let torque = undelayed(scene, profile)?;
         let angle =
             |i: usize| shown.start + (shown.end - shown.start) * i as f64 / (POINTS - 1) as f64;
@@ -63,7 +67,7 @@ impl ProfileCurve {
         }
         let least = points.iter().map(|point| point[2]).fold(f64::INFINITY, f64::min);
         points.iter_mut().for_each(|point| point[2] -= least);
-        let [rise, fall] = steepest(profile, &shown, &torque);
+        let [rise, fall] = steepest(profile, shown, &torque);
         Some(Self { points, rise, fall, certified: certified_rise(scene, profile, rise.slope) })
     }
 }
@@ -98,7 +102,9 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
     let (units, per_rad) = (profile.units(), profile.knots_per_rad());
     let width = 1.0 / per_rad;
     let unit = profile.torque / f64::from(FULL_SCALE) * per_rad;
-    let within = profile.ends.map_or(shown.clone(), |ends| ends.from..ends.to);
+    let within = profile
+        .ends
+        .map_or(shown.clone(), |ends| ends.from.max(shown.start)..ends.to.min(shown.end));
     let middle = 0.5 * (within.start + within.end);
     let cells = units.len() - usize::from(!profile.outline().wraps);
     let slope = |cell: usize| {
@@ -135,6 +141,7 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
     let [mut rise, fall] = [best(1.0), best(-1.0)];
     if let Some(Ends { to, stiffness, .. }) = profile.ends
         && stiffness > rise.slope
+        && shown.end > to
     {
         let width = shown.end - to;
         let angle = to + 0.5 * width;
@@ -147,7 +154,7 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
 const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
 
 fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64) -> Option<f64> {
-    let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness >= rise);
+    let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
     if is_of_stops {
         return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
             Answer::Limit(stiffness, _) => Some(stiffness),

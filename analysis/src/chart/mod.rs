@@ -23,6 +23,7 @@ pub mod profile;
 mod strokes;
 pub mod trace;
 pub mod tradeoff;
+pub mod turn;
 
 use std::ops::Range;
 

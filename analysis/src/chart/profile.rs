@@ -57,14 +57,34 @@ fn torque(area: &Area<'_>, curve: &ProfileCurve, limit: Option<f64>) -> Drawn<()
     }
     let line = curve.points.iter().map(|point| (point[0], point[1]));
     chart.draw_series(LineSeries::new(line, pen(1)))?;
+    draw_pieces(&mut chart, curve, &y)?;
+    draw_certified(&mut chart, curve, &x, &y)
+}
+
+/// The steepest pieces.
+pub(super) fn draw_pieces(
+    chart: &mut Plane<'_, '_>,
+    curve: &ProfileCurve,
+    y: &Range<f64>,
+) -> Drawn<()> {
     for piece in [curve.rise, curve.fall] {
         let half = 0.5 * piece.width;
         let ends = [-half, half].map(|by| (piece.angle + by, piece.torque + by * piece.slope));
         let ends = ends.map(|(x, f)| (x, f.clamp(y.start, y.end)));
         chart.draw_series([PathElement::new(ends, pen(4))])?;
     }
+    Ok(())
+}
+
+/// The steepest rise that certifies.
+pub(super) fn draw_certified(
+    chart: &mut Plane<'_, '_>,
+    curve: &ProfileCurve,
+    x: &Range<f64>,
+    y: &Range<f64>,
+) -> Drawn<()> {
     if let Some(slope) = curve.certified {
-        let ends = certified(&curve.rise, slope, &x, &y);
+        let ends = certified(&curve.rise, slope, x, y);
         chart.draw_series(broken(ends, 9, 5, 2))?;
     }
     Ok(())
@@ -90,9 +110,10 @@ fn potential(area: &Area<'_>, curve: &ProfileCurve) -> Drawn<()> {
 }
 
 /// A line of the legend: its pattern, its width in pixels, its words.
-type Row = (Dash, u32, String);
+pub(super) type Row = (Dash, u32, String);
 
-fn legend(curve: &ProfileCurve, limit: Option<f64>) -> Vec<Row> {
+/// What the slopes are, and the limit.
+pub(super) fn legend(curve: &ProfileCurve, limit: Option<f64>) -> Vec<Row> {
     let slope = |value: f64| significant(value, 4);
     let mut rows = vec![(
         Dash::of(0),

@@ -20,6 +20,7 @@ use crate::quantity::significant;
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
 use crate::studies::bench::parts::{self, Inventory};
+use crate::studies::bench::profile;
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
 use crate::text_table::markdown_table;
 use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
@@ -39,6 +40,8 @@ pub struct Arguments {
 const VERDICT_BUDGET: f64 = 20.0;
 /// The same where a torque lags.
 const LAGGING_BUDGET: f64 = 15.0;
+/// The same for a torque profile of 64 knots.
+const PROFILE_BUDGET: f64 = 5.0;
 /// Published times in microseconds for one verdict by other means.
 const OTHERS: [(&str, f64, &str); 3] = [
     ("slicot", 390.0, "a SLICOT-based test"),
@@ -98,6 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         figures.extend(scene.figures());
     }
     behind_matched(&toolchain, &mut figures)?;
+    about_profiles(&toolchain, &mut figures)?;
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
     Ok(CommandStatus::Success)
 }
@@ -112,6 +116,21 @@ fn behind_matched(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
             "instructions",
             Some(MATCHED_BUDGET),
             "budget",
+        ));
+    }
+    Ok(())
+}
+
+/// Verdicts about torque profiles of more knots than a program's.
+fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
+    let most = profile::verdict_instructions(&toolchain.build_certify_server()?)?;
+    for (what, most) in ["", " with its message"].into_iter().zip(most) {
+        figures.push(Figure::new(
+            format!("torque profile of 64 knots: verdict{what} on the target, most"),
+            most as f64,
+            "instructions",
+            Some(CERTIFY_BUDGET),
+            "budget, 20 ms at 170 MHz",
         ));
     }
     Ok(())
@@ -134,6 +153,13 @@ fn on_host() -> Vec<Figure> {
     let mut figures = vec![figure("budget", VERDICT_BUDGET, "budget, one core")];
     figures.extend(OTHERS.map(|(name, against, source)| figure(name, against, source)));
     figures.extend(lagging());
+    figures.push(Figure::new(
+        "verdict about a torque profile of 64 knots, median",
+        bench::verdict_time(&profile::scenes()),
+        "us",
+        Some(PROFILE_BUDGET),
+        "budget, one core",
+    ));
     let (step, by_hand) = bench::steps::step_times();
     let figure = |name: &str, against, source| {
         Figure::new(format!("exact simulation, a step: {name}"), step, "ns", Some(against), source)

@@ -48,6 +48,15 @@ pub enum DesignGoal {
         /// Scene file
         file: String,
     },
+    /// Find the lowest value of one quantity with which all these scenes certify
+    Lowest {
+        /// Quantity to minimise
+        #[arg(value_enum)]
+        quantity: Lowest,
+        /// Scene files
+        #[arg(required = true)]
+        files: Vec<String>,
+    },
     /// Find the largest value of one quantity for each value of another
     Border {
         /// Quantity to vary from 0 to its largest value
@@ -75,6 +84,13 @@ pub enum DesignGoal {
         #[arg(required = true)]
         files: Vec<String>,
     },
+}
+
+/// A number of which less is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Lowest {
+    /// Sample rate in Hz: the inverse of the longest period.
+    Rate,
 }
 
 fn part(text: &str) -> Result<f64, String> {
@@ -136,6 +152,11 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
                 }
             };
             answer(arguments, &sought, &found, &[file])
+        }
+        DesignGoal::Lowest { quantity: Lowest::Rate, files } => {
+            let files = arguments.load_all(files)?;
+            let sought = SoughtQuantity { which: "lowest", name: "rate", unit: "Hz", note: None };
+            answer(arguments, &sought, &design::rate(&files, &terms), &files)
         }
         DesignGoal::Device { files } => {
             let files = arguments.load_all(files)?;

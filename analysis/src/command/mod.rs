@@ -128,8 +128,8 @@ pub enum Command {
     Simulate(simulate::Arguments),
     /// Compute the spectral radius of the loop and its critical stiffness.
     Stability(stability::Arguments),
-    /// Find the largest stiffness, the smallest device damping or the longest period that
-    /// certifies.
+    /// Find the largest stiffness, the smallest device damping, the longest period or the lowest rate
+    /// that certifies.
     Design(design::Arguments),
     /// Find the cheapest number format, or the simplest device model, that is accurate enough.
     Advise(advise::Arguments),

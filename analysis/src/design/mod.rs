@@ -198,6 +198,25 @@ pub fn device(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
 /// a longest period that is tolerated, and a simulation's latency, grow with it. The law of each is as its scene has it, so a
 /// rational one keeps its coefficients whatever the period.
 pub fn period(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+    let start = files.iter().map(|file| file.scene.timing.period).fold(f64::INFINITY, f64::min);
+    timed(files, terms, start, 2.0, |period| period)
+}
+
+/// The lowest sample rate in Hz, the inverse of [`period`]: with the number itself, and not only with the
+/// period that it is rounded from, all of these scenes certify.
+pub fn rate(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
+    let rates = files.iter().map(|file| file.scene.timing.period.recip());
+    timed(files, terms, rates.fold(0.0, f64::max), 0.5, f64::recip)
+}
+
+/// The last number, outward from `start` by factors, whose period certifies all of these scenes.
+fn timed(
+    files: &[SceneFile],
+    terms: &Terms,
+    start: f64,
+    outward: f64,
+    period_of: fn(f64) -> f64,
+) -> Answer<Vec<SceneFile>> {
     let with = |scene: &Scene, period: f64| {
         let mut scene = *scene;
         let worst = scene.timing.worst_period.map(|worst| worst / scene.timing.period);
@@ -205,8 +224,9 @@ pub fn period(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
         scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
         prepared(&scene, terms)
     };
-    let fits = |period: f64| files.iter().all(|file| passes(&with(&file.scene, period)));
-    let at = |period: f64| -> Vec<SceneFile> {
+    let fits = |number: f64| files.iter().all(|file| passes(&with(&file.scene, period_of(number))));
+    let at = |number: f64| -> Vec<SceneFile> {
+        let period = period_of(number);
         let timed = |file: &SceneFile| {
             let mut timed = SceneFile { scene: with(&file.scene, period), ..file.clone() };
             if let Some(simulation) = &mut timed.simulation {
@@ -221,8 +241,7 @@ pub fn period(files: &[SceneFile], terms: &Terms) -> Answer<Vec<SceneFile>> {
             |file: &SceneFile| SceneFile { scene: prepared(&file.scene, terms), ..file.clone() };
         files.iter().map(kept).collect()
     };
-    let start = files.iter().map(|file| file.scene.timing.period).fold(f64::INFINITY, f64::min);
-    match edge(fits, start, 2.0) {
+    match edge(fits, start, outward) {
         Edge::At(value) => Answer::Limit(value, at(value)),
         Edge::Always if as_they_were().iter().all(|file| passes(&file.scene)) => {
             Answer::Unlimited(as_they_were())

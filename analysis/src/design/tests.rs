@@ -98,6 +98,7 @@ fn papers_wall_in_all_directions() {
     assert_eq!(limit(largest(&paper, Quantity::Delay, &terms)).0, 1.0);
     near(limit(device(&[file(paper), file(scene(wall(30.0, 0.0, 1)))], &terms)).0, 0.021);
     near(limit(period(&[file(paper)], &terms)).0, 0.012 / 11.0);
+    near(limit(rate(&[file(paper)], &terms)).0, 11.0 / 0.012);
     let careful = Terms { safety: 0.95, ..terms };
     near(limit(largest(&paper, Quantity::Stiffness, &careful)).0, 21.8);
     near(limit(device(&[file(paper)], &careful)).0, 0.021 / 0.95);

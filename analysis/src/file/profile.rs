@@ -9,6 +9,7 @@ use super::problem::Problem;
 use super::section::{Found, Pair, Section};
 use super::shape::ShapeKind;
 use super::tree::Span;
+use crate::quantity::significant;
 
 /// Most shapes of a profile.
 const MOST_SHAPES: usize = 16;
@@ -338,20 +339,36 @@ fn refused(
         ShapeError::TooFewKnots { needed, .. } => {
             let [least, most] = CELLS;
             let cells = shapes.cells.unwrap_or(most);
+            let (piece, span) = narrowest_of(shapes, places);
             let reason = format!(
-                "are {cells}, and the narrowest straight piece takes {needed} cells; a table has {least} \
-                 to {most}"
+                "are {cells}, and the narrowest straight piece, {piece}, takes {needed} cells; a table has \
+                 {least} to {most}"
             );
-            section.report(
-                places[0].span.clone(),
-                Problem::Shapes { key: section.name_of(&key::CELLS), reason },
-            )
+            section.report(span, Problem::Shapes { key: section.name_of(&key::CELLS), reason })
         }
         ShapeError::Mean { .. } => {
             let tables = places.iter().find(|place| !place.knots.is_empty());
             whole(&key::KNOTS, tables.map_or(section.span(), |place| place.span.clone()))
         }
         ShapeError::Flat | ShapeError::Empty => whole(&key::SHAPE, places[0].span.clone()),
+    }
+}
+
+/// The narrowest straight piece of all shapes, in words, and where it stands.
+fn narrowest_of(shapes: &Shapes, places: &[Place]) -> (String, Span) {
+    let widths = shapes.shapes.iter().map(narrowest_piece).zip(places);
+    let Some((width, place)) = widths.min_by(|(one, _), (other, _)| one.total_cmp(other)) else {
+        return (String::new(), places[0].span.clone());
+    };
+    let width = significant(width, 6);
+    let is_it = |pair: &[Pair]| significant(pair[1][0].value - pair[0][0].value, 6) == width;
+    match place.knots.windows(2).position(is_it) {
+        Some(knot) => {
+            let (knots, next) = (key::KNOTS.name(), knot + 1);
+            let piece = format!("{width} rad from `{}.{knots}[{knot}]` to [{next}]", place.table);
+            (piece, place.knots[next][0].span.clone())
+        }
+        None => (format!("{width} rad of `{}`", place.table), place.span.clone()),
     }
 }
 

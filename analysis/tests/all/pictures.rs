@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::common::{program, read, root};
 
 /// The documents that show them.
-const DOCUMENTS: [&str; 7] = [
+const DOCUMENTS: [&str; 8] = [
     "README.md",
     "docs/build.md",
     "docs/certify.md",
@@ -15,6 +15,7 @@ const DOCUMENTS: [&str; 7] = [
     "docs/measure.md",
     "docs/rate-and-format.md",
     "docs/set-up.md",
+    "docs/torque-profiles.md",
 ];
 
 /// The commands of the guide that draw, each as its arguments.

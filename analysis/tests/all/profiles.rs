@@ -288,6 +288,12 @@ fn bad_keys_of_the_environment_are_named() {
     );
     let texture = shape("texture", "pitch = 0.001\namplitude = 0.01");
     refused(&format!("delay = 1\n{STOPS}{texture}"), 6, &["`environment.cells`", "16 to 4096"]);
+    let narrow = "delay = 1\nknots = [[0, 0], [0.5, 0.1], [0.50001, 0.0], [1, 0]]\n";
+    refused(
+        &format!("{narrow}{STOPS}"),
+        2,
+        &["`environment.cells`: are 4096", "1e-5 rad from `environment.knots[1]` to [2], takes"],
+    );
     refused(
         &format!("cells = 16\ndelay = 1\n{STOPS}{}", texture.replace("0.001", "0.1")),
         7,
@@ -365,6 +371,17 @@ fn a_design_says_the_most_torque_the_most_detents_and_the_longest_period() {
     let found = answer(&longest)["value"].as_f64().unwrap();
     // Behind the standard coupling `2 delta / T`, which has to be stiffer than the steepest rise.
     assert!((found / (0.044 / (4.0 * 24.0 * 0.05 / TAU)) - 1.0).abs() < 1e-3, "{found}");
+    let lowest = answer(&run(&["design", "lowest", "rate", "-", "--json"], DETENTS));
+    assert_eq!((&lowest["quantity"], &lowest["unit"]), (&"rate".into(), &"Hz".into()));
+    let rate = lowest["value"].as_f64().unwrap();
+    // A scene of this very rate certifies, and of the next number below does not.
+    let judge = |rate: f64| {
+        let scene = text(DETENTS).replace("period = 0.001", &format!("period = {:?}", 1.0 / rate));
+        let scene = scene.replace("44.0", &format!("{:?}", 0.044 * rate));
+        haptic_reading(&["certify", "-"], scene.as_bytes()).status.code()
+    };
+    assert_eq!((judge(rate), judge(rate * (1.0 - 1e-9))), (Some(0), Some(1)), "{rate}");
+    assert!((rate * found - 1.0).abs() < 1e-12, "{rate} {found}");
     let border = run(&["design", "border", "count", "torque", "-", "--points", "4"], DETENTS);
     let text = String::from_utf8(border.stdout).unwrap();
     let rows: Vec<(f64, f64)> = text

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::{answer, haptic, program, read, root};
 
 /// The documents that name commands of the program.
-const DOCUMENTS: [&str; 16] = [
+const DOCUMENTS: [&str; 17] = [
     "README.md",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
@@ -17,6 +17,7 @@ const DOCUMENTS: [&str; 16] = [
     "docs/measure.md",
     "docs/rate-and-format.md",
     "docs/set-up.md",
+    "docs/torque-profiles.md",
     "firmware/boards.md",
     "firmware/PROTOCOL.md",
     "firmware/THEORY.md",
@@ -77,6 +78,23 @@ fn the_scene_of_the_readme_is_the_program_and_its_refusal_the_compilers() {
     assert!(refusal.contains(sentence.trim_matches('"')), "{sentence}");
     std::fs::write(file.path(), block("docs/certify.md", "file")).unwrap();
     assert!(judge(file.path()).contains("certified"));
+}
+
+#[test]
+fn a_design_of_the_guide_s_knob_answers_what_the_guide_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("knob.toml"), block("docs/torque-profiles.md", "knob"))
+        .unwrap();
+    let shown = block("docs/torque-profiles.md", "design");
+    let lines: Vec<&str> = shown.lines().collect();
+    for pair in lines.chunks(2) {
+        let [command, answer] = pair else { panic!("a command and its answer") };
+        let arguments = command.strip_prefix("$ cargo haptic ").expect("a command of the program");
+        let mut run = program(&arguments.split(' ').collect::<Vec<_>>());
+        let run = run.current_dir(folder.path()).output().unwrap();
+        let printed = String::from_utf8(run.stdout).unwrap();
+        assert_eq!(printed.lines().next(), Some(*answer), "{command}");
+    }
 }
 
 #[test]

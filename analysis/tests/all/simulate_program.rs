@@ -232,7 +232,7 @@ fn a_design_is_a_scene_that_certifies() {
     let chain = wall.replace(rigid, CHAIN);
     let undelayed = wall.replace("delay = 1", "delay = 0");
     let free = format!("{head}type = \"free-mode\"\nresidual = 0.001\n{moving}");
-    let cases: [(&str, &[&str], &str); 12] = [
+    let cases: [(&str, &[&str], &str); 15] = [
         (&wall, &["largest", "stiffness"], "largest stiffness: 2"),
         (&wall, &["largest", "damping", "--safety", "0.97"], "largest damping: 0.01"),
         (&wall, &["largest", "delay"], "largest delay: 1 sample\n"),
@@ -243,6 +243,9 @@ fn a_design_is_a_scene_that_certifies() {
         (&chain, &["period", "--safety", "0.9"], "longest period: 0.000"),
         (&undelayed, &["largest", "stiffness"], "largest stiffness: any value certifies"),
         (&undelayed, &["largest", "delay"], "largest delay: 1 sample\n"),
+        (&wall, &["lowest", "rate"], "lowest rate: 916.66"),
+        (&chain, &["lowest", "rate", "--safety", "0.9"], "lowest rate: 1"),
+        (&free, &["lowest", "rate"], "lowest rate: any value certifies"),
         (&free, &["period"], "longest period: any value certifies"),
         (&free, &["largest", "cancellation"], "largest cancellation: 0.02"),
     ];

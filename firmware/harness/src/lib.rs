@@ -9,6 +9,7 @@ pub mod bench_request;
 pub mod loop_request;
 pub mod scene_codec;
 pub mod sines;
+pub mod tables;
 
 mod transducer_codec;
 

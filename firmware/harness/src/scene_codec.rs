@@ -8,6 +8,8 @@ use firmware::environment::{Coefficients, Environment, MAX_DEGREE, Rational, Wal
 use firmware::passivity::interval::Interval;
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 
+use crate::tables;
+
 /// Numbers in a polynomial.
 const TERMS: usize = MAX_DEGREE + 1;
 
@@ -45,6 +47,11 @@ pub struct CertifyReply {
 /// A [`CertifyReply`] as words.
 pub type ReplyWords = [u64; 14];
 
+/// The word of an environment that no board here has a law of: a type of another crate, or an unknown table.
+const STATED: u64 = 5;
+/// The word of the first table of a torque profile.
+const TABLE: u64 = 6;
+
 /// The words of a scene.
 pub fn encode(scene: &Scene) -> SceneWords {
     let mut words = Cursor { words: [0; _], next: 0 };
@@ -54,8 +61,10 @@ pub fn encode(scene: &Scene) -> SceneWords {
         Environment::FreeMode { .. } => 2,
         Environment::FreeModeWall { .. } => 3,
         Environment::Rational(_) => 4,
-        Environment::Stated(_) => 5,
-        Environment::Profile(_) => 6,
+        Environment::Stated(_) => STATED,
+        Environment::Profile(profile) => {
+            tables::index_of(&profile).map_or(STATED, |table| TABLE + table as u64)
+        }
     });
     words.push(matches!(scene.coupling, Coupling::Matched).into());
     for parameter in Parameter::ALL {
@@ -89,7 +98,7 @@ const BLANK: Scene = Scene {
 };
 
 /// The scene of the words; `None` if they are none. Of what a type of environment only states, no board
-/// here knows a law, and a table of knots does not go with the words.
+/// here knows a law, and of tables of knots only [`tables`].
 pub fn decode(words: &SceneWords) -> Option<Scene> {
     let mut words = Cursor { words: *words, next: 0 };
     let kind = words.take();
@@ -100,7 +109,8 @@ pub fn decode(words: &SceneWords) -> Option<Scene> {
         2 => Environment::FreeMode { residual: 0.0, delay: 0 },
         3 => Environment::FreeModeWall { residual: 0.0, wall },
         4 => Environment::Rational(NO_RATIONAL),
-        _ => return None,
+        STATED => return None,
+        table => Environment::Profile(tables::from_index((table - TABLE) as usize)?),
     };
     let mut scene = Scene { environment, ..BLANK };
     if words.take() != 0 {
@@ -239,6 +249,8 @@ impl<const N: usize> Cursor<N> {
 
 #[cfg(test)]
 mod tests {
+    use firmware::environment::{Ends, Profile};
+
     use super::*;
 
     fn scene(environment: Environment) -> Scene {
@@ -268,12 +280,17 @@ mod tests {
             delay: 7,
             unit_zeros: 2,
         };
+        let ends = Some(Ends { from: -1.0, to: 2.0, stiffness: 3.0 });
+        let magnet = Profile { ends, count: 3.0, ..Profile::<64, 2>::of(&tables::MAGNET) };
+        let knob = magnet.damped(0.01).as_any();
         for environment in [
             Environment::DelayedSpring(Wall { damping: 0.0, filter: None, ..wall }),
             Environment::DamperWall(Wall { filter: None, ..wall }),
             Environment::FreeMode { residual: 0.25, delay: 1 },
             Environment::FreeModeWall { residual: 0.25, wall },
             Environment::Rational(rational),
+            Environment::Profile(Profile::<16, 1>::of(&tables::DETENTS).as_any()),
+            Environment::Profile(knob),
         ] {
             let asked = scene(environment);
             assert_eq!(decode(&encode(&asked)), Some(asked));
@@ -285,8 +302,10 @@ mod tests {
         assert!(decode(&[u64::MAX; WORDS]).is_none());
         assert!(decode(&[0; WORDS]).is_none());
         let mut stated = encode(&scene(Environment::FreeMode { residual: 0.0, delay: 1 }));
-        stated[0] = 5;
-        assert!(decode(&stated).is_none());
+        for kind in [5, 10, u64::MAX] {
+            stated[0] = kind;
+            assert!(decode(&stated).is_none(), "{kind}");
+        }
     }
 
     #[test]

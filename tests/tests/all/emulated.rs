@@ -176,6 +176,23 @@ fn the_board_judges_lagging_scenes_as_the_host_does() {
     assert!(most <= 3_400_000, "{most}");
 }
 
+/// So is that of torque profiles of 64 knots.
+#[test]
+fn the_board_judges_torque_profiles_as_the_host_does() {
+    let elf = TOOLCHAIN.build_certify_server().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = CertifyClient::boot(&elf).unwrap();
+    let (mut most, mut certified) = (0, 0);
+    for scene in bench::profile::scenes() {
+        let reply = judged_alike(&mut board, &scene, &format!("{scene:?}"));
+        most = most.max(reply.instructions);
+        certified += usize::from(reply.is_certified);
+    }
+    board.finish().unwrap();
+    println!("instructions of the longest judgement of a torque profile: {most}");
+    assert!(certified > 5 && certified < bench::profile::scenes().len(), "{certified}");
+    assert!(most <= 3_400_000, "{most}");
+}
+
 /// Torques and codes are those of the host, bit for bit, in every number format; there the scene is
 /// data, on the board it is a type.
 #[test]

@@ -58,6 +58,8 @@ const WRONG: &[(&str, usize, usize)] = &[
     ("mean-delay", 3, 0),
     ("between-ends", 2, 0),
     ("varying-hand", 2, 0),
+    ("fine-detents", 2, 0),
+    ("ratchet", 2, 0),
 ];
 
 /// Cases of which a board runs nothing, or refuses what is asked whatever it is told of the device.

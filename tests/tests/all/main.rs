@@ -22,6 +22,7 @@ mod margin;
 mod matched;
 mod misses;
 mod own_environment;
+mod profile_failures;
 mod profiles;
 mod random;
 mod reference;

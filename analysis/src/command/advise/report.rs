@@ -184,7 +184,10 @@ fn row(candidate: &Candidate) -> [String; 9] {
     [
         candidate.format.to_owned(),
         figure(Some(candidate.instructions)),
-        format!("{} %", figure(Some(100.0 * candidate.share))),
+        match candidate.share.is_finite() {
+            true => format!("{} %", number(100.0 * candidate.share)),
+            false => "none".to_owned(),
+        },
         figure(losses.map(|losses| losses.error)),
         figure(losses.and_then(|losses| losses.error_elsewhere)),
         figure(losses.map(|losses| losses.alone.torque)),

@@ -11,6 +11,7 @@ mod output;
 pub mod profile;
 pub mod trace;
 pub mod tradeoff;
+pub mod turn;
 
 use clap::{Args, Subcommand};
 
@@ -45,6 +46,8 @@ pub enum Single {
     /// Draw torque and potential of a torque profile over angle, its steepest slopes, and the slope that
     /// still certifies
     Profile(profile::Arguments),
+    /// Draw what a hand feels that turns a torque profile, by the codes of its servo
+    Turn(turn::Arguments),
     /// Draw a map of certified, stable and unstable walls over stiffness and damping (Z-width), or of
     /// torque profiles over torque and repetitions in a turn
     Map(map::Arguments),
@@ -66,6 +69,7 @@ impl Single {
             Self::Nyquist(arguments) => &arguments.output,
             Self::Bode(arguments) => &arguments.output,
             Self::Profile(arguments) => &arguments.output,
+            Self::Turn(arguments) => &arguments.output,
             Self::Map(arguments) => &arguments.output,
             Self::Limits(arguments) => &arguments.output,
             Self::Latency(arguments) => &arguments.output,
@@ -87,6 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Single::Nyquist(arguments) => nyquist::draw(arguments)?,
         Single::Bode(arguments) => bode::draw(arguments)?,
         Single::Profile(arguments) => profile::draw(arguments)?,
+        Single::Turn(arguments) => turn::draw(arguments)?,
         Single::Map(arguments) => map::draw(arguments)?,
         Single::Limits(arguments) => limits::draw(arguments)?,
         Single::Latency(arguments) => latency::draw(arguments)?,

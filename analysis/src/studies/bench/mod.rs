@@ -4,6 +4,7 @@ pub mod at_rest;
 pub mod live;
 pub mod matched;
 pub mod parts;
+pub mod profile;
 pub mod steps;
 
 use std::hint::black_box;

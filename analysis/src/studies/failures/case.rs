@@ -1,5 +1,6 @@
 //! A question about one loop, and the results of the methods that were asked.
 
+use firmware::environment::ShapeError;
 use thiserror::Error;
 
 use super::loop_run::{LoopRun, LoopRunError};
@@ -19,6 +20,9 @@ pub enum FailureError {
     /// There is no such device.
     #[error(transparent)]
     Chain(#[from] ChainError),
+    /// Shapes are no torque profile.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     /// A wall has no largest stiffness.
     #[error("this wall has no largest certified stiffness")]
     NoLimit,

@@ -6,6 +6,7 @@ use firmware::number::{Arithmetic, InEach, Number, OutOfRange};
 use firmware::scene::{Device, Scene};
 use firmware::servo::{BuildError, Transducers};
 use firmware_harness::loop_request::{LoopRequest, StartReply};
+use firmware_harness::tables::index_of;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -121,6 +122,12 @@ impl LoopRun {
             Some(difference) => Err(LoopRunError::Disagreement(difference.to_string())),
             None => Ok(BoardResult::Ran(Motion::of(&device.positions, self.experiment.samples))),
         }
+    }
+
+    /// Whether the emulated board can have the scene: of torque profiles only those of its own tables.
+    pub fn goes_to_a_board(&self) -> bool {
+        let profile = self.experiment.scene.environment.profile();
+        profile.is_none_or(|profile| index_of(profile).is_some())
     }
 
     /// The scene that is sent to the board, with the device that is claimed.

@@ -16,6 +16,7 @@ pub mod method_result;
 pub mod missed;
 pub mod motion;
 pub mod observer;
+pub mod profiles;
 pub mod region;
 pub mod report;
 pub mod roots;
@@ -53,6 +54,8 @@ cases! {
     "mean-delay", "a spring half a period late, behind a current loop", mean_delay::mean_delay;
     "between-ends", "a wall computed ahead and written 5 us after its count", between_ends::between_ends;
     "varying-hand", "a resonance behind a current loop, just past its limit", varying_hand::varying_hand;
+    "fine-detents", "120 detents of 0.25 N m, a sample late", profiles::fine_detents;
+    "ratchet", "24 teeth that push on by 3 N m in the mean", profiles::ratchet;
 }
 
 impl Case {

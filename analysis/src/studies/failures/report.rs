@@ -48,7 +48,7 @@ pub struct RunResult {
     pub expected: Outcome,
     /// Its motion in simulation.
     pub simulated: Motion,
-    /// What the emulated board did, if it was asked.
+    /// What the emulated board did, if it was asked and can have the scene.
     pub emulated: Option<BoardResult>,
 }
 
@@ -105,7 +105,8 @@ fn run_all(
     player: &mut Option<ServoClient>,
 ) -> Result<Vec<RunResult>, FailureError> {
     let run = |loop_run: &LoopRun| {
-        let emulated = player.as_mut().map(|player| loop_run.emulated(player)).transpose()?;
+        let player = player.as_mut().filter(|_| loop_run.goes_to_a_board());
+        let emulated = player.map(|player| loop_run.emulated(player)).transpose()?;
         let (what, expected) = (loop_run.what, loop_run.expected);
         Ok(RunResult { what, expected, simulated: loop_run.simulated()?, emulated })
     };

@@ -145,7 +145,12 @@ fn candidate(
                 let elsewhere = losses.error_elsewhere.unwrap_or_default();
                 beyond("error", losses.error.max(elsewhere), bound, " N m");
             }
-            beyond("share of the core", 100.0 * share, 100.0 * requirements.share, " %");
+            if instructions.is_finite() {
+                beyond("share of the core", 100.0 * share, 100.0 * requirements.share, " %");
+            } else {
+                let unknown = "instructions of a tick of this type of scene are not known";
+                rejected.push(unknown.to_owned());
+            }
             let too_little = rest.filter(|rest| hums && rest.friction.is_some());
             rejected.extend(too_little.map(|rest| rest.to_string()));
         }

@@ -139,6 +139,7 @@ mod tests {
             Environment::FreeMode { residual: 0.002, delay: 0 },
             Environment::FreeModeWall { residual: 0.02, wall: Wall { damping: 0.0, ..wall } },
             Environment::Rational(rational),
+            Environment::Profile(crate::program::knob::SCENE.environment.as_any()),
         ] {
             let scene = Scene {
                 device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.021999) },

@@ -61,12 +61,28 @@ impl Units {
         let slope = |value: f64| value * self.angle / self.torque;
         let scaled = |environment: Environment, parameter| {
             let value = environment.get(parameter).unwrap_or(0.0);
-            let value =
-                if parameter == Parameter::Face { value / self.angle } else { slope(value) };
+            let value = match parameter {
+                Parameter::Face | Parameter::Centre | Parameter::From | Parameter::To => {
+                    value / self.angle
+                }
+                Parameter::ProfileTorque => value / self.torque,
+                // A turn has fewer units.
+                Parameter::Count => value * self.angle,
+                _ => slope(value),
+            };
             environment.with(parameter, value).unwrap_or(environment)
         };
-        let numbers =
-            [Parameter::Stiffness, Parameter::Damping, Parameter::Face, Parameter::Residual];
+        let numbers = [
+            Parameter::Stiffness,
+            Parameter::Damping,
+            Parameter::Face,
+            Parameter::Residual,
+            Parameter::ProfileTorque,
+            Parameter::Count,
+            Parameter::Centre,
+            Parameter::From,
+            Parameter::To,
+        ];
         match numbers.into_iter().fold(environment, scaled) {
             Environment::Rational(rational) => {
                 let scaled: Vec<_> =

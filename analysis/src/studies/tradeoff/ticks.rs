@@ -7,13 +7,15 @@
 
 use std::io::Write;
 
-use firmware::environment::{Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall};
+use firmware::environment::{
+    AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall,
+};
 use firmware::number::Arithmetic;
 
 use super::NUMBER;
 use super::servo::Case;
 use crate::emulator::BenchClient;
-use crate::program::Program;
+use crate::program::{Program, knob};
 use crate::studies::number_format::{FormatError, cost};
 use crate::table::{Column, Table, TableError};
 
@@ -124,12 +126,20 @@ fn type_of(environment: &Environment) -> String {
             format!("free mode and {}, {}", wall_type(wall), delay(wall.delay))
         }
         Environment::Stated(_) => "of another crate".to_owned(),
-        Environment::Profile(profile) => format!("torque profile, {}", delay(profile.delay)),
+        Environment::Profile(profile) => {
+            format!("{}, {}", profile_type(profile), delay(profile.delay))
+        }
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
             format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))
         }
     }
+}
+
+fn profile_type(profile: &AnyProfile) -> String {
+    let damped = if profile.damping == 0.0 { "torque profile" } else { "damped torque profile" };
+    let endless = if profile.ends.is_some() { "" } else { ", endless" };
+    format!("{damped}{endless}")
 }
 
 fn wall_type(wall: &Wall) -> String {
@@ -169,8 +179,9 @@ fn of_delay(delay: usize) -> Vec<Case> {
     };
     let cases = [case("delayed_spring", spring), case("free_mode", free)].into_iter();
     let walls = walls.into_iter().map(|wall| case("damper_wall", wall));
+    let knobs = of_ends(delay).into_iter().map(|profile| case("knob", profile));
     let unlimited = ended.into_iter().chain(rational).map(|other| case("free_mode", other));
-    cases.chain(walls).chain(unlimited).flatten().collect()
+    cases.chain(walls).chain(unlimited).chain(knobs).flatten().collect()
 }
 
 /// The wall wherever one can have its rest, without a filter and with one.
@@ -180,6 +191,16 @@ fn of_sides(wall: Wall) -> [Wall; 6] {
     let [placed, one_sided] =
         [|wall| Wall { face: PLACE, ..wall }, |wall| Wall { one_sided: true, ..wall }];
     [wall, placed(wall), one_sided(wall), filtered, placed(filtered), one_sided(filtered)]
+}
+
+/// The knob as it is and without ends: a profile that boards latch. Others are too large for the board's
+/// program beside all that is there.
+fn of_ends(delay: usize) -> Vec<Environment> {
+    let knob = knob::SCENE.environment.as_any();
+    let mut endless = knob;
+    endless.ends = None;
+    let both = [knob, endless].into_iter().filter(|profile| profile.delay == delay);
+    both.map(Environment::Profile).collect()
 }
 
 /// A spring of about 1 N m/rad with as many coefficients that are not zero as there can be.

@@ -1,6 +1,10 @@
 //! The board's codes against the host's, tick by tick.
 
-use analysis::program::{Program, damper_wall, delayed_spring, free_mode, undelayed_wall};
+use std::f64::consts::TAU;
+
+use analysis::hand::{HandTrajectory, TYPICAL_HAND};
+use analysis::lockstep::SimulatedDevice;
+use analysis::program::{Program, damper_wall, delayed_spring, free_mode, knob, undelayed_wall};
 use analysis::toolchain::NumberFormat;
 use firmware::boot;
 use firmware::encoder::CounterWidth;
@@ -60,6 +64,29 @@ fn the_wall_without_delay_gives_the_host_s_codes() {
     });
 }
 
+/// From one end stop through all detents to the other one, beyond both.
+#[test]
+fn the_knob_gives_the_host_s_codes_through_its_detents_and_into_its_stops() {
+    on_both(|chip| {
+        let program = Program::find("knob").unwrap();
+        let path =
+            vec![(0.25, 0.0), (1.5, -2.9), (1.75, -2.9), (4.0, 2.9), (4.25, 2.9), (4.75, 2.3)];
+        let description = "a hand turns it from stop to stop";
+        let turn = HandTrajectory { description, hand: TYPICAL_HAND, path, release: 4.75 };
+        let device = SimulatedDevice::new(&program.scene, turn, &program.transducers).unwrap();
+        let device = HandHeldDevice::with(device);
+        let (scene, transducers) = (knob::SCENE, &knob::TRANSDUCERS);
+        let samples = compare_held::<_, Latched>(chip, program, scene, transducers, device);
+        let angle = |sample: &Sample| f64::from(sample.count) * TAU / transducers.counts_per_turn;
+        let furthest = samples
+            .iter()
+            .map(angle)
+            .fold((0.0, 0.0), |(least, most): (f64, f64), at| (least.min(at), most.max(at)));
+        let ends = scene.environment.ends.unwrap();
+        assert!(furthest.0 < ends.from && furthest.1 > ends.to, "{}: {furthest:?}", chip.name);
+    });
+}
+
 /// A program's whole script on a board, against the servo on the host with the same counts.
 fn compare<E, M>(
     chip: &'static Chip,
@@ -71,7 +98,23 @@ fn compare<E, M>(
     M: OutputMode,
 {
     let program = Program::find(name).unwrap();
-    let mut bench = Bench::boot(chip, name, HandHeldDevice::of(program));
+    compare_held::<E, M>(chip, program, scene, transducers, HandHeldDevice::of(program));
+}
+
+/// The same around a device; gives what was at the pins from the tick on in which it was armed.
+fn compare_held<E, M>(
+    chip: &'static Chip,
+    program: &'static Program,
+    scene: Scene<E>,
+    transducers: &Transducers,
+    device: HandHeldDevice,
+) -> Vec<Sample>
+where
+    E: Tunable<f32> + SupportsTiming<M>,
+    M: OutputMode,
+{
+    let name = program.name;
+    let mut bench = Bench::boot(chip, name, device);
     let armed = bench.armed();
     // What a tick computes is put out in the sample that it begins, or in the one behind.
     let late = if M::TIMING.is_at_phase() { 1 } else { 2 };
@@ -93,6 +136,7 @@ fn compare<E, M>(
         let opened = tick > OPEN;
         assert!(!opened || samples[tick + 1].code == Some(code), "{}, {name}: {tick}", chip.name);
     }
+    samples.to_vec()
 }
 
 /// The codes of the same cycle on the host, from the tick on in which it is armed.

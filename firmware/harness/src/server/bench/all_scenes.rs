@@ -1,10 +1,12 @@
 //! The types of all scenes that a file can name.
 
 use firmware::environment::{
-    DamperWall, DelayedSpring, Discretize, Environment, FilteredWall, FreeMode, FreeModeWall,
-    MAX_DELAY, OneSided, Placed, Spring, Wall,
+    AnyProfile, DamperWall, DelayedSpring, Discretize, Environment, FilteredWall, FreeMode,
+    FreeModeWall, MAX_DELAY, OneSided, Placed, Profile, Spring, Wall,
 };
 use firmware::number::Number;
+
+use crate::tables::DETENTS;
 
 use super::{BenchJob, HostClosed, SceneSet};
 
@@ -41,9 +43,8 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
             None => as_data::<N>(job),
         },
         Environment::Rational(rational) => job.run::<_, N>(rational),
-        Environment::DelayedSpring(_) | Environment::Stated(_) | Environment::Profile(_) => {
-            as_data::<N>(job)
-        }
+        Environment::Profile(profile) => with_table::<N>(job, &profile),
+        Environment::DelayedSpring(_) | Environment::Stated(_) => as_data::<N>(job),
     }
 }
 
@@ -51,6 +52,17 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
 fn as_data<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
     let environment = job.scene.environment;
     job.run::<_, N>(environment)
+}
+
+/// A latched profile of detents, as programs have it, in its own type: other tables take a tick the same
+/// instructions, and more types do not fit the flash.
+fn with_table<N: Number>(job: BenchJob<'_>, profile: &AnyProfile) -> Result<(), HostClosed> {
+    let is_known = profile.units() == DETENTS.units();
+    if !is_known || profile.delay != 1 || profile.damping != 0.0 {
+        return as_data::<N>(job);
+    }
+    let AnyProfile { torque, count, centre, ends, .. } = *profile;
+    job.run::<_, N>(Profile::<16, 1> { knots: &DETENTS, torque, count, centre, ends })
 }
 
 /// A wall at zero.

@@ -1,0 +1,63 @@
+//! `haptic chart turn`: what a hand feels that turns a torque profile.
+
+use clap::Args;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+
+use super::output::OutputArguments;
+use crate::chart::{self, Chart, Data};
+use crate::command::file_scene::{scene_file, transducers_of};
+use crate::command::status::CommandError;
+use crate::device::Hand;
+use crate::felt_turn::{FINGERS, FeltTurn, FeltTurnError};
+use crate::program::Program;
+use crate::quantity::{shortened, significant};
+
+/// Arguments of `haptic chart turn`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of a scene's program, or scene file; `-` is standard input
+    #[arg(value_name = "SCENE")]
+    pub scene: String,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub output: OutputArguments,
+}
+
+/// Turns a scene's device and draws what is felt.
+pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
+    match Program::find(&arguments.scene) {
+        Some(Program { name, scene, transducers, .. }) => {
+            of_scene(name, scene, transducers, FINGERS)
+        }
+        None => {
+            let file = scene_file(&arguments.scene)?;
+            let (hand, transducers) =
+                (file.hand.unwrap_or(FINGERS), transducers_of(&file, None, None));
+            of_scene(&file.name, &file.scene, &transducers, hand)
+        }
+    }
+}
+
+fn of_scene(
+    name: &str,
+    scene: &Scene,
+    transducers: &Transducers,
+    hand: Hand,
+) -> Result<Chart, CommandError> {
+    let turn = FeltTurn::of(scene, transducers, hand).map_err(|error| match error {
+        FeltTurnError::NoProfile => CommandError::NoProfile { scene: name.to_owned() },
+        FeltTurnError::Rejected(rejection) => CommandError::Refused(rejection),
+        FeltTurnError::Servo(error) => error.into(),
+        FeltTurnError::Simulation(error) => error.into(),
+    })?;
+    let period = significant(1e3 * scene.timing.period, 4);
+    let title =
+        format!("{}: what a hand feels that turns it, T = {period} ms", shortened(name, 40));
+    let picture = chart::turn::turn(&title, &turn)?;
+    let FeltTurn { time, angle, setpoint, torque, .. } = turn;
+    let rows = (0..time.len())
+        .map(move |i| [time[i], angle[i], setpoint[i], torque[i]].map(Into::into).to_vec());
+    let header = &["time (s)", "angle (rad)", "hand (rad)", "torque (N m)"];
+    Ok(Chart { picture, data: Data::new(header, rows) })
+}

@@ -1,0 +1,138 @@
+//! What a hand feels that turns a torque profile: the codes of the servo that would be flashed, around a
+//! simulated device.
+
+use std::f64::consts::TAU;
+
+use firmware::certificate::Rejection;
+use firmware::dac::DacCode;
+use firmware::environment::{AnyProfile, Ends};
+use firmware::scene::Scene;
+use firmware::servo::{BuildError, Transducers};
+use thiserror::Error;
+
+use crate::controller::controller;
+use crate::device::Hand;
+use crate::hand::HandTrajectory;
+use crate::lockstep::{PlantIo, SimulatedDevice};
+use crate::profile_curve::ProfileCurve;
+use crate::simulation::SimulationError;
+
+/// Why nothing is felt.
+#[derive(Debug, Error)]
+pub enum FeltTurnError {
+    /// The environment is no torque profile.
+    #[error("the scene has no torque profile")]
+    NoProfile,
+    /// The scene is not certified.
+    #[error("{0}")]
+    Rejected(Box<Rejection>),
+    /// The servo cannot be had.
+    #[error(transparent)]
+    Servo(#[from] BuildError),
+    /// The device cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Two fingers around a knob: softer than its detents, so that they snap.
+pub const FINGERS: Hand = Hand { inertia: 1e-5, damping: 0.002, stiffness: 0.4 };
+/// Repetitions of a profile that are turned through.
+pub const REPETITIONS: f64 = 3.0;
+/// Time in s until the hand begins, until it is there, and until the end.
+const TIMES: [f64; 3] = [0.2, 1.6, 2.0];
+/// Part of the way by which a profile that does not repeat is turned beyond its end.
+const BEYOND: f64 = 1.05;
+
+/// A turn, a sample a tick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeltTurn {
+    /// Time in s.
+    pub time: Vec<f64>,
+    /// Angle in rad, as the encoder counts it.
+    pub angle: Vec<f64>,
+    /// Set-point of the hand in rad.
+    pub setpoint: Vec<f64>,
+    /// Torque in N m that pushes back, of the code of each tick.
+    pub torque: Vec<f64>,
+    /// The profile, over the angles of the turn.
+    pub curve: ProfileCurve,
+}
+
+impl FeltTurn {
+    /// Turns a scene's device slowly from 0 rad on, through three repetitions, or to the upper end of a profile
+    /// that does not repeat. The servo computes in `f32`.
+    ///
+    /// # Errors
+    /// Where the scene is not certified or cannot be simulated.
+    pub fn of(scene: &Scene, transducers: &Transducers, hand: Hand) -> Result<Self, FeltTurnError> {
+        let profile = scene.environment.profile().ok_or(FeltTurnError::NoProfile)?;
+        let way = way(profile);
+        let certified = scene.certify().map_err(|why| FeltTurnError::Rejected(Box::new(why)))?;
+        let mut servo = controller::<_, f32>(&certified, transducers)?;
+        let description = "a hand turns it";
+        let path = vec![(TIMES[0], 0.0), (TIMES[1], way), (TIMES[2], way)];
+        let trajectory = HandTrajectory { description, hand, path, release: f64::INFINITY };
+        let mut device = SimulatedDevice::new(scene, trajectory.clone(), transducers)?;
+        let ticks = (TIMES[2] / scene.timing.period).ceil() as usize;
+        let torque_per_code =
+            transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+        let around = 0.5 * way / REPETITIONS;
+        let curve = ProfileCurve::over(scene, &(-around..way + around));
+        let mut turn = Self {
+            time: Vec::with_capacity(ticks),
+            angle: Vec::with_capacity(ticks),
+            setpoint: Vec::with_capacity(ticks),
+            torque: Vec::with_capacity(ticks),
+            curve: curve.ok_or(FeltTurnError::NoProfile)?,
+        };
+        for tick in 0..ticks {
+            let time = tick as f64 * scene.timing.period;
+            let output = servo.tick(device.count().unwrap_or_default());
+            let code = f64::from(output.code) - f64::from(DacCode::MID_SCALE.get());
+            turn.time.push(time);
+            turn.angle.push(output.count as f64 * TAU / transducers.counts_per_turn);
+            turn.setpoint.push(trajectory.position(time));
+            // The motor applies the code, and a torque that pushes back is minus that.
+            turn.torque.push(-code * torque_per_code);
+            device.hold(output.code);
+        }
+        Ok(turn)
+    }
+}
+
+/// How far a profile is turned in rad.
+fn way(profile: &AnyProfile) -> f64 {
+    match profile.ends {
+        Some(Ends { from, to, .. }) if !profile.outline().wraps => {
+            BEYOND * if to > 0.0 { to } else { to - from }
+        }
+        _ => REPETITIONS * TAU / profile.count,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::knob;
+
+    /// The rest is a DAC step, and half an encoder step on the slope.
+    #[test]
+    fn what_is_felt_is_the_profile_where_it_was_a_sample_ago() {
+        let scene = knob::SCENE.as_data();
+        let turn = FeltTurn::of(&scene, &knob::TRANSDUCERS, FINGERS).unwrap();
+        assert_eq!(turn.time.len(), 2000);
+        // Torque as a wave of straight lines, by its own formula.
+        let wave = |x: f64| 0.05 * std::f64::consts::FRAC_2_PI * (24.0 * x).sin().asin();
+        let step = knob::TRANSDUCERS.full_scale_torque / 1791.0;
+        // Behind the coupling the environment is where the device is less the coupling's deflection.
+        for tick in 1..2000 {
+            let x = turn.angle[tick - 1] - turn.torque[tick - 1] / 44.0;
+            let off = (turn.torque[tick] - wave(x)).abs();
+            assert!(off < 2.0 * step + 1e-3, "{tick}: {off}");
+        }
+        let peaks = turn.torque.windows(2).filter(|two| two[0] > 0.0 && two[1] <= 0.0).count();
+        assert!(peaks >= 3, "{peaks} tops");
+        let end = turn.angle[1999];
+        assert!((end - REPETITIONS * TAU / 24.0).abs() < 0.02, "{end}");
+    }
+}

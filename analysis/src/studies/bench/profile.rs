@@ -1,0 +1,43 @@
+//! What a verdict about a torque profile of 64 knots costs, on this machine and on the emulated board.
+
+use std::path::Path;
+
+use firmware::environment::{AnyProfile, Ends, Environment, Profile};
+use firmware::scene::Scene;
+use firmware_harness::tables::MAGNET;
+
+use crate::emulator::{CertifyClient, EmulatorError};
+use crate::program::knob;
+
+/// Such profiles: gentle and too steep, late by one to three samples, with ends and without.
+pub fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for torque in [0.02, 0.2, 20.0] {
+        for delay in 1..=3 {
+            for ends in [None, Some(Ends { from: -2.0, to: 2.0, stiffness: 12.0 })] {
+                let mut profile: AnyProfile = Profile::<64, 1>::of(&MAGNET).as_any();
+                (profile.torque, profile.delay, profile.ends) = (torque, delay, ends);
+                let environment = Environment::Profile(profile);
+                scenes.push(Scene { environment, ..knob::SCENE.as_data() });
+            }
+        }
+    }
+    scenes
+}
+
+/// Most instructions of a verdict about them on the emulated board, and of the same with all that a message
+/// about it says.
+///
+/// # Errors
+/// Where the emulated board fails.
+pub fn verdict_instructions(elf: &Path) -> Result<[u64; 2], EmulatorError> {
+    let mut board = CertifyClient::boot(elf)?;
+    let mut most = [0; 2];
+    for scene in scenes() {
+        let reply = board.certify(&scene)?;
+        let found = [reply.verdict_instructions, reply.instructions];
+        most = std::array::from_fn(|i| most[i].max(found[i]));
+    }
+    board.finish()?;
+    Ok(most)
+}
