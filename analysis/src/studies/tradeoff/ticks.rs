@@ -8,9 +8,10 @@
 use std::io::Write;
 
 use firmware::environment::{
-    AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Rational, Wall,
+    AnyProfile, Coefficients, Environment, MAX_DEGREE, MAX_DELAY, Profile, Rational, Wall,
 };
 use firmware::number::Arithmetic;
+use firmware_harness::tables::DETENTS;
 
 use super::NUMBER;
 use super::servo::Case;
@@ -197,8 +198,7 @@ fn of_sides(wall: Wall) -> [Wall; 6] {
 /// program beside all that is there.
 fn of_ends(delay: usize) -> Vec<Environment> {
     let knob = knob::SCENE.environment.as_any();
-    let mut endless = knob;
-    endless.ends = None;
+    let endless = Profile::<16, 1>::of(&DETENTS).as_any();
     let both = [knob, endless].into_iter().filter(|profile| profile.delay == delay);
     both.map(Environment::Profile).collect()
 }
