@@ -410,8 +410,7 @@ fn advice_about_a_profile_has_no_infinite_numbers() {
         let advised = run(&question, &format!("{damping}{DETENTS}{stops}"));
         let text = String::from_utf8(advised.stdout).unwrap();
         assert!(!text.contains("inf") && !text.contains("none %"), "{text}");
-        let is_unknown =
-            text.contains("instructions of a tick of this type of scene are not known");
+        let is_unknown = text.contains("instructions of its tick are not known");
         assert_eq!(
             (advised.status.code(), is_unknown),
             (Some(i32::from(!known)), !known),
