@@ -401,6 +401,24 @@ fn a_design_says_the_most_torque_the_most_detents_and_the_longest_period() {
     assert_eq!(none.status.code(), Some(2), "{none:?}");
 }
 
+/// A type of scene of which no board has counted the instructions is named so.
+#[test]
+fn advice_about_a_profile_has_no_infinite_numbers() {
+    let stops = shape("end_stops", "from = -2\nto = 2\nstiffness = 15");
+    for (damping, known) in [("", true), ("damping = 0.001\n", false)] {
+        let question = ["advise", "-", "--max-limit-cycle", "0.5", "--rate", "1000"];
+        let advised = run(&question, &format!("{damping}{DETENTS}{stops}"));
+        let text = String::from_utf8(advised.stdout).unwrap();
+        assert!(!text.contains("inf") && !text.contains("none %"), "{text}");
+        let is_unknown = text.contains("instructions of its tick are not known");
+        assert_eq!(
+            (advised.status.code(), is_unknown),
+            (Some(i32::from(!known)), !known),
+            "{text}"
+        );
+    }
+}
+
 /// Nothing panics, and where there is no answer, the sentence says why.
 #[test]
 fn every_command_answers_or_says_why_not() {

@@ -3,14 +3,21 @@
 
 use firmware::environment::{AnyProfile, Ends, Knots, Profile, Shape};
 
-/// Detents, as scene files and the program `knob` have them.
+/// Detents without ends, of any torque and number.
 pub static DETENTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05)]);
+
+/// Detents between end stops, as the program `knob` has them: without ends rounding is evened out.
+pub static STOPPED: Knots<16> =
+    Knots::of(&[Shape::detents(24, 0.05), Shape::end_stops(-2.618, 2.618, 15.0)]);
 
 /// Detents and a magnet a turn, in 64 knots.
 pub static MAGNET: Knots<64> = Knots::of(&[Shape::detents(4, 0.05), Shape::magnet(0.0, 0.3, 0.03)]);
 
-const TABLES: [AnyProfile; 2] =
-    [Profile::<16, 1>::of(&DETENTS).as_any(), Profile::<64, 1>::of(&MAGNET).as_any()];
+const TABLES: [AnyProfile; 3] = [
+    Profile::<16, 1>::of(&DETENTS).as_any(),
+    Profile::<16, 1>::of(&STOPPED).as_any(),
+    Profile::<64, 1>::of(&MAGNET).as_any(),
+];
 
 /// The place of a profile's table, and whether it has ends; `None` for another table.
 pub fn index_of(profile: &AnyProfile) -> Option<usize> {
@@ -24,4 +31,21 @@ pub fn from_index(index: usize) -> Option<AnyProfile> {
     let mut profile = *TABLES.get(index / 2)?;
     profile.ends = (index % 2 == 1).then_some(Ends { from: 0.0, to: 0.0, stiffness: 0.0 });
     Some(profile)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn detents_of_another_torque_and_number_have_the_same_table() {
+        static OTHERS: Knots<16> = Knots::of(&[Shape::detents(120, 0.25)]);
+        static KNOB: Knots<16> =
+            Knots::of(&[Shape::detents(36, 0.01), Shape::end_stops(0.0, 9.0, 3.0)]);
+        assert_eq!(index_of(&Profile::<16, 2>::of(&OTHERS).as_any()), Some(0));
+        // By how its knots are rounded it has the one or the other table.
+        assert_eq!(index_of(&Profile::<16, 1>::of(&KNOB).as_any()), Some(1));
+        assert_eq!(index_of(&Profile::<16, 1>::of(&STOPPED).as_any()), Some(3));
+        assert!(from_index(6).is_none());
+    }
 }

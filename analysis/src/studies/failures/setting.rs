@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
-use firmware::environment::{Environment, Wall};
+use firmware::environment::{Environment, FULL_SCALE, Wall};
 use firmware::number::Arithmetic;
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::Transducers;
@@ -73,10 +73,16 @@ pub fn friction_for_rest(scene: &Scene, transducers: &Transducers) -> f64 {
     encoder_friction(scene, transducers) + 0.5 * transducers.full_scale_torque / codes
 }
 
-/// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad.
+/// `K Delta / 2 + B Delta / T` in N m for the encoder's step `Delta` in rad; `K` is the steepest slope of a
+/// torque profile.
 pub fn encoder_friction(scene: &Scene, transducers: &Transducers) -> f64 {
-    let Some(wall) = scene.environment.wall() else { return 0.0 };
     let step = TAU / transducers.counts_per_turn;
+    if let Some(profile) = scene.environment.profile() {
+        let units = f64::from(profile.outline().rise.max(profile.outline().fall));
+        let slope = units / f64::from(FULL_SCALE) * profile.torque * profile.knots_per_rad();
+        return 0.5 * slope * step;
+    }
+    let Some(wall) = scene.environment.wall() else { return 0.0 };
     (0.5 * wall.stiffness + wall.damping / scene.timing.period) * step
 }
 

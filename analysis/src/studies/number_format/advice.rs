@@ -148,7 +148,7 @@ fn candidate(
             if instructions.is_finite() {
                 beyond("share of the core", 100.0 * share, 100.0 * requirements.share, " %");
             } else {
-                let unknown = "instructions of a tick of this type of scene are not known";
+                let unknown = "instructions of its tick are not known: `--measure` counts them";
                 rejected.push(unknown.to_owned());
             }
             let too_little = rest.filter(|rest| hums && rest.friction.is_some());

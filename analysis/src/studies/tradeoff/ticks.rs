@@ -179,7 +179,7 @@ fn of_delay(delay: usize) -> Vec<Case> {
     };
     let cases = [case("delayed_spring", spring), case("free_mode", free)].into_iter();
     let walls = walls.into_iter().map(|wall| case("damper_wall", wall));
-    let knobs = of_ends(delay).into_iter().map(|profile| case("knob", profile));
+    let knobs = between_ends(delay).into_iter().map(|profile| case("knob", profile));
     let unlimited = ended.into_iter().chain(rational).map(|other| case("free_mode", other));
     cases.chain(walls).chain(unlimited).chain(knobs).flatten().collect()
 }
@@ -193,14 +193,11 @@ fn of_sides(wall: Wall) -> [Wall; 6] {
     [wall, placed(wall), one_sided(wall), filtered, placed(filtered), one_sided(filtered)]
 }
 
-/// The knob as it is and without ends: a profile that boards latch. Others are too large for the board's
-/// program beside all that is there.
-fn of_ends(delay: usize) -> Vec<Environment> {
+/// The knob: a profile between ends that boards latch. An endless one has a turn in it, which not every format
+/// holds, and other types are too large for the board's program beside all that is there.
+fn between_ends(delay: usize) -> Option<Environment> {
     let knob = knob::SCENE.environment.as_any();
-    let mut endless = knob;
-    endless.ends = None;
-    let both = [knob, endless].into_iter().filter(|profile| profile.delay == delay);
-    both.map(Environment::Profile).collect()
+    (knob.delay == delay).then_some(Environment::Profile(knob))
 }
 
 /// A spring of about 1 N m/rad with as many coefficients that are not zero as there can be.

@@ -6,7 +6,7 @@ use firmware::environment::{
 };
 use firmware::number::Number;
 
-use crate::tables::DETENTS;
+use crate::tables::{DETENTS, STOPPED};
 
 use super::{BenchJob, HostClosed, SceneSet};
 
@@ -57,12 +57,12 @@ fn as_data<N: Number>(job: BenchJob<'_>) -> Result<(), HostClosed> {
 /// A latched profile of detents, as programs have it, in its own type: other tables take a tick the same
 /// instructions, and more types do not fit the flash.
 fn with_table<N: Number>(job: BenchJob<'_>, profile: &AnyProfile) -> Result<(), HostClosed> {
-    let is_known = profile.units() == DETENTS.units();
-    if !is_known || profile.delay != 1 || profile.damping != 0.0 {
+    let knots = [&DETENTS, &STOPPED].into_iter().find(|knots| knots.units() == profile.units());
+    let (Some(knots), 1, 0.0) = (knots, profile.delay, profile.damping) else {
         return as_data::<N>(job);
-    }
+    };
     let AnyProfile { torque, count, centre, ends, .. } = *profile;
-    job.run::<_, N>(Profile::<16, 1> { knots: &DETENTS, torque, count, centre, ends })
+    job.run::<_, N>(Profile::<16, 1> { knots, torque, count, centre, ends })
 }
 
 /// A wall at zero.
