@@ -29,7 +29,8 @@ FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost"
           11: "flash-ecc", 12: "ram-parity", 13: "non-maskable"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
-              11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre"}
+              11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
+              28: "mode"}
 
 # Messages to the board and to the host, by number.
 HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE = range(8)

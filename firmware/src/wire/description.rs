@@ -3,8 +3,9 @@
 use fixed::types::{I1F31, I4F28, I8F24, I12F20, I16F16};
 use serde::{Deserialize, Serialize};
 
-use crate::certificate::Parameter;
-use crate::environment::Environment;
+use super::message::Changes;
+use crate::certificate::{Parameter, Rejection};
+use crate::environment::{Environment, ModeSelection};
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
@@ -40,6 +41,35 @@ impl Description {
         changes: &[(Parameter, f64)],
     ) -> Result<(), RenderError> {
         tuning::check(has, changes)?;
+        match self.other_mode(changes) {
+            None => self.judge(changes),
+            Some(mode) => self.judge_without(mode, changes),
+        }
+    }
+
+    /// The number of a mode that is there, and is not the one that runs.
+    fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
+        let running = self.scene.environment.profile()?.modes?;
+        let (_, mode) = changes.iter().find(|(parameter, _)| *parameter == Parameter::Mode)?;
+        let selected = ModeSelection { mode: *mode, ..running };
+        (selected.index().is_some() && *mode != running.mode).then_some(*mode)
+    }
+
+    /// Why another mode is refused with these changes. Its table is not here: what can be told without it is
+    /// a number that makes no sense with any mode.
+    fn judge_without(&self, mode: f64, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
+        let is_kept = |change: &&(Parameter, f64)| change.0 != Parameter::Mode;
+        let others: Changes = changes.iter().filter(is_kept).copied().collect();
+        match self.judge(&others) {
+            Err(
+                reason @ (RenderError::Rejected(Rejection::Invalid(_)) | RenderError::Build(_)),
+            ) => Err(reason),
+            _ => Err(RenderError::OtherMode { mode }),
+        }
+    }
+
+    /// Why the scene with these changes is refused.
+    fn judge(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
         match self.timing {
             OutputTiming::Latched => self.by_mode::<Latched>(changes),
             OutputTiming::Simultaneous => self.by_mode::<Simultaneous>(changes),

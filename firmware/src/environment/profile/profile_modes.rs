@@ -82,3 +82,6 @@ fn law<N: Number, const DELAY: usize>(
         ProfileLaw::new(profile.units(), &outline, &layout, NoDamping, FixedDelay::at_rest())?;
     Ok(law.counting_turns_anew(&layout))
 }
+
+#[cfg(test)]
+mod tests;
