@@ -70,7 +70,7 @@ use crate::output_timing::OutputMode;
 use crate::scene::Scene;
 use crate::step::Step;
 use assessment::{Extent, assessed};
-use modes::first_untimed_mode;
+use modes::tightest_mode;
 
 /// A scene that was proved passive.
 ///
@@ -245,12 +245,18 @@ impl<E: Copy> Certified<Scene<E>> {
         E: SupportsTiming<M>,
     {
         let format = self.assessment.format;
-        if let Some(RefusedMode { reason, .. }) = first_untimed_mode(&self.data, format, M::TIMING)
-        {
-            return Err(reason);
-        }
+        let of_modes = match tightest_mode(&self.data, format, M::TIMING) {
+            Ok(of_modes) => of_modes,
+            Err(RefusedMode { reason, .. }) => return Err(reason),
+        };
         match timed::agree(M::TIMING, &self.data, &self.assessment) {
-            Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
+            Ok(own) => {
+                let limited = match of_modes {
+                    Some(tightest) => tightest,
+                    None => own,
+                };
+                Ok(TimingChecked::new(self.scene, format, limited))
+            }
             Err(error) => Err(error),
         }
     }
@@ -267,9 +273,9 @@ impl<E: Copy> Certified<Scene<E>> {
     {
         match self.time() {
             Ok(timed) => timed,
-            Err(error) => match first_untimed_mode(&self.data, self.assessment.format, M::TIMING) {
-                Some(refused) => refuse(&refused.sentence()),
-                None => refuse(&error.sentence()),
+            Err(error) => match tightest_mode(&self.data, self.assessment.format, M::TIMING) {
+                Err(refused) => refuse(&refused.sentence()),
+                Ok(_) => refuse(&error.sentence()),
             },
         }
     }

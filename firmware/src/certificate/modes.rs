@@ -1,9 +1,9 @@
 //! A scene of several modes: each of them is judged, so that none is refused when it is selected.
 
-use super::assessment::Assessment;
 use super::certify_in;
+use super::margin::Limited;
 use super::rejection::Rejection;
-use super::timed::TimingError;
+use super::timed::{TimingError, agree};
 use crate::environment::ModeSelection;
 use crate::number::Format;
 use crate::output_timing::OutputTiming;
@@ -63,22 +63,33 @@ pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<Refused
     None
 }
 
-/// The first mode of a certified scene that a board cannot render so.
-pub(super) const fn first_untimed_mode(
+/// The limits of a certified scene's modes on a board: of all modes those that leave the least damping to be
+/// injected, since any of them may be selected. `None` where there are no others to select.
+///
+/// # Errors
+/// The first mode that a board cannot render so.
+pub(super) const fn tightest_mode(
     scene: &Scene,
     format: Format,
     timing: OutputTiming,
-) -> Option<RefusedMode<TimingError>> {
+) -> Result<Option<Limited>, RefusedMode<TimingError>> {
+    let mut tightest: Option<Limited> = None;
     let mut mode = 0;
     while let Some((name, selecting)) = nth(scene, mode) {
-        if let Ok(assessment) = certify_in(&selecting, format)
-            && let Err(reason) = Assessment::renders_at(&assessment, &selecting, timing)
-        {
-            return Some(RefusedMode { mode, name, reason });
+        if let Ok(assessment) = certify_in(&selecting, format) {
+            let limited = match agree(timing, &selecting, &assessment) {
+                Ok(limited) => limited,
+                Err(reason) => return Err(RefusedMode { mode, name, reason }),
+            };
+            let is_tighter = match &tightest {
+                Some(other) => limited.injectable_damping() < other.injectable_damping(),
+                None => true,
+            };
+            tightest = if is_tighter { Some(limited) } else { tightest };
         }
         mode += 1;
     }
-    None
+    Ok(tightest)
 }
 
 /// The name of a mode of a scene, and the scene with that one selected.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::message::Changes;
 use crate::certificate::{Parameter, Rejection};
-use crate::environment::{Environment, ModeSelection};
+use crate::environment::Environment;
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
@@ -51,8 +51,7 @@ impl Description {
     fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
         let running = self.scene.environment.profile()?.modes?;
         let (_, mode) = changes.iter().find(|(parameter, _)| *parameter == Parameter::Mode)?;
-        let selected = ModeSelection { mode: *mode, ..running };
-        (selected.index().is_some() && *mode != running.mode).then_some(*mode)
+        (running.selecting(*mode).index().is_some() && *mode != running.mode).then_some(*mode)
     }
 
     /// Why another mode is refused with these changes. Its table is not here: what can be told without it is

@@ -21,7 +21,7 @@ impl ModeSelection {
     }
 
     /// The same with another number.
-    pub(super) const fn selecting(self, mode: f64) -> Self {
+    pub const fn selecting(self, mode: f64) -> Self {
         Self { mode, ..self }
     }
 
