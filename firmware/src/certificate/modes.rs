@@ -50,8 +50,8 @@ impl RefusedMode<TimingError> {
     }
 }
 
-/// The first mode of a scene with which it is not certified in a number format. `None`: each of them is, or the
-/// scene has no others to select.
+/// The first mode of a scene with which it is not certified in a number format. `None`: each of them is, or
+/// the scene has no others to select.
 pub const fn first_refused_mode(scene: &Scene, format: Format) -> Option<RefusedMode<Rejection>> {
     let mut mode = 0;
     while let Some((name, selecting)) = nth(scene, mode) {

@@ -56,8 +56,8 @@ impl Description {
         }
     }
 
-    /// The number of the mode that changes select, where it is there and is not the one that runs: whatever step
-    /// refused it, its table is on the board alone.
+    /// The number of the mode that changes select, where it is there and is not the one that runs: whatever
+    /// step refused it, its table is on the board alone.
     pub fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
         let running = self.scene.environment.profile()?.modes?;
         let (_, mode) = changes.iter().find(|(parameter, _)| *parameter == Parameter::Mode)?;

@@ -60,7 +60,8 @@ macro_rules! tables {
     ($($mode:literal: $table:ident, $knots:literal;)*) => {
         $(static $table: ModeTable<$knots> = ModeTable::of(MODES[$mode].shapes);)*
 
-        /// The tables of [`MODES`], by the same numbers: 1.6 KB of flash in a program that selects among them.
+        /// The tables of [`MODES`], by the same numbers: 1.5 KB of flash in a program that selects among
+        /// them, and as much for where they are.
         pub static KNOB_MODES: [ProfileMode; MODES.len()] =
             [$($table.named(MODES[$mode].name)),*];
     };

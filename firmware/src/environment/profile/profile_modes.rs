@@ -65,7 +65,8 @@ impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
     type Law = ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>;
 
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
-        // A number format that has no room for one of them has none for the program: no mode is refused later.
+        // A number format that has no room for one of them has none for the program, so that none is refused
+        // later.
         for mode in self.modes {
             law::<N, DELAY>(&mode.profile)?;
         }

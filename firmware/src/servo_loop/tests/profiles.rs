@@ -20,8 +20,8 @@ const fn limited<E: Copy>(mut program: Program<E>, torque: f64) -> Program<E> {
 /// Codes of 1 N m.
 const CODES: f64 = 895.5;
 
-/// The code of detents at a count at rest, by their own formula: a wave of straight lines whose top is `torque`,
-/// behind a coupling of 44 N m/rad.
+/// The code of detents at a count at rest, by their own formula: a wave of straight lines whose top is
+/// `torque`, behind a coupling of 44 N m/rad.
 fn detents(count: i32, detents: f64, torque: f64) -> f64 {
     let mut behind = 0.0;
     for _ in 0..100 {
@@ -38,8 +38,7 @@ fn detents(count: i32, detents: f64, torque: f64) -> f64 {
 /// that falls away, nothing, and a torque that comes back.
 #[test]
 fn the_torque_and_the_number_of_detents_change_without_a_step() {
-    // A quarter of the pitch of 24 detents, where theirs is largest; that of 48 ones is nothing there, and that
-    // of 20 ones is less.
+    // A quarter of the pitch of 24 detents, where theirs is largest; that of 20 ones is less.
     let count = 61_440 / 96;
     let mut bench: Bench<_, f32, Latched> = Bench::armed(&KNOB, Board::new()).unwrap();
     bench.stand(count, 200);
