@@ -61,8 +61,12 @@ named_parameters! {
     [const DELAY: usize] ProfileModes<DELAY>: Mode => mode;
 }
 
+/// The law of any mode: its table is read through a reference, so that all have one type.
+type ModeLaw<N, const DELAY: usize> =
+    ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>;
+
 impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
-    type Law = ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>;
+    type Law = ModeLaw<N, DELAY>;
 
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
         // A number format that has no room for one of them has none for the program, so that none is refused
@@ -77,7 +81,7 @@ impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
 /// The law of a mode.
 fn law<N: Number, const DELAY: usize>(
     profile: &AnyProfile,
-) -> Result<ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>, BuildError> {
+) -> Result<ModeLaw<N, DELAY>, BuildError> {
     let (outline, layout) = (profile.outline(), profile.layout());
     let law =
         ProfileLaw::new(profile.units(), &outline, &layout, NoDamping, FixedDelay::at_rest())?;
