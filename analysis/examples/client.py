@@ -46,6 +46,13 @@ REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
         ("face", "f64"), ("one_sided", "bool")]
 FREE = ("residual", "f64")
+STATED = ("enum", [("bounded", [("delay", "u"), ("index", "f64"), ("gain", "f64")])])
+PROFILE = [("outline", [("knots", "u"), ("rise", "i"), ("fall", "i"), ("wraps", "bool"),
+                        ("sum", "i"), ("is_odd", "bool")]),
+           ("torque", "f64"), ("count", "f64"), ("centre", "f64"),
+           ("ends", ("option", [("from", "f64"), ("to", "f64"), ("stiffness", "f64")])),
+           ("damping", "f64"), ("delay", "u"),
+           ("modes", ("option", [("mode", "f64"), ("count", "u")]))]
 TIME_RANGE = [("least", "f64"), ("most", "f64")]
 SCENE = [
     ("device", [("inertia", "f64"), ("damping", "f64"), ("passivity", ("option", "f64"))]),
@@ -53,7 +60,8 @@ SCENE = [
     ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")]), ("matched", [])])),
     ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
                               ("free-mode", [FREE, ("delay", "u")]),
-                              ("free-mode-wall", [FREE, ("wall", WALL)])])),
+                              ("free-mode-wall", [FREE, ("wall", WALL)]),
+                              ("stated", [("model", STATED)]), ("profile", PROFILE)])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
                  ("actuator_response", TIME_RANGE)]),

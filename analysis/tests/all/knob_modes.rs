@@ -2,14 +2,14 @@
 
 use std::process::Output;
 
-use crate::common::haptic;
+use crate::common::{haptic, read, root};
 use crate::readme::block;
 use analysis::board_sim::{Pacing, SimulatedBoard};
 use analysis::link::{Address, Link, RequestResult};
 use analysis::lockstep::PlantIo;
 use analysis::program::{Program, knob_modes};
 use firmware::certificate::{Parameter, certify_in};
-use firmware::environment::{KNOB_MODES, ProfileModes};
+use firmware::environment::{KNOB_MODES, MODES, ProfileModes, Shape};
 use firmware::number::Format;
 use firmware::scene::{Coupling, Scene};
 use firmware::servo::Latched;
@@ -153,4 +153,38 @@ fn another_mode_is_refused_with_numbers_that_it_is_not_certified_with() {
         }
     }
     assert_eq!(rig.tune(&["mode=8"]).status.code(), Some(0));
+}
+
+/// The guide's table has the numbers of the shapes.
+#[test]
+fn the_guide_describes_the_modes_that_there_are() {
+    let guide = read(root().join("docs/knob-modes.md"));
+    for (number, mode) in MODES.iter().enumerate() {
+        let start = format!("| {number} | {} |", mode.name);
+        let row = guide.lines().find(|line| line.starts_with(&start));
+        let row = row.unwrap_or_else(|| panic!("no row of mode {number}, {}", mode.name));
+        for shape in mode.shapes {
+            let parts = match *shape {
+                Shape::Detents { count, torque, .. } => {
+                    vec![format!("| {count} |"), format!("{torque} N m |")]
+                }
+                Shape::Centre { stiffness, .. } => vec![format!("{stiffness} N m/rad")],
+                Shape::Bistable { distance, torque } => {
+                    vec![format!("{:.0} degrees", distance.to_degrees()), format!("| {torque} N m |")]
+                }
+                Shape::Magnet { angle, width, torque } => vec![
+                    format!("{:.0}", angle.to_degrees()),
+                    format!("{:.0} degrees away", width.to_degrees()),
+                    format!("| {torque} N m |"),
+                ],
+                Shape::EndStops { stiffness, .. } => {
+                    assert_eq!(stiffness, 15.0);
+                    vec![]
+                }
+                other => panic!("{other:?}"),
+            };
+            assert!(parts.iter().all(|part| row.contains(part)), "{row}: {parts:?}");
+        }
+    }
+    assert!(guide.contains("push back with 15 N m/rad"));
 }
