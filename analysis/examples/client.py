@@ -29,7 +29,8 @@ FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost"
           11: "flash-ecc", 12: "ram-parity", 13: "non-maskable"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
-              11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre"}
+              11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
+              28: "mode"}
 
 # Messages to the board and to the host, by number.
 HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE = range(8)
@@ -45,6 +46,13 @@ REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
         ("face", "f64"), ("one_sided", "bool")]
 FREE = ("residual", "f64")
+STATED = ("enum", [("bounded", [("delay", "u"), ("index", "f64"), ("gain", "f64")])])
+PROFILE = [("outline", [("knots", "u"), ("rise", "i"), ("fall", "i"), ("wraps", "bool"),
+                        ("sum", "i"), ("is_odd", "bool")]),
+           ("torque", "f64"), ("count", "f64"), ("centre", "f64"),
+           ("ends", ("option", [("from", "f64"), ("to", "f64"), ("stiffness", "f64")])),
+           ("damping", "f64"), ("delay", "u"),
+           ("modes", ("option", [("mode", "f64"), ("count", "u")]))]
 TIME_RANGE = [("least", "f64"), ("most", "f64")]
 SCENE = [
     ("device", [("inertia", "f64"), ("damping", "f64"), ("passivity", ("option", "f64"))]),
@@ -52,7 +60,8 @@ SCENE = [
     ("coupling", ("enum", [("rigid", []), ("spring", [("stiffness", "f64")]), ("matched", [])])),
     ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
                               ("free-mode", [FREE, ("delay", "u")]),
-                              ("free-mode-wall", [FREE, ("wall", WALL)])])),
+                              ("free-mode-wall", [FREE, ("wall", WALL)]),
+                              ("stated", [("model", STATED)]), ("profile", PROFILE)])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
                  ("actuator_response", TIME_RANGE)]),

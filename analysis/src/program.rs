@@ -14,6 +14,8 @@ pub mod free_mode;
 pub mod identify;
 #[path = "../../firmware/src/bin/knob.rs"]
 pub mod knob;
+#[path = "../../firmware/src/bin/knob_modes.rs"]
+pub mod knob_modes;
 #[path = "../../firmware/src/bin/supervised_spring.rs"]
 pub mod supervised_spring;
 #[path = "../../firmware/src/bin/undelayed_spring.rs"]
@@ -113,10 +115,11 @@ impl Program {
 
     /// The program of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
-        Self::every().chain(MORE.get()).find(|program| program.name == name)
+        Self::every().chain([&KNOB_MODES]).chain(MORE.get()).find(|program| program.name == name)
     }
 
-    /// All programs of this build, also the one that needs a host, and those whose torques are not latched.
+    /// All programs of this build but [`KNOB_MODES`], also the one that needs a host, and those whose torques
+    /// are not latched.
     pub fn every() -> impl Iterator<Item = &'static Self> {
         ALL.iter().chain([&SUPERVISED, &UNDELAYED, &STIFFEST])
     }
@@ -189,6 +192,10 @@ macro_rules! programs {
 }
 
 programs!(delayed_spring, damper_wall, free_mode, knob);
+
+/// The one whose modes are selected while it runs. Not among the others: with the first of its modes it turns
+/// freely.
+pub static KNOB_MODES: Program = crate::program!(knob_modes);
 
 /// What the options do. Not among the others: it lets the device go where no host is heard, as in a
 /// simulation there is none.

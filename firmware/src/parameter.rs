@@ -112,13 +112,14 @@ parameters! {
     Centre: "environment.centre", "profile centre", "rad", Range::Finite;
     From: "environment.from", "lower end stop", "rad", Range::Finite;
     To: "environment.to", "upper end stop", "rad", Range::Finite;
+    Mode: "environment.mode", "mode", "", Range::Finite;
 }
 
 /// The parameters that may be changed while the servo runs, with the names that people type.
 ///
 /// No message can change the device; period and delay are fixed when the program is compiled and
 /// its board is set up.
-pub const TUNABLE: [(&str, Parameter); 10] = [
+pub const TUNABLE: [(&str, Parameter); 11] = [
     ("stiffness", Parameter::Stiffness),
     ("damping", Parameter::Damping),
     ("filter", Parameter::Filter),
@@ -129,6 +130,7 @@ pub const TUNABLE: [(&str, Parameter); 10] = [
     ("torque", Parameter::ProfileTorque),
     ("count", Parameter::Count),
     ("centre", Parameter::Centre),
+    ("mode", Parameter::Mode),
 ];
 
 /// Something with numbers that have names.

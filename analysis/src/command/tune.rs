@@ -124,6 +124,9 @@ fn print(
     }
     writeln!(out, "{}", formatting::reset(status))?;
     writeln!(out, "{}", formatting::numbers(running))?;
+    if let Some(modes) = formatting::modes(link.program(), running) {
+        writeln!(out, "{modes}")?;
+    }
     writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
     writeln!(out, "{}", formatting::energy(status, board))?;
     writeln!(out, "{}", formatting::losses(status, link.discarded()))?;

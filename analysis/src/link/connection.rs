@@ -3,7 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use firmware::tuning::Parameters;
+use firmware::tuning::{Parameters, RenderError};
 use firmware::wire::description::Description;
 use firmware::wire::message::{
     ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
@@ -230,6 +230,10 @@ impl Link {
             if let Err(reason) = description.explain(has, changes)
                 && reason.step() == step
             {
+                return Ok(RequestResult::Refused(reason.to_string()));
+            }
+            if let Some(mode) = description.other_mode(changes) {
+                let reason = RenderError::OtherMode { mode };
                 return Ok(RequestResult::Refused(reason.to_string()));
             }
         }

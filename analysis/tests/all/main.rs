@@ -10,6 +10,7 @@ mod haptic;
 #[cfg(unix)]
 mod identify_port;
 mod identify_target;
+mod knob_modes;
 mod own_scene;
 mod pictures;
 mod profiles;

@@ -14,6 +14,7 @@ const DOCUMENTS: [&str; 17] = [
     "docs/certify.md",
     "docs/charts.md",
     "docs/guarantees.md",
+    "docs/knob-modes.md",
     "docs/measure.md",
     "docs/rate-and-format.md",
     "docs/set-up.md",
@@ -26,7 +27,7 @@ const DOCUMENTS: [&str; 17] = [
 ];
 
 /// The fenced block behind `<!-- name -->` in a document.
-fn block(document: &str, name: &str) -> String {
+pub fn block(document: &str, name: &str) -> String {
     let text = read(root().join(document));
     let marked = text.split_once(&format!("<!-- {name} -->\n```"));
     let (_, rest) = marked.unwrap_or_else(|| panic!("{document} has no block `{name}`"));

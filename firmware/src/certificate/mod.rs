@@ -34,6 +34,7 @@ mod between;
 mod digits;
 mod margin;
 mod model;
+mod modes;
 mod port;
 mod problem;
 mod profile;
@@ -50,6 +51,7 @@ mod varied;
 pub use assessment::{Assessment, assess, assess_in};
 pub use assumption::{Assumption, AssumptionStatus, Assumptions};
 pub use model::LoopTransfers;
+pub use modes::{RefusedMode, first_refused_mode};
 pub use problem::PassivityProblem;
 pub use quantization::{QuantizationBound, Resolution};
 pub use rejection::Rejection;
@@ -68,6 +70,7 @@ use crate::output_timing::OutputMode;
 use crate::scene::Scene;
 use crate::step::Step;
 use assessment::{Extent, assessed};
+use modes::tightest_mode;
 
 /// A scene that was proved passive.
 ///
@@ -119,6 +122,15 @@ const fn refuse(sentence: &Sentence) -> ! {
     panic!("{}", sentence.as_str())
 }
 
+/// Stops the compiler with the rejection's sentence, which names the mode where another one is selected.
+#[track_caller]
+const fn refuse_scene(data: &Scene, rejection: &Rejection, format: Format) -> ! {
+    match first_refused_mode(data, format) {
+        Some(refused) => refuse(&refused.sentence_in(format)),
+        None => refuse(&rejection.sentence_in(format)),
+    }
+}
+
 impl<E: Copy> Scene<E> {
     /// The scene with other data for its environment.
     const fn described_as(&self, environment: Environment) -> Scene {
@@ -133,6 +145,9 @@ impl<E: Copy> Scene<E> {
     }
 
     const fn judged(self, data: Scene, format: Format) -> Result<Certified<Self>, Rejection> {
+        if let Some(RefusedMode { reason, .. }) = first_refused_mode(&data, format) {
+            return Err(reason);
+        }
         match certify_in(&data, format) {
             Ok(assessment) => Ok(Certified { scene: self, data, assessment }),
             Err(rejection) => Err(rejection),
@@ -217,7 +232,7 @@ impl<E: Copy> Certified<Scene<E>> {
     pub const fn certified_in(self, format: Format) -> Self {
         match self.scene.judged(self.data, format) {
             Ok(certified) => certified,
-            Err(rejection) => refuse(&rejection.sentence_in(format)),
+            Err(rejection) => refuse_scene(&self.data, &rejection, format),
         }
     }
 
@@ -229,8 +244,19 @@ impl<E: Copy> Certified<Scene<E>> {
     where
         E: SupportsTiming<M>,
     {
+        let format = self.assessment.format;
+        let of_modes = match tightest_mode(&self.data, format, M::TIMING) {
+            Ok(of_modes) => of_modes,
+            Err(RefusedMode { reason, .. }) => return Err(reason),
+        };
         match timed::agree(M::TIMING, &self.data, &self.assessment) {
-            Ok(limited) => Ok(TimingChecked::new(self.scene, self.assessment.format, limited)),
+            Ok(own) => {
+                let limited = match of_modes {
+                    Some(tightest) => tightest,
+                    None => own,
+                };
+                Ok(TimingChecked::new(self.scene, format, limited))
+            }
             Err(error) => Err(error),
         }
     }
@@ -247,7 +273,10 @@ impl<E: Copy> Certified<Scene<E>> {
     {
         match self.time() {
             Ok(timed) => timed,
-            Err(error) => refuse(&error.sentence()),
+            Err(error) => match tightest_mode(&self.data, self.assessment.format, M::TIMING) {
+                Err(refused) => refuse(&refused.sentence()),
+                Ok(_) => refuse(&error.sentence()),
+            },
         }
     }
 }
@@ -290,7 +319,7 @@ macro_rules! certify_for {
             pub const fn certified(self) -> Certified<Self> {
                 match self.certify() {
                     Ok(certified) => certified,
-                    Err(rejection) => refuse(&rejection.sentence()),
+                    Err(rejection) => refuse_scene(&self.as_data(), &rejection, Format::F64),
                 }
             }
         }

@@ -36,8 +36,10 @@ impl InvalidParameter {
         if let Some(limit) = self.limit {
             text.push(" ");
             text.push_number(limit);
-            text.push(" ");
-            text.push(unit);
+            if !unit.is_empty() {
+                text.push(" ");
+                text.push(unit);
+            }
         }
     }
 }
@@ -187,6 +189,12 @@ const fn profile_conflict(
         (Parameter::Stiffness, Some(_)) if value <= 0.0 => {
             ("greater than 0 beyond end stops", None)
         }
+        (Parameter::Mode, _) => match &profile.modes {
+            Some(modes) if modes.index().is_none() => {
+                ("a whole number from 0 to", Some(modes.last() as f64))
+            }
+            _ => return None,
+        },
         (Parameter::Damping, _) if value != 0.0 && profile.delay == 0 => {
             ("0 beside a torque profile that is not late", None)
         }

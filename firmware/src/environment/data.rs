@@ -48,6 +48,13 @@ impl<const KNOTS: usize, const N: usize> DampedProfile<KNOTS, N> {
     }
 }
 
+impl<const N: usize> ProfileModes<N> {
+    /// As data: the selected profile.
+    pub const fn as_data(&self) -> Environment {
+        Environment::Profile(self.as_any())
+    }
+}
+
 impl Rational {
     /// As data.
     pub const fn as_data(&self) -> Environment {

@@ -2,7 +2,7 @@
 
 use super::{
     DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
-    OneSided, Placed, Profile, Rational,
+    OneSided, Placed, Profile, ProfileModes, Rational,
 };
 use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
@@ -19,7 +19,7 @@ macro_rules! delayed {
         DelayedSpring<$delay>, Placed<DelayedSpring<$delay>>, OneSided<DelayedSpring<$delay>>,
         DamperWall<$delay>, Placed<DamperWall<$delay>>, OneSided<DamperWall<$delay>>,
         FilteredWall<$delay>, Placed<FilteredWall<$delay>>, OneSided<FilteredWall<$delay>>,
-        FreeMode<$delay>,
+        FreeMode<$delay>, ProfileModes<$delay>,
     } delayed! { knots $delay })*};
     (knots $delay:literal) => {
         impl<const KNOTS: usize> Delayed for Profile<KNOTS, $delay> {}

@@ -1,7 +1,7 @@
 //! The numbers of any environment by name.
 
 use super::any::{Environment, Wall};
-use super::profile::{AnyProfile, Ends};
+use super::profile::{AnyProfile, Ends, ModeSelection};
 use super::stated::{StatedBound, StatedModel};
 use crate::parameter::{NamedParameters, Parameter, numbers};
 
@@ -33,6 +33,10 @@ impl Environment {
             (Parameter::Filter, Self::DamperWall(wall) | Self::FreeModeWall { wall, .. }) => {
                 wall.filter = Some(value);
             }
+            (Parameter::Mode, Self::Profile(profile)) => match profile.selecting(value) {
+                Some(selected) => *profile = selected,
+                None => return None,
+            },
             _ => match changed.number_mut(parameter) {
                 Some(place) => *place = value,
                 None => return None,
@@ -68,6 +72,7 @@ impl Environment {
         Centre: Self::Profile(AnyProfile { centre: value, .. }),
         From: Self::Profile(AnyProfile { ends: Some(Ends { from: value, .. }), .. }),
         To: Self::Profile(AnyProfile { ends: Some(Ends { to: value, .. }), .. }),
+        Mode: Self::Profile(AnyProfile { modes: Some(ModeSelection { mode: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }
 }

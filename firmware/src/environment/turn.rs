@@ -6,7 +6,7 @@ use core::hint::cold_path;
 use crate::build_error::BuildError;
 use crate::number::Number;
 
-/// A turn within which counts are counted, or none.
+/// A turn within which counts are counted, or from which, or none.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<N> {
     /// Counts of it; more than an encoder has where there is none.
@@ -14,7 +14,27 @@ pub struct Turn<N> {
     /// The count from which it counts, a whole number of turns, in its low 32 bits.
     origin: i32,
     angle: N,
-    is_endless: bool,
+    extent: Extent,
+}
+
+/// How far angles go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Extent {
+    /// As far as the device.
+    Device,
+    /// A turn, after which they begin anew.
+    Turn,
+    /// As far as the device, from the turn in which it starts nearest to a range, in rad.
+    Range([f64; 2]),
+    /// The same in counts.
+    Counted {
+        /// Counts of a turn.
+        turn: i32,
+        /// The lower end.
+        from: i32,
+        /// The upper end.
+        to: i32,
+    },
 }
 
 impl<N: Number> Turn<N> {
@@ -23,7 +43,12 @@ impl<N: Number> Turn<N> {
 
     /// No turn: all positions are what they are.
     pub(crate) const fn none() -> Self {
-        Self { counts: Self::MOST_COUNTS, origin: 0, angle: N::ZERO, is_endless: false }
+        Self { counts: Self::MOST_COUNTS, origin: 0, angle: N::ZERO, extent: Extent::Device }
+    }
+
+    /// One that is counted anew with each start, so that the position is then nearest to a range in rad.
+    pub(crate) fn nearest_to(range: [f64; 2]) -> Self {
+        Self { extent: Extent::Range(range), ..Self::none() }
     }
 
     /// One of an encoder that is not known yet.
@@ -31,7 +56,7 @@ impl<N: Number> Turn<N> {
     /// # Errors
     /// Where the number format has no room for a turn.
     pub(crate) fn endless() -> Result<Self, BuildError> {
-        Ok(Self { angle: BuildError::number("a turn", TAU)?, is_endless: true, ..Self::none() })
+        Ok(Self { angle: BuildError::number("a turn", TAU)?, extent: Extent::Turn, ..Self::none() })
     }
 
     /// Takes the encoder's counts a turn.
@@ -39,7 +64,7 @@ impl<N: Number> Turn<N> {
     /// # Errors
     /// Where a turn has no whole number of them, or too many.
     pub(crate) fn set_counts(&mut self, counts_per_turn: f64) -> Result<(), BuildError> {
-        if !self.is_endless {
+        if self.extent == Extent::Device {
             return Ok(());
         }
         let counts = counts_per_turn as i32;
@@ -48,17 +73,27 @@ impl<N: Number> Turn<N> {
         if f64::from(counts) != counts_per_turn || !is_counted {
             return Err(BuildError::Turn { counts: counts_per_turn, largest });
         }
-        self.counts = counts;
+        if let Extent::Range(range) = self.extent {
+            // The cast gives the nearest of what does not fit.
+            let [from, to] = range.map(|angle| (angle / TAU * counts_per_turn) as i32);
+            self.extent = Extent::Counted { turn: counts, from, to };
+        } else {
+            self.counts = counts;
+        }
         Ok(())
     }
 
     /// Starts at a position that may be any number of turns away from zero.
     pub(crate) fn start_at(&mut self, count: i64) {
-        if self.is_endless {
-            let whole_turns = count - count % i64::from(self.counts);
-            // Its low bits are all that is compared.
-            self.origin = whole_turns as i32;
-        }
+        let origin = match self.extent {
+            Extent::Turn => count - count % i64::from(self.counts),
+            Extent::Counted { turn, from, to } => {
+                count - nearest(count, turn.into(), [from.into(), to.into()])
+            }
+            Extent::Device | Extent::Range(_) => return,
+        };
+        // Its low bits are all that is compared.
+        self.origin = origin as i32;
     }
 
     /// The position within a turn, from its low 32 bits, and the whole turns, if any, by which it left the
@@ -71,8 +106,13 @@ impl<N: Number> Turn<N> {
             return Some((within, 0));
         }
         cold_path();
-        if !self.is_endless {
-            return None;
+        match self.extent {
+            Extent::Turn => {}
+            // Beyond any range, and no position without the turns that were left out: the side is what counts.
+            Extent::Counted { .. } => {
+                return Some((within.clamp(-Self::MOST_COUNTS, Self::MOST_COUNTS), 0));
+            }
+            Extent::Device | Extent::Range(_) => return None,
         }
         let turns = within / self.counts;
         self.origin = self.origin.wrapping_add(turns.wrapping_mul(self.counts));
@@ -92,6 +132,55 @@ impl<N: Number> Turn<N> {
 
     /// An angle in rad within a turn; the angle itself where there is none.
     pub(crate) fn wrapped(&self, angle: f64) -> f64 {
-        if self.is_endless { angle % TAU } else { angle }
+        if self.extent == Extent::Turn { angle % TAU } else { angle }
+    }
+}
+
+/// The position whole turns from `count` that is nearest to a range, and of these the nearest to `count`.
+fn nearest(count: i64, turn: i64, [from, to]: [i64; 2]) -> i64 {
+    let away = |count: i64| (from - count).max(count - to).max(0);
+    let toward = if count < from { turn } else { -turn };
+    // The last one on this side of the range, or at its end; the next one may be within it or nearer.
+    let here = count + away(count) / turn * toward;
+    let next = here + toward;
+    if away(next) < away(here) { next } else { here }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By all turns, one after the other.
+    #[test]
+    fn a_range_is_entered_from_the_nearest_turn() {
+        for (turn, from, to) in [(100, -17, 17), (100, 0, 28), (100, 0, 200), (7, 3, 4)] {
+            for count in -1000..1000 {
+                let away =
+                    |turns: i64| (from - count - turns * turn).max(count + turns * turn - to);
+                let best = (-1000..=1000).min_by_key(|&turns| (away(turns).max(0), turns.abs()));
+                let best = count + best.unwrap() * turn;
+                assert_eq!(
+                    nearest(count, turn, [from, to]),
+                    best,
+                    "{count} of {turn}: {from} to {to}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn turns_are_left_out_of_a_position_that_starts_far_away() {
+        let mut turn = Turn::<f32>::nearest_to([0.0, TAU / 2.0]);
+        turn.set_counts(1000.0).unwrap();
+        assert!(turn.set_counts(1000.5).is_err());
+        for far in [50_123_i64, -49_877, 123, (7 << 32) + 123 - (7 << 32) % 1000] {
+            turn.start_at(far);
+            assert_eq!(turn.within(far as i32), Some((123, 0)), "{far}");
+            assert_eq!(turn.within((far - 300) as i32), Some((-177, 0)));
+        }
+        // Farther than a mode's range ever is, it stays on its side.
+        turn.start_at(0);
+        assert_eq!(turn.within(i32::MAX), Some((Turn::<f32>::MOST_COUNTS, 0)));
+        assert_eq!(turn.within(i32::MIN), Some((-Turn::<f32>::MOST_COUNTS, 0)));
     }
 }

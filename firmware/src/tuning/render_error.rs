@@ -22,6 +22,11 @@ pub enum RenderError {
     Timing(TimingError),
     /// Not with these transducers in this number format.
     Build(BuildError),
+    /// Not with another mode, whose table only the board has.
+    OtherMode {
+        /// Its number.
+        mode: f64,
+    },
 }
 
 impl RenderError {
@@ -29,7 +34,7 @@ impl RenderError {
     pub const fn step(&self) -> Step {
         match self {
             Self::Tuning(_) => Step::Change,
-            Self::Rejected(_) | Self::Timing(_) => Step::Certificate,
+            Self::Rejected(_) | Self::Timing(_) | Self::OtherMode { .. } => Step::Certificate,
             Self::Build(_) => Step::Servo,
         }
     }
@@ -42,6 +47,13 @@ impl fmt::Display for RenderError {
             Self::Rejected(rejection) => rejection.fmt(f),
             Self::Timing(error) => error.fmt(f),
             Self::Build(error) => error.fmt(f),
+            Self::OtherMode { mode } => write!(
+                f,
+                "mode {mode} is not certified with the other numbers that run, or that were to change with \
+                 it; the board alone has its table, so that the reason is not known here. Every mode is \
+                 certified with the numbers that the program was compiled with: set these, select the mode, \
+                 and then change them again"
+            ),
         }
     }
 }

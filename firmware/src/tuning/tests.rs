@@ -1,8 +1,8 @@
 use super::*;
 use crate::encoder::CounterWidth;
 use crate::environment::{
-    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, Knots, OneSided,
-    Placed, Profile, Shape,
+    DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, FreeModeWall, KNOB_MODES,
+    Knots, OneSided, Placed, Profile, ProfileModes, Shape,
 };
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::Latched;
@@ -82,8 +82,11 @@ fn a_change_is_made_where_it_belongs_and_nowhere_else() {
     for (i, (name, wanted)) in TUNABLE.into_iter().enumerate() {
         assert_eq!(parameter(name), Some(wanted));
         assert_eq!(super::name(wanted), Some(name));
-        if matches!(wanted, Parameter::ProfileTorque | Parameter::Count | Parameter::Centre) {
-            // Of a torque profile alone.
+        if matches!(
+            wanted,
+            Parameter::ProfileTorque | Parameter::Count | Parameter::Centre | Parameter::Mode
+        ) {
+            // Of torque profiles alone.
             continue;
         }
         let filtered = FilteredWall::<1> { stiffness: 2.0, damping: 0.01, filter: 0.5 };
@@ -125,6 +128,33 @@ fn a_torque_profile_has_its_own() {
 }
 
 #[test]
+fn a_knob_of_several_modes_has_the_number_of_the_selected_one() {
+    let knob = scene(ProfileModes::<1>::of(&KNOB_MODES));
+    let names = parameters(&knob).to_string();
+    assert_eq!(names, "coupling.stiffness, torque_limit, mode");
+    changes_one(knob, Parameter::Mode, 4.0);
+    let options = RenderingOptions::DEFAULT;
+    let prepared = |mode| {
+        prepare::<_, f32, Latched>(&knob, &[(Parameter::Mode, mode)], &TRANSDUCERS, &options)
+    };
+    for mode in 0..KNOB_MODES.len() {
+        assert_eq!(prepared(mode as f64).unwrap().scene.environment.mode, mode as f64);
+    }
+    for (mode, shown) in
+        [(11.0, "11"), (-1.0, "-1"), (2.5, "2.5"), (4_294_967_296.0, "4.294967296e9")]
+    {
+        assert_eq!(prepared(mode).map(|_| ()).unwrap_err(), Step::Certificate);
+        let explained =
+            explain::<_, f32, Latched>(&knob, &[(Parameter::Mode, mode)], &TRANSDUCERS, &options);
+        assert_eq!(
+            explained.unwrap_err().to_string(),
+            format!("rejected: the mode is {shown}, and must be a whole number from 0 to 10")
+        );
+    }
+    assert_eq!(prepared(f64::NAN).map(|_| ()).unwrap_err(), Step::Certificate);
+}
+
+#[test]
 fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Residual, 0.001)]),
@@ -134,7 +164,7 @@ fn what_cannot_be_changed_is_refused_in_a_sentence() {
     assert_eq!(
         refusal(&[(Parameter::Period, 0.002)]),
         "the period is fixed while the program runs; the tunable parameters are stiffness, damping, \
-         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre"
+         filter, face, residual, coupling.stiffness, torque_limit, torque, count, centre, mode"
     );
     assert!(refusal(&[(Parameter::DeviceDamping, 1.0)]).starts_with("the device damping is fixed"));
     let twice = [(Parameter::Face, 0.1), (Parameter::Stiffness, 1.0), (Parameter::Face, 0.1)];

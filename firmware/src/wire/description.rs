@@ -3,8 +3,10 @@
 use fixed::types::{I1F31, I4F28, I8F24, I12F20, I16F16};
 use serde::{Deserialize, Serialize};
 
-use crate::certificate::Parameter;
-use crate::environment::Environment;
+use super::message::Changes;
+use crate::build_error::BuildError;
+use crate::certificate::{Parameter, Rejection};
+use crate::environment::{Environment, Wall};
 use crate::number::{Format, Number};
 use crate::scene::Scene;
 use crate::servo::{
@@ -27,6 +29,14 @@ pub struct Description {
     pub timing: OutputTiming,
 }
 
+/// The scene with a weak spring in place of an environment whose law or table the board alone has: encoder,
+/// motor and limits may be why no servo can be built of it.
+fn with_spring(scene: &Scene) -> Scene {
+    const WEAK: f64 = 1e-3;
+    let spring = Wall::spring(WEAK, scene.environment.delay().max(1));
+    Scene { environment: Environment::DelayedSpring(spring), ..*scene }
+}
+
 impl Description {
     /// Why changes of what runs here are refused: the words that the board has no room for, from the
     /// same numbers by the same code. `has` are the parameters that can be changed there.
@@ -40,6 +50,35 @@ impl Description {
         changes: &[(Parameter, f64)],
     ) -> Result<(), RenderError> {
         tuning::check(has, changes)?;
+        match self.other_mode(changes) {
+            None => self.judge(changes),
+            Some(mode) => self.judge_without(mode, changes),
+        }
+    }
+
+    /// The number of the mode that changes select, where it is there and is not the one that runs: whatever
+    /// step refused it, its table is on the board alone.
+    pub fn other_mode(&self, changes: &[(Parameter, f64)]) -> Option<f64> {
+        let running = self.scene.environment.profile()?.modes?;
+        let (_, mode) = changes.iter().find(|(parameter, _)| *parameter == Parameter::Mode)?;
+        (running.selecting(*mode).index().is_some() && *mode != running.mode).then_some(*mode)
+    }
+
+    /// Why another mode is refused with these changes. Its table is not here: what can be told without it is
+    /// a number that makes no sense with any mode.
+    fn judge_without(&self, mode: f64, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
+        let is_kept = |change: &&(Parameter, f64)| change.0 != Parameter::Mode;
+        let others: Changes = changes.iter().filter(is_kept).copied().collect();
+        match self.judge(&others) {
+            Err(
+                reason @ (RenderError::Rejected(Rejection::Invalid(_)) | RenderError::Build(_)),
+            ) => Err(reason),
+            _ => Err(RenderError::OtherMode { mode }),
+        }
+    }
+
+    /// Why the scene with these changes is refused.
+    fn judge(&self, changes: &[(Parameter, f64)]) -> Result<(), RenderError> {
         match self.timing {
             OutputTiming::Latched => self.by_mode::<Latched>(changes),
             OutputTiming::Simultaneous => self.by_mode::<Simultaneous>(changes),
@@ -79,6 +118,12 @@ impl Description {
         Environment: Tunable<N> + SupportsTiming<M>,
     {
         let Self { scene, transducers, rendering, .. } = self;
-        tuning::explain::<Environment, N, M>(scene, changes, transducers, rendering)
+        match tuning::explain::<Environment, N, M>(scene, changes, transducers, rendering) {
+            Err(RenderError::Build(BuildError::LawElsewhere)) => {
+                let scene = with_spring(&tuning::apply(scene, changes)?);
+                tuning::explain::<Environment, N, M>(&scene, &[], transducers, rendering)
+            }
+            outcome => outcome,
+        }
     }
 }

@@ -15,6 +15,7 @@ mod exact;
 mod failures;
 mod foreign;
 mod interval;
+mod knob_modes;
 mod lagging;
 mod latency;
 mod live;

@@ -3,6 +3,7 @@
 use super::knots::{Knots, Outline};
 use super::law::ProfileLaw;
 use super::scale::Scale;
+use super::selection::ModeSelection;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
 use super::sum::{Ends, Layout, sampled};
@@ -34,6 +35,8 @@ pub struct AnyProfile {
     pub damping: f64,
     /// Delay in whole samples.
     pub delay: usize,
+    /// The modes of which it is the selected one; `None`: it is the only profile.
+    pub modes: Option<ModeSelection>,
 }
 
 impl AnyProfile {
@@ -52,7 +55,7 @@ impl AnyProfile {
         Ok(Self::of(units, outline, layout, 0.0, delay))
     }
 
-    const fn of(
+    pub(super) const fn of(
         units: &'static [i16],
         outline: Outline,
         layout: Layout,
@@ -60,7 +63,21 @@ impl AnyProfile {
         delay: usize,
     ) -> Self {
         let Layout { torque, count, centre, ends } = layout;
-        Self { units, outline, torque, count, centre, ends, damping, delay }
+        Self { units, outline, torque, count, centre, ends, damping, delay, modes: None }
+    }
+
+    /// The same as one of several modes, late by so many samples.
+    pub(super) const fn as_one_of(self, modes: ModeSelection, delay: usize) -> Self {
+        Self { delay, modes: Some(modes), ..self }
+    }
+
+    /// The same with another one of its modes selected; `None` where there is no such mode, or where it came
+    /// over the wire, without the tables of the others.
+    pub const fn selecting(&self, mode: f64) -> Option<Self> {
+        match &self.modes {
+            Some(modes) => modes.selecting(mode).profile(self.delay),
+            None => None,
+        }
     }
 
     /// The numbers by which its law multiplies.

@@ -82,6 +82,15 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         Ok(law)
     }
 
+    /// The same, which with each start begins in the turn that is nearest to its range: one of several modes,
+    /// before which the device may have turned freely.
+    pub(super) fn counting_turns_anew(self, layout: &Layout) -> Self {
+        match layout.ends {
+            Some(Ends { from, to, .. }) => Self { turn: Turn::nearest_to([from, to]), ..self },
+            None => self,
+        }
+    }
+
     /// Gives it ends.
     fn limit(&mut self, ends: &Ends) -> Result<(), BuildError> {
         let from: N = BuildError::number("lower end stop", ends.from)?;

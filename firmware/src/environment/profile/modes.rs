@@ -1,7 +1,8 @@
-//! Ways for a knob to feel, as shapes: what open haptic knobs are known for, each in one table.
+//! Ways for a knob to feel, as shapes and as tables: what open haptic knobs are known for.
 
 use core::f64::consts::TAU;
 
+use super::mode_table::{ModeTable, ProfileMode};
 use super::shape::Shape;
 
 /// A way for a knob to feel.
@@ -13,8 +14,7 @@ pub struct Mode {
     pub shapes: &'static [Shape],
 }
 
-/// All of them. [`Knots::of`](super::Knots::of) makes a table of each but the first: 16 knots show those
-/// that repeat, 512 the others.
+/// All of them, as shapes; [`KNOB_MODES`] are their tables.
 pub const MODES: [Mode; 11] = [
     Mode { name: "unbounded", shapes: &[] },
     Mode { name: "bounded 0 to 10", shapes: &[Shape::end_stops(0.0, 10.0 * TENTH, STOP)] },
@@ -55,6 +55,32 @@ pub const MODES: [Mode; 11] = [
         ],
     },
 ];
+
+macro_rules! tables {
+    ($($mode:literal: $table:ident, $knots:literal;)*) => {
+        $(static $table: ModeTable<$knots> = ModeTable::of(MODES[$mode].shapes);)*
+
+        /// The tables of [`MODES`], by the same numbers: 1.5 KB of flash in a program that selects among
+        /// them, and as much for where they are.
+        pub static KNOB_MODES: [ProfileMode; MODES.len()] =
+            [$($table.named(MODES[$mode].name)),*];
+    };
+}
+
+// As many knots as the narrowest straight piece of each asks for; the places of magnets lie on none.
+tables! {
+    0: UNBOUNDED, 8;
+    1: BOUNDED, 8;
+    2: LIGHT_DETENTS, 16;
+    3: SWITCH, 64;
+    4: CENTRE, 16;
+    5: CENTRE_DETENTS, 64;
+    6: FINE, 8;
+    7: FINE_DETENTS, 16;
+    8: COARSE_STRONG, 16;
+    9: COARSE_WEAK, 16;
+    10: MAGNETS, 512;
+}
 
 const DEGREE: f64 = TAU / 360.0;
 /// A tenth of a range that a hand turns through without letting go.

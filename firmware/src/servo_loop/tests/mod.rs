@@ -5,6 +5,7 @@ mod faults;
 mod frames;
 mod modes;
 mod phase;
+mod profiles;
 mod swap;
 
 use board::{Bench, Board, Event, PERIOD};

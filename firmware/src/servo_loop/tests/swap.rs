@@ -7,11 +7,11 @@ use crate::servo::SupportsTiming;
 use crate::tuning::{self, Tunable};
 
 /// Largest change from one code to the next.
-fn largest_step(codes: &[i32]) -> i32 {
+pub fn largest_step(codes: &[i32]) -> i32 {
     codes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).max().unwrap()
 }
 
-fn set<E: Tunable<f32> + SupportsTiming<Latched>>(
+pub fn set<E: Tunable<f32> + SupportsTiming<Latched>>(
     program: &Program<E>,
     changes: &[(Parameter, f64)],
 ) -> PreparedServo<E, f32, Latched> {

@@ -11,7 +11,9 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DamperWall, Ends, Knots, OneSided, Profile, Shape};
+use crate::environment::{
+    DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, Profile, ProfileModes, Shape,
+};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
@@ -204,8 +206,11 @@ fn largest_profile() -> Description {
     static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
     let mut profile = Profile::<1024, 8>::of(&KNOTS).damped(1.0);
     profile.profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
-    let largest = largest_description();
-    Description { scene: Scene { environment: profile.as_data(), ..largest.scene }, ..largest }
+    let (mut profile, largest) = (profile.as_any(), largest_description());
+    profile.modes = ProfileModes::<1>::of(&KNOB_MODES).as_any().modes;
+    profile.modes.as_mut().unwrap().count = u32::MAX;
+    let environment = Environment::Profile(profile);
+    Description { scene: Scene { environment, ..largest.scene }, ..largest }
 }
 
 fn done(id: Id) -> Said {

@@ -1,0 +1,36 @@
+//! A knob whose way to feel is selected while it runs: eleven modes, one sample late.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod paddle;
+
+use firmware::certificate::Certified;
+use firmware::environment::{KNOB_MODES, ProfileModes};
+use firmware::scene::{Coupling, Latency, Scene, Timing};
+pub use paddle::TRANSDUCERS;
+
+/// What the hand feels.
+pub type Environment = ProfileModes<1>;
+
+/// The scene, which starts with a knob that turns freely. Each mode is certified, not this one alone.
+pub const SCENE: Scene<Environment> = Scene {
+    device: paddle::DEVICE,
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: ProfileModes::of(&KNOB_MODES),
+    latency: Latency::NONE,
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate: a mode that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+pub type Fixed = fixed::types::I8F24;
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: TRANSDUCERS,
+    float: f32,
+    fixed: Fixed,
+}

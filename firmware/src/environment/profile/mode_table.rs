@@ -1,0 +1,65 @@
+//! A mode's table: a torque profile's knots alone.
+
+use super::any::AnyProfile;
+use super::knots::Outline;
+use super::shape::Shape;
+use super::shape_error::ShapeError;
+use super::sum::{Layout, sampled};
+
+/// The table of a torque profile that is one of several: its knots alone, two bytes each, which stay in
+/// flash. [`Knots`](super::Knots) have the cells between them as well, ten bytes a knot, for a tick that is a
+/// few instructions shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModeTable<const KNOTS: usize> {
+    units: [i16; KNOTS],
+    outline: Outline,
+    layout: Layout,
+}
+
+/// A torque profile with a name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileMode {
+    /// What it is called.
+    pub name: &'static str,
+    /// The profile, not delayed.
+    pub(super) profile: AnyProfile,
+}
+
+impl<const KNOTS: usize> ModeTable<KNOTS> {
+    /// The sum of shapes; of none the profile of a knob that turns freely.
+    ///
+    /// # Errors
+    /// Why they are no profile.
+    pub const fn sampled(shapes: &[Shape]) -> Result<Self, ShapeError> {
+        const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
+        let mut units = [0; KNOTS];
+        // All units are zero, whatever they stand for.
+        let mut found = (Layout { torque: 1.0, count: 1.0, centre: 0.0, ends: None }, true);
+        if !shapes.is_empty() {
+            found = match sampled(shapes, &mut units) {
+                Ok(found) => found,
+                Err(error) => return Err(error),
+            };
+        }
+        let (layout, wraps) = found;
+        Ok(Self { units, outline: Outline::of(&units, wraps), layout })
+    }
+
+    /// For constants: the same, or a compile error that says why not.
+    ///
+    /// # Panics
+    /// Where the shapes are no profile; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn of(shapes: &[Shape]) -> Self {
+        match Self::sampled(shapes) {
+            Ok(table) => table,
+            Err(error) => panic!("{}", error.sentence().as_str()),
+        }
+    }
+
+    /// The table as a mode of this name.
+    pub const fn named(&'static self, name: &'static str) -> ProfileMode {
+        let profile = AnyProfile::of(&self.units, self.outline, self.layout, 0.0, 0);
+        ProfileMode { name, profile }
+    }
+}

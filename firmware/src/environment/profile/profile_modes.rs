@@ -1,0 +1,92 @@
+//! Several torque profiles, of which a knob renders the selected one.
+
+use super::any::AnyProfile;
+use super::law::ProfileLaw;
+use super::mode_table::ProfileMode;
+use super::selection::ModeSelection;
+use crate::build_error::BuildError;
+use crate::environment::delay_line::FixedDelay;
+use crate::environment::law::{Discretize, LawContext};
+use crate::environment::velocity::NoDamping;
+use crate::number::Number;
+use crate::parameter::named_parameters;
+
+/// Several torque profiles, of which one is rendered, delayed by whole samples: a knob whose way to feel is
+/// selected while it runs.
+///
+/// A scene of it is certified with each of its modes, so that with the numbers that it was compiled with none
+/// of them is refused later. Another mode is swapped in as any other change is
+/// ([`servo_loop::longest_gap`](crate::servo_loop::longest_gap)). With each the turns are counted anew:
+/// a mode with end stops starts in the turn in which the knob is nearest to its range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileModes<const DELAY: usize> {
+    modes: &'static [ProfileMode],
+    /// Number of the selected one, from 0.
+    pub mode: f64,
+}
+
+impl<const DELAY: usize> ProfileModes<DELAY> {
+    /// These modes, the first one selected.
+    ///
+    /// # Panics
+    /// Where there is none; in a constant that is a compile error.
+    #[track_caller]
+    pub const fn of(modes: &'static [ProfileMode]) -> Self {
+        assert!(!modes.is_empty(), "there is no mode to select");
+        Self { modes, mode: 0.0 }
+    }
+
+    /// The same with another one selected.
+    pub const fn selecting(self, mode: f64) -> Self {
+        Self { mode, ..self }
+    }
+
+    /// All modes.
+    pub const fn modes(&self) -> &'static [ProfileMode] {
+        self.modes
+    }
+
+    /// The selected profile as data. Where the number is that of no mode it is the first one's, with the
+    /// number, which the certificate refuses.
+    pub const fn as_any(&self) -> AnyProfile {
+        let selection = ModeSelection::of(self.modes, self.mode);
+        match selection.profile(DELAY) {
+            Some(profile) => profile,
+            None => self.modes[0].profile.as_one_of(selection, DELAY),
+        }
+    }
+}
+
+named_parameters! {
+    [const DELAY: usize] ProfileModes<DELAY>: Mode => mode;
+}
+
+/// The law of any mode: its table is read through a reference, so that all have one type.
+type ModeLaw<N, const DELAY: usize> =
+    ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>;
+
+impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
+    type Law = ModeLaw<N, DELAY>;
+
+    fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
+        // A number format that has no room for one of them has none for the program, so that none is refused
+        // later.
+        for mode in self.modes {
+            law::<N, DELAY>(&mode.profile)?;
+        }
+        law(&self.as_any())
+    }
+}
+
+/// The law of a mode.
+fn law<N: Number, const DELAY: usize>(
+    profile: &AnyProfile,
+) -> Result<ModeLaw<N, DELAY>, BuildError> {
+    let (outline, layout) = (profile.outline(), profile.layout());
+    let law =
+        ProfileLaw::new(profile.units(), &outline, &layout, NoDamping, FixedDelay::at_rest())?;
+    Ok(law.counting_turns_anew(&layout))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! Which one of several torque profiles is rendered.
+
+use super::any::AnyProfile;
+use super::mode_table::ProfileMode;
+
+/// One of several torque profiles, by its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct ModeSelection {
+    #[cfg_attr(feature = "wire", serde(skip))]
+    modes: &'static [ProfileMode],
+    /// Number of the selected one, from 0.
+    pub mode: f64,
+    /// How many there are.
+    pub count: u32,
+}
+
+impl ModeSelection {
+    pub(super) const fn of(modes: &'static [ProfileMode], mode: f64) -> Self {
+        Self { modes, mode, count: modes.len() as u32 }
+    }
+
+    /// The same with another number.
+    pub const fn selecting(self, mode: f64) -> Self {
+        Self { mode, ..self }
+    }
+
+    /// The number as a whole one; `None` where there is no such mode.
+    pub const fn index(&self) -> Option<usize> {
+        let whole = self.mode as u32;
+        if whole as f64 == self.mode && whole < self.count { Some(whole as usize) } else { None }
+    }
+
+    /// The largest number.
+    pub const fn last(&self) -> u32 {
+        self.count.saturating_sub(1)
+    }
+
+    /// All modes by their numbers; none where it came over the wire.
+    pub const fn modes(&self) -> &'static [ProfileMode] {
+        self.modes
+    }
+
+    /// The selected profile, late by so many samples; `None` where there is none, or where it came over the
+    /// wire.
+    pub(super) const fn profile(&self, delay: usize) -> Option<AnyProfile> {
+        match self.index() {
+            Some(index) if index < self.modes.len() => {
+                Some(self.modes[index].profile.as_one_of(*self, delay))
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! A knob of three modes, of which one that is not selected has detents of more than the paddle allows.
+use firmware::certificate::Certified;
+use firmware::environment::{ModeTable, ProfileMode, ProfileModes, Shape};
+use firmware::scene::Scene;
+use refusals::scene;
+
+static LIGHT: ModeTable<16> = ModeTable::of(&[Shape::detents(24, 0.01)]);
+static STEEP: ModeTable<16> = ModeTable::of(&[Shape::detents(24, 5.0)]);
+static MODES: [ProfileMode; 3] =
+    [LIGHT.named("light"), LIGHT.named("light, too"), STEEP.named("steep")];
+
+const CERTIFIED: Certified<Scene<ProfileModes<1>>> = scene(ProfileModes::of(&MODES)).certified();
+
+fn main() {
+    let _ = CERTIFIED;
+}
