@@ -61,7 +61,8 @@ fn environment(lines: &mut Vec<String>, kind: &Kind) {
 
 /// The keys of a torque profile, and two shapes; knots are another way to the same.
 fn profile(lines: &mut Vec<String>, kind: &Kind) {
-    let is_table = |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE].contains(key);
+    let is_table =
+        |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE, &key::WALL].contains(key);
     for key in kind.keys().filter(is_table) {
         let value = if *key == key::STIFFNESS { "15.0" } else { key.example };
         line(lines, key, value, kind.needed.contains(&key));
@@ -79,6 +80,9 @@ fn profile(lines: &mut Vec<String>, kind: &Kind) {
         let keys = kind.flat_map(|kind| kind.keys());
         lines.extend(keys.map(|key| set(key, key.example)));
     }
+    lines.extend([format!("# {}", key::WALL.doc), format!("# [{}]", key::WALL.path)]);
+    let of_the_wall = key::ALL.iter().filter(|key| key.table() == key::WALL.path);
+    lines.extend(of_the_wall.map(|key| format!("# {}", set(key, key.example))));
 }
 
 /// `[device]`: a rigid body, or a motor and a handle on a shaft.

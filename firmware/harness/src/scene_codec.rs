@@ -56,6 +56,7 @@ pub fn encode(scene: &Scene) -> SceneWords {
         Environment::Rational(_) => 4,
         Environment::Stated(_) => 5,
         Environment::Profile(_) => 6,
+        Environment::Composed(_) => 7,
     });
     words.push(matches!(scene.coupling, Coupling::Matched).into());
     for parameter in Parameter::ALL {

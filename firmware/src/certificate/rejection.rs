@@ -328,8 +328,8 @@ const fn write_doubt(
             "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
         UndecidedReason::NoProfileBound => {
-            "no bound is known for a torque profile that no coupling separates from a damper, a lag, jitter or \
-             missed updates; couple it by a spring, or where torques lag by the matched coupling"
+            "no bound is known for a torque profile that no coupling separates from a damper, a canceller, a lag, \
+             jitter or missed updates; couple it by a spring, or where torques lag by the matched coupling"
         }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"

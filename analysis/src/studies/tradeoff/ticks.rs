@@ -125,6 +125,7 @@ fn type_of(environment: &Environment) -> String {
         }
         Environment::Stated(_) => "of another crate".to_owned(),
         Environment::Profile(profile) => format!("torque profile, {}", delay(profile.delay)),
+        Environment::Composed(_) => "sum with a torque profile".to_owned(),
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
             format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))

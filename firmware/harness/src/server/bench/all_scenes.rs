@@ -41,9 +41,10 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
             None => as_data::<N>(job),
         },
         Environment::Rational(rational) => job.run::<_, N>(rational),
-        Environment::DelayedSpring(_) | Environment::Stated(_) | Environment::Profile(_) => {
-            as_data::<N>(job)
-        }
+        Environment::DelayedSpring(_)
+        | Environment::Stated(_)
+        | Environment::Profile(_)
+        | Environment::Composed(_) => as_data::<N>(job),
     }
 }
 
