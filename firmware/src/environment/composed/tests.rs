@@ -62,7 +62,7 @@ fn is_same<N: Number, E: EnvironmentModel + Discretize<N>>(
 
 fn every_type_is_its_data<N: Number>(counts: &[i32]) {
     let endless = Profile::<16, 1>::of(&ENDLESS);
-    let residual = 0.012;
+    let residual = 0.018;
     assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: endless }), counts));
     assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: knob::<2>() }), counts));
     let spring = DelayedSpring::<3> { stiffness: 2.0 };
