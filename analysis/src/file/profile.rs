@@ -172,8 +172,6 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
 fn wall_of(mut section: Section<'_>) -> Read<Wall> {
     let numbers =
         [&key::WALL_STIFFNESS, &key::WALL_DAMPING, &key::WALL_FACE].map(|key| section.number(key));
-    // One that is forgotten is one that is not accounted for.
-    section.specialize("the [environment.wall]".to_owned(), &[&key::WALL_DELAY]);
     let (delay, filter) = (section.whole(&key::WALL_DELAY), section.optional(&key::WALL_FILTER));
     let one_sided = section.boolean(&key::WALL_ONE_SIDED);
     section.finish();

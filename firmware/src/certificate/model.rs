@@ -464,7 +464,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 /// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and changes
 ///   nothing in `sum abs(v(k)) abs(v(k - i))`.
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
-/// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (equation 49).
+/// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (theory, section 14.3).
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///

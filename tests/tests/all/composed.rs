@@ -21,6 +21,8 @@ const KNOTS: usize = 8;
 const MOTIONS: usize = 6;
 /// Changes of a motion, of which those are kept that take more energy.
 const CHANGES: usize = 150;
+/// The smallest motion in periods of the profile.
+const SMALLEST: f64 = 1e-4;
 /// Turns of a closed motion after which a canceller has forgotten how it began.
 const SETTLED: usize = 60;
 
@@ -227,26 +229,41 @@ fn needed(sum: &Sum, damping: f64, motion: &[f64]) -> f64 {
             sum.remember(damping, &mut history, angle);
         }
     }
+    // What is smaller, rounding moves.
+    if squares < (SMALLEST * sum.pitch).powi(2) {
+        return f64::MIN;
+    }
     -PERIOD * work / squares
 }
 
-/// A closed motion that needs much: changed at random as long as that makes it need more.
+/// A closed motion that needs much: changed at random as long as that makes it need more. Slow ones, to which
+/// a canceller and a delay give the most, begin as a circle.
 fn worst(sum: &Sum, damping: f64, random: &mut ChaCha8Rng) -> f64 {
-    let length = [2, 2, 3, 4, 6, 8, 12][random.random_range(0..7)];
+    let length = [2, 2, 3, 4, 6, 12, 24, 48][random.random_range(0..8)];
     let size = sum.pitch * log_uniform(random, 1e-3, 1.0);
     let middle = sum.pitch * random.random_range(-2.0..2.0);
+    let phase = std::f64::consts::TAU / length as f64;
     let mut motion: Vec<f64> =
-        (0..length).map(|_| middle + size * random.random_range(-1.0..1.0)).collect();
+        (0..length).map(|i| middle + size * (phase * f64::from(i)).cos()).collect();
     let mut worst = needed(sum, damping, &motion);
     for change in 0..CHANGES {
         let before = motion.clone();
         let size = size * 0.97_f64.powi(change as i32 % 100);
-        if random.random_bool(0.3) {
-            let by = size * random.random_range(-1.0..1.0);
-            motion.iter_mut().for_each(|angle| *angle += by);
-        } else {
-            let which = random.random_range(0..length);
-            motion[which] += size * random.random_range(-1.0..1.0);
+        match random.random_range(0..4) {
+            0 => {
+                // All of it moves to another place.
+                let by =
+                    sum.pitch * log_uniform(random, 1e-3, 1.0) * random.random_range(-1.0..1.0);
+                motion.iter_mut().for_each(|angle| *angle += by);
+            }
+            1 => {
+                let (centre, by) = (motion[0], log_uniform(random, 0.5, 2.0));
+                motion.iter_mut().for_each(|angle| *angle = centre + by * (*angle - centre));
+            }
+            _ => {
+                let which = random.random_range(0..motion.len());
+                motion[which] += size * random.random_range(-1.0..1.0);
+            }
         }
         let found = needed(sum, damping, &motion);
         if found > worst { worst = found } else { motion = before }
@@ -261,7 +278,7 @@ fn runs(usual: usize) -> usize {
 #[test]
 fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
     let mut random = ChaCha8Rng::seed_from_u64(23);
-    let (runs, mut near) = (runs(300), 0);
+    let (runs, mut shares) = (runs(300), Vec::new());
     for _ in 0..runs {
         let sum = Sum::random(&mut random);
         let damping = 1.01 * sum.least_damping();
@@ -269,10 +286,15 @@ fn no_closed_motion_takes_more_energy_than_the_bound_allows() {
         let worst =
             (0..MOTIONS).map(|_| worst(&sum, damping, &mut random)).fold(f64::MIN, f64::max);
         assert!(worst <= bound * (1.0 + 1e-9), "{worst} of {bound}: {sum:?}");
-        near += usize::from(worst > 0.7 * bound);
+        shares.push(worst / bound);
     }
-    println!("{runs} sums, none beyond its bound; within a third of it: {near}");
-    assert!(3 * near >= runs, "{near} of {runs}");
+    shares.sort_by(f64::total_cmp);
+    let share = |part: f64| shares[(part * (runs - 1) as f64) as usize];
+    let [quarter, half, most, all] = [0.25, 0.5, 0.9, 1.0].map(share);
+    println!(
+        "{runs} sums: a quarter takes up to {quarter:.3} of the bound, half up to {half:.3}, nine of ten up to {most:.3}, all up to {all:.3}"
+    );
+    assert!(half > 0.5 && most > 0.9, "{half} {most}");
 }
 
 #[test]

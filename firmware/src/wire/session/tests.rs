@@ -11,7 +11,9 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DamperWall, Ends, Knots, OneSided, Profile, Shape};
+use crate::environment::{
+    Composed, DamperWall, Ends, Environment, Knots, OneSided, Profile, Shape,
+};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
@@ -208,6 +210,18 @@ fn largest_profile() -> Description {
     Description { scene: Scene { environment: profile.as_data(), ..largest.scene }, ..largest }
 }
 
+/// The same with a wall and a canceller beside it.
+fn largest_sum() -> Description {
+    let largest = largest_profile();
+    let mut environment = largest.scene.environment;
+    if let Environment::Profile(profile) = environment {
+        let wall = crate::environment::Wall::spring(1.0, 8);
+        let wall = Some(crate::environment::Wall { filter: Some(0.5), ..wall });
+        environment = Environment::Composed(Composed { residual: Some(1.0), wall, profile });
+    }
+    Description { scene: Scene { environment, ..largest.scene }, ..largest }
+}
+
 fn done(id: Id) -> Said {
     ToHost::Answer { id, outcome: Outcome::Done }
 }
@@ -398,6 +412,7 @@ fn every_message_fits_its_frame() {
         }),
         ToHost::Described(largest_description()),
         ToHost::Described(largest_profile()),
+        ToHost::Described(largest_sum()),
     ] {
         assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");
     }
