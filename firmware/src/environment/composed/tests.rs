@@ -2,13 +2,17 @@ use fixed::types::I8F24;
 use proptest::prelude::*;
 
 use super::*;
-use crate::certificate::{certify, certify_in, certify_scene, scene_data};
+use crate::certificate::{
+    Certified, QuantizationBound, Resolution, TimingChecked, certify, certify_in, certify_scene,
+    scene_data, timing_checked,
+};
 use crate::encoder::{CounterWidth, RawCount};
+use crate::energy::NoAction;
 use crate::environment::{Ends, EnvironmentModel, Knots, Matched, Shape};
 use crate::number::Format;
 use crate::passivity::interval::Interval;
 use crate::scene::{Coupling, Device, Latency, Scene, Timing};
-use crate::servo::{Servo, Transducers};
+use crate::servo::{AtPhase, Latched, Servo, Transducers};
 
 static ENDLESS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
 static KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
@@ -252,5 +256,139 @@ fn every_format_has_nearly_the_same_bound() {
     for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
         let found = certify_in(&scene, format).unwrap().bound.unwrap();
         assert!((found.hi() / exact.hi() - 1.0).abs() < 1e-4, "{found:?} {exact:?}");
+    }
+}
+
+type KnobAndWall = Scene<WallAndProfile<OneSided<DamperWall<2>>, Profile<16, 1>>>;
+const KNOB_AND_WALL: KnobAndWall = Scene {
+    device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
+    timing: Timing { period: PERIOD, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: WallAndProfile {
+        wall: OneSided { face: 0.3, wall: LATE },
+        profile: Profile::of(&KNOB),
+    },
+    latency: Latency::NONE,
+    torque_limit: None,
+};
+const CERTIFIED: Certified<KnobAndWall> = KNOB_AND_WALL.certified();
+const TIMED: TimingChecked<KnobAndWall, Latched> = CERTIFIED.timing_checked::<Latched>();
+
+/// What is late throughout, by the latch; what cancels, behind the matched coupling; and a board comes to the
+/// same verdict when it starts.
+#[test]
+fn boards_render_them() {
+    assert_eq!(TIMED.scene(), &KNOB_AND_WALL);
+    let environment =
+        FreeModeWallAndProfile { residual: 0.018, wall: behind(UNDELAYED), profile: knob::<1>() };
+    let matched = Scene {
+        coupling: Coupling::Matched,
+        latency: Latency { output_jitter: 1e-6, ..Latency::delayed(2e-4) },
+        ..scene(Matched::<_, 0, 0> { environment })
+    };
+    for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
+        assert!(timing_checked::<_, Latched>(KNOB_AND_WALL, format).is_ok(), "{format}");
+        let certified = certify_scene(matched, format).unwrap_or_else(|why| panic!("{why}"));
+        assert!(certified.time::<AtPhase<200_000>>().is_ok(), "{format}");
+        assert!(timing_checked::<_, AtPhase<200_000>>(matched, format).is_ok(), "{format}");
+        let mut more = matched;
+        more.environment.environment.residual = 0.001;
+        assert!(certify_scene(more, format).is_err(), "{format}");
+        assert!(timing_checked::<_, AtPhase<200_000>>(more, format).is_err(), "{format}");
+    }
+}
+
+/// Against the same detents between ends that are far away, where angles are not those within a turn.
+#[test]
+fn a_canceller_beside_a_profile_without_ends_feels_no_turn() {
+    static FAR: Knots<16> =
+        Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-50.0, 50.0, 5.0)]);
+    let free = |profile| scene(FreeModeProfile { residual: 0.012, profile }).certify().unwrap();
+    let servo = |profile| Servo::<_, f64>::new(&free(profile), &TRANSDUCERS).unwrap();
+    let (mut endless, mut ended) =
+        (servo(Profile::<16, 1>::of(&ENDLESS)), servo(Profile::of(&FAR)));
+    let mut largest = 0.0_f64;
+    for tick in 0..40_000 {
+        let angle = 40.0 * (f64::from(tick) * 3e-4).sin() + 0.3 * (f64::from(tick) * 0.17).sin();
+        let count = (angle * 61_440.0 / core::f64::consts::TAU) as i32;
+        let raw = RawCount::from(count.cast_unsigned());
+        endless.tick(raw);
+        ended.tick(raw);
+        let off = (endless.torque_nm() - ended.torque_nm()).abs();
+        largest = largest.max(off);
+    }
+    // A few parts of a cell, in which places in the table are counted.
+    assert!(largest < 1e-5 && endless.torque_nm() != 0.0, "{largest}");
+}
+
+/// A servo with a coarse encoder and a DAC against one that has the positions as they are.
+fn largest_error<N: Number>(scene: &Scene, counts_per_turn: f64) -> f64 {
+    let servo_of =
+        |counts_per_turn| Transducers { counts_per_turn, largest_speed: 1e4, ..TRANSDUCERS };
+    let certified = scene.certify().unwrap();
+    let mut coarse: Servo<_, N> = Servo::new(&certified, &servo_of(counts_per_turn)).unwrap();
+    let fine = 1024.0 * counts_per_turn;
+    let mut exact: Servo<_, f64> = Servo::new(&certified, &servo_of(fine)).unwrap();
+    let mut largest = 0.0_f64;
+    for tick in 0..20_000 {
+        let angle = 1.5 * (f64::from(tick) * 7e-4).sin() + 0.02 * (f64::from(tick) * 0.13).sin();
+        let count = |counts: f64| (angle * counts / core::f64::consts::TAU).round() as i32;
+        coarse.tick(RawCount::from(count(counts_per_turn).cast_unsigned()));
+        exact.tick(RawCount::from(count(fine).cast_unsigned()));
+        largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
+    }
+    largest
+}
+
+#[test]
+fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
+    const COUNTS: f64 = 4096.0;
+    let spring = DelayedSpring::<1> { stiffness: 8.0 };
+    let residual = 0.016;
+    for environment in [
+        FreeModeProfile { residual, profile: Profile::<16, 1>::of(&ENDLESS) }.as_data(),
+        WallAndProfile { wall: behind(spring), profile: knob::<1>() }.as_data(),
+        WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
+        FreeModeWallAndProfile { residual, wall: behind(spring), profile: knob::<1>() }.as_data(),
+    ] {
+        let scene = scene(environment);
+        let steps = Resolution {
+            encoder: Some(core::f64::consts::TAU / COUNTS),
+            full_scale: Some(1.0),
+            friction: None,
+        };
+        for (found, format) in [
+            (largest_error::<f32>(&scene, COUNTS), Format::F32),
+            (largest_error::<I8F24>(&scene, COUNTS), Format::Fixed { fraction_bits: 24 }),
+        ] {
+            let bound = QuantizationBound::of(&scene, format, &steps).unwrap();
+            let encoder = bound.encoder.unwrap();
+            assert!(bound.in_any_motion);
+            assert!(found <= encoder + bound.numbers + encoder / 1024.0, "{found} {bound:?}");
+            assert!(found > 0.25 * encoder, "{found} {bound:?}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_latched_code_is_that_of_the_tick_after(steps in prop::collection::vec(-3_000..3_000_i32, 200)) {
+        fn check<N: Number>(steps: &[i32]) {
+            let certified = certify_scene(KNOB_AND_WALL, N::FORMAT).unwrap();
+            let servo: Servo<_, N> = Servo::new(&certified, &TRANSDUCERS).unwrap();
+            let (mut ahead, mut then) = (servo.clone(), servo);
+            let (mut count, mut latched) = (0_i32, None);
+            for step in steps {
+                count = (count + step).clamp(-30_000, 30_000);
+                let raw = RawCount::from(count.cast_unsigned());
+                let code = then.tick(raw).code;
+                assert!(latched.is_none_or(|latched| latched == code), "{latched:?} {code:?}");
+                latched = Some(ahead.timed_tick::<Latched>(raw, &mut NoAction).code);
+            }
+        }
+        check::<f32>(&steps);
+        check::<I8F24>(&steps);
     }
 }
