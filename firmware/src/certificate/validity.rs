@@ -65,7 +65,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    match (first_invalid_number(scene, true), scene.environment.rational()) {
+    match (first_invalid_number(scene, true, true), scene.environment.rational()) {
         (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
             Some(value) => Some(not_finite(Parameter::Numerator, value)),
             None => match first_not_finite(rational.denominator.as_slice()) {
@@ -78,10 +78,11 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program whose environment has no
-/// knots omits the code for those of torque profiles.
+/// knots omits the code for those of torque profiles, and so does one without sums for those of sums.
 pub(super) const fn first_invalid_number(
     scene: &Scene,
     has_knots: bool,
+    is_composed: bool,
 ) -> Option<InvalidParameter> {
     let environment = &scene.environment;
     if let Some(invalid) = first_of(scene, &scene.own_numbers(), false) {
@@ -98,7 +99,7 @@ pub(super) const fn first_invalid_number(
         return Some(invalid);
     }
     match environment {
-        Environment::Composed(composed) if has_knots => sum_conflict(composed),
+        Environment::Composed(composed) if is_composed => sum_conflict(composed),
         _ => None,
     }
 }
