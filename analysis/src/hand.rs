@@ -26,7 +26,7 @@ impl HandTrajectory {
     pub fn for_environment(environment: &Environment) -> Self {
         match environment {
             Environment::FreeMode { .. } => Self::swing_and_let_go(),
-            Environment::Profile(_) => Self::turn_and_let_go(),
+            Environment::Profile(_) | Environment::Composed(_) => Self::turn_and_let_go(),
             _ => Self::push_and_let_go(),
         }
     }

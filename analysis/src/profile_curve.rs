@@ -155,7 +155,8 @@ const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
 
 fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64) -> Option<f64> {
     let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
-    if is_of_stops {
+    // A wall beside the profile has the name of that stiffness.
+    if is_of_stops && scene.environment.wall().is_none() {
         return match largest(scene, Quantity::Stiffness, &AS_IT_IS) {
             Answer::Limit(stiffness, _) => Some(stiffness),
             _ => None,

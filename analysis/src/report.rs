@@ -153,6 +153,9 @@ fn judged(file: &SceneFile) -> Vec<(&'static str, String)> {
         rows.push(number("Face", wall.face, "rad"));
         let sides = if wall.one_sided { "felt beyond the face only" } else { "felt everywhere" };
         rows.push(("Sides", sides.to_owned()));
+        if environment.profile().is_some() {
+            rows.push(("Delay of the wall", delayed(wall.delay).1));
+        }
     }
     rows.extend(environment.profile().map(profile).unwrap_or_default());
     if let Some(rational) = environment.rational() {

@@ -110,7 +110,10 @@ pub fn as_it_runs(scene: &Scene, format: Format) -> Option<Exact> {
         Environment::FreeModeWall { residual, wall: behind } => {
             plus(&free(*residual), &wall(behind, &period, format))
         }
-        Environment::Rational(_) | Environment::Stated(_) | Environment::Profile(_) => return None,
+        Environment::Rational(_)
+        | Environment::Stated(_)
+        | Environment::Profile(_)
+        | Environment::Composed(_) => return None,
     };
     // What is fed through is solved with the coupling by a gain that is rounded as well.
     let through = if numerator.degree() < denominator.degree() || numerator.is_zero() {

@@ -7,6 +7,9 @@ use super::shape;
 /// The example of a device that is a chain of masses.
 pub const CHAIN: &str = "chain";
 
+/// The example of a torque profile with a wall and a canceller beside it.
+pub const COMPOSED: &str = "profile-and-wall";
+
 /// Optional keys that an example sets, so that there is a spring, the device moves and a hand holds it.
 const SET: &[&Key] = &[
     &key::COUPLING_STIFFNESS,
@@ -21,20 +24,24 @@ const WIDTH: usize = 96;
 
 /// What there is an example of.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    kind::ALL.iter().map(|kind| kind.name).chain([CHAIN])
+    kind::ALL.iter().map(|kind| kind.name).chain([CHAIN, COMPOSED])
 }
 
 /// The example of that name: a scene file that certifies, in which every key that may be left out
 /// is a comment. Nothing where there is no such example.
 pub fn toml(name: &str) -> Option<String> {
     let is_chain = name == CHAIN;
-    let kind = Kind::find(if is_chain { "damper-wall" } else { name })?;
+    let kind = Kind::find(match name {
+        CHAIN => "damper-wall",
+        COMPOSED => PROFILE,
+        _ => name,
+    })?;
     let mut lines = vec![format!("name = \"{name} example\"")];
     for table in key::ALL.iter().filter(|key| key.table().is_empty() && **key != &key::NAME) {
         lines.extend(["".to_owned(), format!("# {}", table.doc), format!("[{}]", table.path)]);
         let keys = || key::ALL.iter().filter(|key| key.table() == table.path).copied();
         match table.path {
-            "environment" => environment(&mut lines, kind),
+            "environment" => environment(&mut lines, kind, name == COMPOSED),
             "device" => device(&mut lines, keys(), is_chain),
             _ => keys().for_each(|key| line(&mut lines, key, key.example, is_set(key))),
         }
@@ -46,11 +53,11 @@ fn is_set(key: &Key) -> bool {
     key.presence == Presence::Needed || SET.contains(&key)
 }
 
-fn environment(lines: &mut Vec<String>, kind: &Kind) {
+fn environment(lines: &mut Vec<String>, kind: &Kind, is_composed: bool) {
     lines.push(format!("# {}", kind.doc));
     lines.push(format!("{} = \"{}\"", key::TYPE.name(), kind.name));
     if kind.name == PROFILE {
-        return profile(lines, kind);
+        return profile(lines, kind, is_composed);
     }
     for key in kind.keys() {
         let own = kind.values.iter().find(|(own, _)| *own == key);
@@ -59,12 +66,15 @@ fn environment(lines: &mut Vec<String>, kind: &Kind) {
     }
 }
 
-/// The keys of a torque profile, and two shapes; knots are another way to the same.
-fn profile(lines: &mut Vec<String>, kind: &Kind) {
-    let is_table = |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE].contains(key);
+/// The keys of a torque profile, and two shapes; knots are another way to the same. And a wall and a
+/// canceller, where these are beside it.
+fn profile(lines: &mut Vec<String>, kind: &Kind, is_composed: bool) {
+    let is_table =
+        |key: &&Key| ![&key::KNOTS, &key::KNOTS_PERIOD, &key::SHAPE, &key::WALL].contains(key);
     for key in kind.keys().filter(is_table) {
         let value = if *key == key::STIFFNESS { "15.0" } else { key.example };
-        line(lines, key, value, kind.needed.contains(&key));
+        let is_beside = is_composed && *key == key::RESIDUAL;
+        line(lines, key, value, is_beside || kind.needed.contains(&key));
     }
     lines.push(format!("# {} Types, with their keys:", key::SHAPE.doc));
     for kind in shape::ALL {
@@ -78,6 +88,14 @@ fn profile(lines: &mut Vec<String>, kind: &Kind) {
         lines.push(format!("{} = \"{name}\"", key::SHAPE_TYPE.name()));
         let keys = kind.flat_map(|kind| kind.keys());
         lines.extend(keys.map(|key| set(key, key.example)));
+    }
+    lines.push(format!("# {}", key::WALL.doc));
+    if !is_composed {
+        return lines.push(format!("# The example \"{COMPOSED}\" has one."));
+    }
+    lines.push(format!("[{}]", key::WALL.path));
+    for key in key::ALL.iter().filter(|key| key.table() == key::WALL.path) {
+        line(lines, key, key.example, **key != key::WALL_FILTER);
     }
 }
 

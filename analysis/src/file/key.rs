@@ -292,7 +292,7 @@ keys! {
     /// Whether the wall is felt only beyond its face.
     ONE_SIDED = other("environment.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
         Optional("false: the wall pulls as well as it pushes"), "true";
-    /// Damping that free mode leaves in the hand.
+    /// Damping that free mode leaves in the hand; beside a torque profile, of an undelayed one, if it is there.
     RESIDUAL = of(Parameter::Residual),
         Needed, "0.018";
     /// Numerator of the environment, from position to torque.
@@ -331,6 +331,27 @@ keys! {
     /// two.
     CELLS = other("environment.cells", "", whole(16, 4096)),
         Optional("the fewest that show every straight piece"), "64";
+    /// A wall beside the torque profile, at the same angle; the profile then has end stops.
+    WALL = other("environment.wall", "", TABLE),
+        Optional("no wall stands beside the profile"), "";
+    /// Stiffness of this wall.
+    WALL_STIFFNESS = Key { path: "environment.wall.stiffness", parameter: None, ..of(Parameter::Stiffness) },
+        Needed, "10.0";
+    /// Damping of this wall.
+    WALL_DAMPING = Key { path: "environment.wall.damping", parameter: None, ..of(Parameter::Damping) },
+        Default(0.0), "0.002";
+    /// Delay of this wall, as `environment.delay`; it need not be the profile's.
+    WALL_DELAY = Key { path: "environment.wall.delay", parameter: None, ..of(Parameter::Delay) },
+        Needed, "1";
+    /// Pole of the low-pass filter on this wall's velocity; 0 filters nothing.
+    WALL_FILTER = Key { path: "environment.wall.filter", parameter: None, ..of(Parameter::Filter) },
+        Optional("no filter"), "0.1";
+    /// Angle at which this wall is at rest, or where it begins.
+    WALL_FACE = Key { path: "environment.wall.face", parameter: None, ..of(Parameter::Face) },
+        Default(0.0), "1.5";
+    /// Whether this wall is felt only beyond its face.
+    WALL_ONE_SIDED = other("environment.wall.one_sided", "", Bound::Other(Form::Boolean, "true or false")),
+        Optional("false: the wall pulls as well as it pushes"), "true";
     /// Named shapes of a torque profile, which add up.
     SHAPE = other("environment.shape", "", Bound::Other(Form::Tables, "a list of 1 to 16 tables")),
         Optional("the knots are all"), "";

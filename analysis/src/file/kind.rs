@@ -92,6 +92,8 @@ pub const ALL: &[Kind] = &[
             &key::TO,
             &key::STIFFNESS,
             &key::CELLS,
+            &key::RESIDUAL,
+            &key::WALL,
             &key::SHAPE,
         ],
         blank: Environment::Profile(Profile::<16, 1>::of(&DETENT).as_any()),
@@ -121,7 +123,9 @@ impl Kind {
             Environment::FreeMode { .. } => "free-mode",
             Environment::FreeModeWall { .. } => "free-mode-wall",
             Environment::Rational(_) => "rational",
-            Environment::Stated(_) | Environment::Profile(_) => return None,
+            Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => {
+                return None;
+            }
         };
         Self::find(name)
     }

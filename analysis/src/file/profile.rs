@@ -1,6 +1,6 @@
 //! The torque profile of a file: knots and named shapes, which add up to one table.
 
-use firmware::environment::{AnyProfile, Ends, Environment, Shape, ShapeError};
+use firmware::environment::{AnyProfile, Composed, Ends, Environment, Shape, ShapeError, Wall};
 use firmware::parameter::Parameter;
 
 use super::faults::{Read, Reported, all};
@@ -118,10 +118,13 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
     let numbers = [&key::DAMPING, &key::PROFILE_TORQUE, &key::COUNT, &key::CENTRE]
         .map(|key| section.found(key));
     let ends = [&key::FROM, &key::TO, &key::STIFFNESS].map(|key| section.found(key));
+    let residual = section.optional(&key::RESIDUAL);
+    let wall = section.table(&key::WALL).and_then(|wall| wall.map(wall_of).transpose());
     let cells = cells(section);
     let knots = table(section, &key::KNOTS, &key::KNOTS_PERIOD, key::ENVIRONMENT.path);
     let shapes = shapes(section);
     let (delay, cells, knots, shapes) = (delay?, cells?, knots?, shapes?);
+    let (residual, wall) = (residual?, wall?);
     let [damping, torque, count, centre] = numbers;
     let [from, to, stiffness] = ends;
     let (from, to, stiffness) = (from?, to?, stiffness?);
@@ -158,8 +161,26 @@ pub fn profile(section: &mut Section<'_>) -> Read<ProfileTable> {
         ends.to = value(&to).unwrap_or(ends.to);
         ends.stiffness = value(&stiffness).unwrap_or(ends.stiffness);
     }
-    let (environment, torque) = (Environment::Profile(profile), torque.map(|found| found.span));
-    Ok(ProfileTable { environment, shapes, places, torque })
+    let environment = if residual.is_some() || wall.is_some() {
+        Environment::Composed(Composed { residual, wall, profile })
+    } else {
+        Environment::Profile(profile)
+    };
+    Ok(ProfileTable { environment, shapes, places, torque: torque.map(|found| found.span) })
+}
+
+/// The wall beside a torque profile.
+fn wall_of(mut section: Section<'_>) -> Read<Wall> {
+    let numbers =
+        [&key::WALL_STIFFNESS, &key::WALL_DAMPING, &key::WALL_FACE].map(|key| section.number(key));
+    let (delay, filter) = (section.whole(&key::WALL_DELAY), section.optional(&key::WALL_FILTER));
+    let one_sided = section.boolean(&key::WALL_ONE_SIDED);
+    section.finish();
+    let [stiffness, damping, face] = numbers;
+    let (stiffness, damping, face) = (stiffness?, damping?, face?);
+    let (delay, filter) = (delay?, filter?);
+    let one_sided = one_sided?.unwrap_or(false);
+    Ok(Wall { stiffness, damping, filter, delay, face, one_sided })
 }
 
 fn value(found: &Option<Found<f64>>) -> Option<f64> {

@@ -5,7 +5,7 @@ mod shaped;
 
 use std::fmt::Write;
 
-use firmware::environment::{Coefficients, Environment};
+use firmware::environment::{Coefficients, Composed, Environment};
 use firmware::parameter::{Parameter, Range};
 use firmware::scene::{Coupling, Scene, TimeRange};
 
@@ -45,7 +45,12 @@ pub fn toml(file: &SceneFile) -> String {
     lines.push("[environment]".to_owned());
     match (&scene.environment, shapes) {
         (Environment::Profile(profile), Some(shapes)) => {
-            shaped::profile(&mut lines, profile, shapes);
+            shaped::profile(&mut lines, None, profile, shapes);
+        }
+        (Environment::Composed(composed), Some(shapes)) => {
+            let Composed { residual, wall, profile } = composed;
+            shaped::profile(&mut lines, *residual, profile, shapes);
+            lines.extend(wall.iter().flat_map(shaped::wall));
         }
         (other, _) => environment(&mut lines, other),
     }

@@ -122,6 +122,7 @@ fn index_of(scene: &Scene, later: usize) -> Option<Interval> {
         | Environment::FreeMode { .. }
         | Environment::Stated(_)
         | Environment::Profile(_)
+        | Environment::Composed(_)
         | Environment::Rational(_) => None,
     }
 }

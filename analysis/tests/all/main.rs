@@ -5,6 +5,7 @@
 mod charts;
 mod closed_loop;
 mod common;
+mod composed;
 mod device_files;
 mod haptic;
 #[cfg(unix)]

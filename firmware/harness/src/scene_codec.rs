@@ -47,7 +47,7 @@ pub struct CertifyReply {
 /// A [`CertifyReply`] as words.
 pub type ReplyWords = [u64; 14];
 
-/// The word of an environment that no board here has a law of: a type of another crate, or an unknown table.
+/// The word of an environment that no board here has a law of: a type of another crate, an unknown table or a sum.
 const STATED: u64 = 5;
 /// The word of the first table of a torque profile.
 const TABLE: u64 = 6;
@@ -61,7 +61,7 @@ pub fn encode(scene: &Scene) -> SceneWords {
         Environment::FreeMode { .. } => 2,
         Environment::FreeModeWall { .. } => 3,
         Environment::Rational(_) => 4,
-        Environment::Stated(_) => STATED,
+        Environment::Stated(_) | Environment::Composed(_) => STATED,
         Environment::Profile(profile) => {
             tables::index_of(&profile).map_or(STATED, |table| TABLE + table as u64)
         }

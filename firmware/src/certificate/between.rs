@@ -38,7 +38,7 @@
 
 use super::model::LoopIntervals;
 use super::rules::is_nonlinear;
-use crate::environment::{AnyProfile, Environment};
+use crate::environment::{AnyProfile, Composed, Environment};
 use crate::number::Format;
 use crate::parameter::Parameter;
 use crate::scene::Scene;
@@ -64,8 +64,10 @@ pub(super) const fn between(
     value: f64,
 ) -> Between {
     let n = LoopIntervals::of(scene, format);
-    if let Some(profile) = scene.environment.profile() {
-        return between_profiles(profile, &n, parameter);
+    match &scene.environment {
+        Environment::Profile(profile) => return between_profiles(profile, &n, parameter),
+        Environment::Composed(composed) => return between_sums(composed, parameter),
+        _ => {}
     }
     let passes = match parameter {
         Parameter::Stiffness | Parameter::Damping => is_affine_in_wall(scene, &n),
@@ -90,6 +92,20 @@ const fn between_profiles(
         Parameter::Period if n.latency.is_some() => Between::Unknown,
         Parameter::Period if profile.damping == 0.0 => Between::PassesDownToZero,
         Parameter::Period if matches!(n.format, Format::F64) => Between::Passes,
+        _ => Between::Unknown,
+    }
+}
+
+/// Every part of a sum has a bound of its own, which no number of another part changes. That of a wall that
+/// is late is affine in its stiffness and in the magnitude of its damping.
+const fn between_sums(composed: &Composed, parameter: Parameter) -> Between {
+    let is_late = match &composed.wall {
+        Some(wall) => wall.delay > 0,
+        None => true,
+    };
+    match parameter {
+        Parameter::ProfileTorque => Between::PassesDownToZero,
+        Parameter::Stiffness | Parameter::Damping if is_late => Between::PassesDownToZero,
         _ => Between::Unknown,
     }
 }

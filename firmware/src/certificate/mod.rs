@@ -31,6 +31,7 @@
 mod assessment;
 mod assumption;
 mod between;
+mod composed;
 mod digits;
 mod margin;
 mod model;
@@ -282,7 +283,10 @@ impl<E: Copy> Certified<Scene<E>> {
 }
 
 macro_rules! certify_for {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident, $knots:literal;)*) => {$(
+    ($(
+        [$($generics:tt)*] $environment:ty:
+        $cancels:literal, $memory:ident, $knots:literal $(, $composed:ident)?;
+    )*) => {$(
         certify_for! { @ [$($generics)*] $environment }
         certify_for! { @
             [const WHOLE: usize, const LAGS: usize, $($generics)*]

@@ -8,7 +8,7 @@
 use super::profile::{profile_bound, profile_gain};
 use super::validity::first_invalid;
 use crate::environment::{
-    Environment, EnvironmentModel, MAX_DEGREE, Memory, Rational, StatedModel, Wall,
+    Composed, Environment, EnvironmentModel, MAX_DEGREE, Memory, Rational, StatedModel, Wall,
 };
 use crate::latency::Latency;
 use crate::matched::{MatchedCoupling, limit_behind_spring};
@@ -307,6 +307,11 @@ pub(super) const fn transfer(
     n: &LoopIntervals,
 ) -> Result<Transfer, Unbuildable> {
     let built = match (environment, environment.wall(), environment.rational()) {
+        // Of a sum with a late torque profile, what is linear.
+        (Environment::Composed(Composed { residual: Some(_), .. }), None, _) => Some(free_mode(n)),
+        (Environment::Composed(Composed { residual: Some(_), .. }), Some(w), _) => {
+            free_mode(n).plus(&wall(&w, n))
+        }
         (Environment::FreeModeWall { .. }, Some(w), _) => free_mode(n).plus(&wall(&w, n)),
         (Environment::FreeMode { delay, .. }, ..) => {
             let mut free = free_mode(n);
@@ -459,6 +464,7 @@ const fn divided(p: &Polynomial, leading: Interval, n: &LoopIntervals) -> Polyno
 /// - Wall, `n >= 1`: `K T (n - 1/2) + abs(B)`; a velocity filter has the l1 norm 1 and changes
 ///   nothing in `sum abs(v(k)) abs(v(k - i))`.
 /// - Wall, undelayed: 0 for `B >= 0` without a filter, otherwise `abs(B)`.
+/// - A torque profile: [`profile_bound`]. A sum: the sum of the bounds (theory, section 14.3).
 /// - Canceller: the clipped torque is `g(k) (h * v)(k)` with `g` in `[0, 1]`, so by Young's
 ///   inequality `alpha <= sum abs(h)`, which for the first-order lag of [`free_mode`] is `be`.
 ///
@@ -490,14 +496,17 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    if E::HAS_KNOTS && environment.profile().is_some() {
+    if E::HAS_KNOTS && matches!(environment, Environment::Profile(_)) {
         // It is solved in front of the coupling, without a gain.
         return Some(Interval::ONE);
     }
     let Some(contact) = scale::<E>(environment, n) else { return None };
     Some(match environment {
-        Environment::FreeModeWall { .. } if E::CANCELS_DAMPING => {
-            n.solved(free_mode(n).feedthrough()).max(contact)
+        Environment::FreeModeWall { .. }
+        | Environment::Composed(Composed { residual: Some(_), .. })
+            if E::CANCELS_DAMPING =>
+        {
+            n.solved(feedthrough_of_canceller(n)).max(contact)
         }
         _ => contact.max(Interval::ONE),
     })
@@ -518,10 +527,28 @@ const fn scale<E: EnvironmentModel>(
         (Environment::DelayedSpring(_) | Environment::DamperWall(_), Some(w)) => {
             wall(&w, n).feedthrough()
         }
+        (Environment::Composed(composed), beside) if E::IS_COMPOSED => {
+            let mut sum = match beside {
+                Some(w) => wall(&w, n).feedthrough(),
+                None => Interval::ZERO,
+            };
+            if composed.residual.is_some() {
+                if !E::CANCELS_DAMPING {
+                    return None;
+                }
+                sum = sum.add(feedthrough_of_canceller(n));
+            }
+            sum
+        }
         _ => return None,
     };
     let scale = n.solved(feedthrough);
     if scale.is_finite() { Some(scale) } else { None }
+}
+
+/// The torque of a position in the same tick that a canceller gives, in N m/rad.
+pub(super) const fn feedthrough_of_canceller(n: &LoopIntervals) -> Interval {
+    free_mode(n).feedthrough()
 }
 
 const fn exactly_solved_bound<E: EnvironmentModel>(
@@ -546,7 +573,33 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
             Some(Interval::decimal(bound.index))
         }
         Environment::Profile(profile) if E::HAS_KNOTS => profile_bound(profile, n),
+        Environment::Composed(composed) if E::IS_COMPOSED => {
+            sum_of::<E>(composed, n, wall, profile_bound(&composed.profile, n), Interval::ONE)
+        }
         _ => None,
+    }
+}
+
+/// What a wall and a torque profile have together, and so many times what the canceller beside them cancels,
+/// if there is one.
+const fn sum_of<E: EnvironmentModel>(
+    composed: &Composed,
+    n: &LoopIntervals,
+    wall: Interval,
+    profile: Option<Interval>,
+    cancelled: Interval,
+) -> Option<Interval> {
+    let Some(profile) = profile else { return None };
+    let sum = profile.add(wall);
+    if composed.residual.is_none() {
+        return Some(sum);
+    }
+    if !E::CANCELS_DAMPING {
+        return None;
+    }
+    match canceller_bound(n) {
+        Some(canceller) => Some(sum.add(canceller.mul(cancelled))),
+        None => None,
     }
 }
 
@@ -579,6 +632,13 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
             Some(gain) => gain,
             None => return None,
         },
+        Environment::Composed(composed) if E::IS_COMPOSED => {
+            let profile = profile_gain(&composed.profile, n);
+            match sum_of::<E>(composed, n, wall, profile, Interval::ONE.double()) {
+                Some(gain) => gain,
+                None => return None,
+            }
+        }
         _ => return None,
     };
     Some(gain.mul(solved))

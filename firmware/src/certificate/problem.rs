@@ -1,12 +1,13 @@
 //! A scene that can be judged, and the answers of the two rules without the numbers behind them.
 
+use super::composed::composed_bound_at_port;
 use super::model::{LoopIntervals, largest_solved, nonlinear_bound, transfer};
 use super::profile::{ExtremeSlopes, is_motor, is_motor_where_limited, profile_bound_at_port};
 use super::rejection::Rejection;
 use super::remedy::Remedies;
 use super::rules::{Answer, Rule, compare, exact_limit, is_nonlinear, paper_limit};
 use super::validity::first_invalid;
-use crate::environment::{AnyProfile, Environment, FULL_SCALE};
+use crate::environment::{AnyProfile, Composed, Environment, FULL_SCALE, Wall};
 use crate::number::Format;
 use crate::passivity::bernstein::Precision;
 use crate::passivity::discrete::{RealPart, index_looked_at, reduced_index, velocity_reduced};
@@ -93,6 +94,14 @@ impl PassivityProblem {
         {
             return Err(rejection);
         }
+        // No bound says so of it beside a profile.
+        if let Environment::Composed(Composed { wall: Some(Wall { stiffness, .. }), .. }) =
+            scene.environment
+            && stiffness < 0.0
+        {
+            let residue = Interval::decimal(stiffness).mul(numbers.period);
+            return Err(Rejection::NegativeResidue { residue });
+        }
         let environment = match transfer(&scene.environment, &numbers) {
             Ok(environment) => environment,
             Err(error) => return Err(unbuildable(error)),
@@ -108,6 +117,9 @@ impl PassivityProblem {
             // agree.
             let bound = match (&scene.environment, numbers.is_at_port) {
                 (Environment::Profile(profile), true) => profile_bound_at_port(profile, &numbers),
+                (Environment::Composed(composed), true) => {
+                    composed_bound_at_port(composed, &numbers)
+                }
                 (environment, _) => match largest_solved::<Environment>(environment, &numbers) {
                     Some(solved) => nonlinear_bound::<Environment>(environment, solved, &numbers),
                     None => None,
@@ -122,7 +134,9 @@ impl PassivityProblem {
         }
         let stated = if scene.environment.has_transfer() { None } else { bound };
         let no_transfer = match &scene.environment {
-            Environment::Profile(_) => Some(UndecidedReason::NoProfileBound),
+            Environment::Profile(_) | Environment::Composed(_) => {
+                Some(UndecidedReason::NoProfileBound)
+            }
             environment if environment.has_transfer() => None,
             _ => Some(UndecidedReason::NoTransferFunction),
         };

@@ -79,16 +79,17 @@ pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Opt
 }
 
 /// The most by which the torque of the whole controller is off, in N m, for positions that are off by up to
-/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`. Torques of ticks before are fed back
-/// through a coupling whose compliances add up to `V`, and add up to `M / (1 - M V)`. `None` where that does
-/// not end.
+/// 1 rad each: the steepest slope `M`, and twice the damper's `B / T`, and what is `beside` the profile.
+/// Torques of ticks before are fed back through a coupling whose compliances add up to `V`, and add up to
+/// `M / (1 - M V)`. `None` where that does not end.
 pub(super) const fn peak_gain(
     profile: &AnyProfile,
+    beside: f64,
     n: &LoopIntervals,
     compliance: f64,
 ) -> Option<f64> {
     let steepest = ExtremeSlopes::of_table(profile, n).steepest();
-    let gain = steepest.add(damper(profile, n).abs().double());
+    let gain = steepest.add(damper(profile, n).abs().double()).add(Interval::exact(beside));
     if profile.delay == 0 && !n.is_matched {
         // In front of the coupling.
         return Some(gain.hi());
@@ -140,28 +141,30 @@ pub(super) const fn profile_bound_at_port(
     profile: &AnyProfile,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    let delay = match &n.latency {
-        None => Interval::ZERO,
-        Some(lagging) => {
-            let TimeRange { least, most } = lagging.latency.output_delay;
-            if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
-                return None;
-            }
-            Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi()).div(n.period)
-        }
-    };
+    let Some(delay) = delay_at_port(n) else { return None };
     if is_motor(profile) || n.misses_updates || profile.damping != 0.0 {
         return None;
     }
     let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
     let (rise, steepest) = (slopes.rise.mul(n.period), slopes.steepest().mul(n.period));
     let late = Interval::exact(profile.delay as f64).add(delay);
-    let ripple = parted(delay).mul(steepest).mul(steepest).div(n.delta.double().double());
+    let ripple = part_of_sample(delay).mul(steepest).mul(steepest).div(n.delta.double().double());
     Some(rise.half().add(late.mul(steepest)).add(ripple))
 }
 
+/// The output delay in samples; `None` where there is more latency than that.
+pub(super) const fn delay_at_port(n: &LoopIntervals) -> Option<Interval> {
+    let Some(lagging) = &n.latency else { return Some(Interval::ZERO) };
+    let TimeRange { least, most } = lagging.latency.output_delay;
+    if !(Latency { output_delay: TimeRange::ZERO, ..lagging.latency }).is_none() {
+        return None;
+    }
+    let delay = Interval::new(Interval::decimal(least).lo(), Interval::decimal(most).hi());
+    Some(delay.div(n.period))
+}
+
 /// `eps (1 - eps)` of the part `eps` beside the whole samples of a delay.
-const fn parted(delay: Interval) -> Interval {
+pub(super) const fn part_of_sample(delay: Interval) -> Interval {
     let quarter = Interval::new(0.0, 0.25);
     let whole = delay.lo() as u32 as f64;
     let eps = delay.sub(Interval::exact(whole));

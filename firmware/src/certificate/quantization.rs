@@ -15,11 +15,12 @@
 use core::f64::consts::TAU;
 use core::fmt;
 
+use super::composed::{jump_at_face, peak_gain_beside};
 use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
 use super::rules::is_nonlinear;
 use crate::dac::DacCode;
-use crate::environment::Rational;
+use crate::environment::{Environment, Rational};
 use crate::matched::{MatchedCoupling, Trail};
 use crate::number::Format;
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -156,12 +157,18 @@ struct Peak {
 /// times a position and `V e` times the largest torque before, which for `V e < 1` adds up to
 /// `e / (1 - V e)`; where that is not so, the norm is the one in contact.
 ///
-/// A torque profile has no impulse response, and is bounded by its steepest slope alone.
+/// A torque profile has no impulse response, and is bounded by its steepest slope alone; what is beside it by
+/// the norm of its own.
 fn peak(scene: &Scene, format: Format) -> Option<Peak> {
+    let switched = scene.environment.wall().is_some_and(|w| w.one_sided && w.damping != 0.0);
     if let Some(profile) = scene.environment.profile() {
         let n = LoopIntervals::of(scene, format);
-        let norm = peak_gain(profile, &n, compliance(scene, format))?;
-        return Some(Peak { norm, in_any_motion: true });
+        let beside = match &scene.environment {
+            Environment::Composed(composed) => peak_gain_beside(composed, &n),
+            _ => 0.0,
+        };
+        let norm = peak_gain(profile, beside, &n, compliance(scene, format))?;
+        return Some(Peak { norm, in_any_motion: !switched });
     }
     let LoopTransfers { controller, environment, .. } =
         LoopTransfers::in_format(scene, format).ok()?;
@@ -171,7 +178,6 @@ fn peak(scene: &Scene, format: Format) -> Option<Peak> {
     }
     let alone = l1_norm(&environment)?;
     let fed_back = alone * compliance(scene, format);
-    let switched = scene.environment.wall().is_some_and(|w| w.one_sided && w.damping != 0.0);
     Some(if fed_back < 1.0 {
         Peak { norm: linear.max(alone / (1.0 - fed_back)), in_any_motion: !switched }
     } else {
@@ -226,6 +232,15 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
             (at_torque + 2.0 * part, at_position + angle * roundings(format, 1.0, 1.0))
         }
         None => (at_torque, at_position),
+    };
+    let at_torque = match &scene.environment {
+        // A product of the table and a sum for each part; the face of a wall that is solved in the tick
+        // moves what is beside it.
+        Environment::Composed(composed) => {
+            let n = LoopIntervals::of(scene, format);
+            at_torque + torque * roundings(format, 2.0, 3.0) + limit * jump_at_face(composed, &n)
+        }
+        _ => at_torque,
     };
     Some(peak * at_position + (1.0 + peak * compliance(scene, format)) * at_torque)
 }

@@ -328,8 +328,8 @@ const fn write_doubt(
             "no proof is known for updates that are missed where torques lag: leave out the worst period"
         }
         UndecidedReason::NoProfileBound => {
-            "no bound is known for a torque profile that no coupling separates from a damper, a lag, jitter or \
-             missed updates; couple it by a spring, or where torques lag by the matched coupling"
+            "no bound is known for a torque profile that no coupling separates from a damper, a canceller, a lag, \
+             jitter or missed updates; couple it by a spring, or where torques lag by the matched coupling"
         }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"
@@ -379,6 +379,9 @@ mod tests {
         ];
         let all = all.map(|(parameter, (lowest, highest))| Remedy { parameter, lowest, highest });
         let of_profile = Remedies::of(all);
+        let mut of_sum = all;
+        of_sum[1].parameter = Parameter::Residual;
+        let of_sum = Remedies::of(of_sum);
         // What is no profile has no number of repetitions, and may have a residual.
         let mut others = all;
         let (lowest, highest) = RANGE;
@@ -410,6 +413,8 @@ mod tests {
         let range = "1.23e-22 <= stiffness <= 1.24e-22 N m/rad";
         let shortage_of_profile =
             Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies: of_profile };
+        let shortage_of_sum =
+            Rejection::Shortage { alpha: long, delta: long, cos_theta: long, remedies: of_sum };
         let all = [
             (coupling, last),
             (shortage, last),
@@ -417,6 +422,7 @@ mod tests {
             (pole, range),
             (steep, last),
             (shortage_of_profile, last),
+            (shortage_of_sum, last),
         ];
         for (rejection, end) in all {
             let sentence = rejection.sentence_in(Format::Fixed { fraction_bits: 16 });

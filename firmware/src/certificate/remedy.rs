@@ -72,7 +72,8 @@ pub(super) const CANDIDATES: usize = 10;
 
 /// The numbers that are looked at, in the order in which they are printed. What more of a device
 /// would help is the damping where its passivity is not declared. In the place of a residual, which a torque
-/// profile does not have, is its torque.
+/// profile does not have, is its torque; in the place of a damping, where something cancels damping beside a
+/// profile, what is left of it.
 pub(super) const ORDER: [Parameter; CANDIDATES] = [
     Parameter::Stiffness,
     Parameter::Damping,
@@ -104,6 +105,7 @@ pub struct Remedies {
     ranges: [Range; CANDIDATES],
     is_damping: bool,
     is_of_profile: bool,
+    is_beside_canceller: bool,
     is_matched: bool,
 }
 
@@ -116,6 +118,7 @@ impl Remedies {
         ranges: [Range::EMPTY; CANDIDATES],
         is_damping: false,
         is_of_profile: false,
+        is_beside_canceller: false,
         is_matched: false,
     };
 
@@ -150,6 +153,7 @@ impl Remedies {
             parameter: match ORDER[i] {
                 Parameter::Passivity if self.is_damping => Parameter::DeviceDamping,
                 Parameter::Residual if self.is_of_profile => Parameter::ProfileTorque,
+                Parameter::Damping if self.is_beside_canceller => Parameter::Residual,
                 parameter => parameter,
             },
             lowest: if lowest.is_finite() { Some(lowest) } else { None },
@@ -172,6 +176,9 @@ impl Remedies {
         match parameter {
             Parameter::DeviceDamping => self.is_damping = true,
             Parameter::ProfileTorque => self.is_of_profile = true,
+            Parameter::Residual if matches!(ORDER[i], Parameter::Damping) => {
+                self.is_beside_canceller = true;
+            }
             _ => {}
         }
     }

@@ -50,6 +50,12 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
             Parameter::Residual if scene.environment.profile().is_some() => {
                 Parameter::ProfileTorque
             }
+            Parameter::Damping
+                if scene.environment.profile().is_some()
+                    && scene.environment.residual().is_some() =>
+            {
+                Parameter::Residual
+            }
             parameter => parameter,
         };
         let varied = Varied { scene, format, parameter };

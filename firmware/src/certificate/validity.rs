@@ -1,6 +1,6 @@
 //! The range in which each number of a scene makes sense at all.
 
-use crate::environment::{AnyProfile, Environment, StatedModel};
+use crate::environment::{AnyProfile, Composed, Environment, StatedModel};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
@@ -67,7 +67,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    match (first_invalid_number(scene, true), scene.environment.rational()) {
+    match (first_invalid_number(scene, true, true), scene.environment.rational()) {
         (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
             Some(value) => Some(not_finite(Parameter::Numerator, value)),
             None => match first_not_finite(rational.denominator.as_slice()) {
@@ -80,10 +80,11 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
 }
 
 /// The same without polynomials, on which no bound for a board depends. A program whose environment has no
-/// knots omits the code for those of torque profiles.
+/// knots omits the code for those of torque profiles, and so does one without sums for those of sums.
 pub(super) const fn first_invalid_number(
     scene: &Scene,
     has_knots: bool,
+    is_composed: bool,
 ) -> Option<InvalidParameter> {
     let environment = &scene.environment;
     if let Some(invalid) = first_of(scene, &scene.own_numbers(), false) {
@@ -96,7 +97,13 @@ pub(super) const fn first_invalid_number(
         (Parameter::Delay, environment.get(Parameter::Delay)),
         (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
     ];
-    first_of(scene, &whole, has_knots)
+    if let Some(invalid) = first_of(scene, &whole, has_knots) {
+        return Some(invalid);
+    }
+    match environment {
+        Environment::Composed(composed) if is_composed => sum_conflict(composed),
+        _ => None,
+    }
 }
 
 /// The first of these numbers of the scene that is out of its range or conflicts with another.
@@ -116,7 +123,7 @@ const fn first_of(
                 return Some(invalid);
             }
             if has_knots
-                && let Some(profile) = scene.environment.profile()
+                && let Some(profile) = profile_of(&scene.environment, parameter)
                 && let Some(invalid) = profile_conflict(profile, parameter, value)
             {
                 return Some(invalid);
@@ -150,6 +157,59 @@ const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<Inv
     };
     Some(InvalidParameter { parameter, value, bound, limit })
 }
+
+/// The torque profile whose number that is: of a sum with a wall, the wall has a stiffness and a damping of
+/// its own.
+const fn profile_of(environment: &Environment, parameter: Parameter) -> Option<&AnyProfile> {
+    match (environment, parameter) {
+        (
+            Environment::Composed(Composed { wall: Some(_), .. }),
+            Parameter::Stiffness | Parameter::Damping,
+        ) => None,
+        _ => environment.profile(),
+    }
+}
+
+/// A number of a sum that conflicts with what is beside it, or that has no name there.
+const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
+    let Composed { wall, profile, .. } = composed;
+    if profile.delay == 0 {
+        let bound = "at least 1 where a wall or a canceller is beside the torque profile";
+        return Some(InvalidParameter {
+            parameter: Parameter::Delay,
+            value: 0.0,
+            bound,
+            limit: None,
+        });
+    }
+    let Some(wall) = wall else { return None };
+    let Some(ends) = profile.ends else {
+        let (parameter, value) = (Parameter::Face, wall.face);
+        return Some(InvalidParameter { parameter, value, bound: BESIDE_ENDS, limit: None });
+    };
+    let hidden = [
+        (Parameter::Delay, wall.delay as f64),
+        (Parameter::Stiffness, ends.stiffness),
+        (Parameter::Damping, profile.damping),
+    ];
+    let mut i = 0;
+    while i < hidden.len() {
+        let (parameter, value) = hidden[i];
+        if !parameter.range().admits(value) {
+            let bound = requirement(parameter.range());
+            return Some(InvalidParameter { parameter, value, bound, limit: None });
+        }
+        if let Some(invalid) = profile_conflict(profile, parameter, value) {
+            return Some(invalid);
+        }
+        i += 1;
+    }
+    None
+}
+
+/// Where a profile has no ends, angles are those within a turn.
+const BESIDE_ENDS: &str = "beside a torque profile with end stops: one without them repeats in every turn, \
+                           and a wall stands in one of them";
 
 /// The same of a number of a torque profile.
 const fn profile_conflict(

@@ -1,5 +1,6 @@
 //! Any environment as data: for scenes that come from a file or over the wire.
 
+use super::composed::{Composed, ComposedLaw};
 use super::delay_line::VariableDelay;
 use super::free_mode::{FreeModeLaw, FreeModeWallLaw, canceller};
 use super::law::{Discretize, Law, LawContext};
@@ -59,6 +60,9 @@ pub enum Environment {
     Stated(StatedModel),
     /// [`Profile`](super::Profile) or [`DampedProfile`](super::DampedProfile).
     Profile(AnyProfile),
+    /// [`FreeModeProfile`](super::FreeModeProfile), [`WallAndProfile`](super::WallAndProfile) or
+    /// [`FreeModeWallAndProfile`](super::FreeModeWallAndProfile).
+    Composed(Composed),
     /// [`Rational`].
     // No board renders one, so it is not on the wire.
     #[cfg_attr(feature = "wire", serde(skip))]
@@ -71,6 +75,7 @@ impl Environment {
         match self {
             Self::DelayedSpring(wall) => Some(Wall { damping: 0.0, filter: None, ..*wall }),
             Self::DamperWall(wall) | Self::FreeModeWall { wall, .. } => Some(*wall),
+            Self::Composed(composed) => composed.wall,
             Self::FreeMode { .. } | Self::Stated(_) | Self::Profile(_) | Self::Rational(_) => None,
         }
     }
@@ -81,14 +86,16 @@ impl Environment {
             Self::DelayedSpring(wall)
             | Self::DamperWall(wall)
             | Self::FreeModeWall { wall, .. } => Some(wall),
+            Self::Composed(composed) => composed.wall.as_mut(),
             Self::FreeMode { .. } | Self::Stated(_) | Self::Profile(_) | Self::Rational(_) => None,
         }
     }
 
-    /// The torque profile, if it is one.
+    /// The torque profile, if it is one or has one.
     pub const fn profile(&self) -> Option<&AnyProfile> {
         match self {
             Self::Profile(profile) => Some(profile),
+            Self::Composed(composed) => Some(&composed.profile),
             _ => None,
         }
     }
@@ -99,6 +106,7 @@ impl Environment {
             Self::FreeMode { residual, .. } | Self::FreeModeWall { residual, .. } => {
                 Some(*residual)
             }
+            Self::Composed(composed) => composed.residual,
             _ => None,
         }
     }
@@ -114,17 +122,24 @@ impl Environment {
 
     /// Whether it is linear with neither face nor torque limit counted.
     pub const fn has_transfer(&self) -> bool {
-        !matches!(self, Self::Stated(StatedModel::Bounded { .. }) | Self::Profile(_))
+        !matches!(
+            self,
+            Self::Stated(StatedModel::Bounded { .. }) | Self::Profile(_) | Self::Composed(_)
+        )
     }
 
     /// Whether all of it is late by at least one sample, so that its torque is known a tick early:
     /// only such an environment can be rendered where a torque is latched by the next count.
     pub const fn is_late(&self) -> bool {
-        // The canceller in front of a wall is not delayed.
-        self.delay() > 0 && !matches!(self, Self::FreeModeWall { .. })
+        match self {
+            Self::Composed(composed) => composed.is_late(),
+            // The canceller in front of a wall is not delayed.
+            Self::FreeModeWall { .. } => false,
+            _ => self.delay() > 0,
+        }
     }
 
-    /// Its delay in whole samples.
+    /// Its delay in whole samples; of a sum, that of the torque profile.
     pub const fn delay(&self) -> usize {
         match self {
             Self::DelayedSpring(wall)
@@ -134,6 +149,7 @@ impl Environment {
                 *delay
             }
             Self::Profile(profile) => profile.delay,
+            Self::Composed(composed) => composed.profile.delay,
             Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
                 rational.whole_delay()
             }
@@ -150,6 +166,7 @@ impl Environment {
                 delay
             }
             Self::Profile(profile) => &mut profile.delay,
+            Self::Composed(composed) => &mut composed.profile.delay,
             Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)) => {
                 &mut rational.delay
             }
@@ -166,10 +183,10 @@ impl Wall {
 
 /// The law of any wall. It is put together from the parts of the typed walls, and so gives the
 /// same torques to the bit.
-type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
+pub(super) type AnyWallLaw<N> = WallLaw<N, AnyVelocity<N>, AnySide<N>, VariableDelay<N>>;
 
 /// The law of any torque profile.
-type AnyProfileLaw<N> = <AnyProfile as Discretize<N>>::Law;
+pub(super) type AnyProfileLaw<N> = <AnyProfile as Discretize<N>>::Law;
 
 impl<N: Number> Discretize<N> for Wall {
     type Law = AnyWallLaw<N>;
@@ -200,6 +217,8 @@ pub enum EnvironmentLaw<N: Number> {
     Rational(RationalLaw<N>),
     /// Of a torque profile.
     Profile(AnyProfileLaw<N>),
+    /// Of a sum with a torque profile.
+    Composed(ComposedLaw<N>),
 }
 
 impl<N: Number> Law<N> for EnvironmentLaw<N> {
@@ -210,6 +229,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeModeWall(law) => law.evaluate(x),
             Self::Rational(law) => law.evaluate(x),
             Self::Profile(law) => law.evaluate(x),
+            Self::Composed(law) => law.evaluate(x),
         }
     }
 
@@ -220,6 +240,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeModeWall(law) => law.update(x_e),
             Self::Rational(law) => law.update(x_e),
             Self::Profile(law) => law.update(x_e),
+            Self::Composed(law) => law.update(x_e),
         }
     }
 
@@ -230,19 +251,23 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeModeWall(law) => law.rest_at(x_e),
             Self::Rational(law) => law.rest_at(x_e),
             Self::Profile(law) => law.rest_at(x_e),
+            Self::Composed(law) => law.rest_at(x_e),
         }
     }
 
     fn turn(&mut self) -> Option<&mut Turn<N>> {
         match self {
             Self::Profile(law) => law.turn(),
+            Self::Composed(law) => law.turn(),
             _ => None,
         }
     }
 
     fn shift(&mut self, by: N) {
-        if let Self::Profile(law) = self {
-            law.shift(by);
+        match self {
+            Self::Profile(law) => law.shift(by),
+            Self::Composed(law) => law.shift(by),
+            _ => {}
         }
     }
 
@@ -253,6 +278,7 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
             Self::FreeModeWall(law) => law.slopes(),
             Self::Rational(law) => law.slopes(),
             Self::Profile(law) => law.slopes(),
+            Self::Composed(law) => law.slopes(),
         }
     }
 }
@@ -356,6 +382,7 @@ impl Environment {
             }
             Self::Rational(rational) => EnvironmentLaw::Rational(rational.law(setting)?),
             Self::Profile(profile) => EnvironmentLaw::Profile(profile.law(setting)?),
+            Self::Composed(composed) => EnvironmentLaw::Composed(composed.law(setting)?),
         })
     }
 }

@@ -105,6 +105,16 @@ impl<N: Number, const DELAY: usize> Discretize<N> for FreeMode<DELAY> {
     }
 }
 
+/// A response with the canceller's torque `free` in N m added to it.
+#[inline(always)]
+pub(super) fn beside<N: Number>(free: N, other: Response<N>) -> Response<N> {
+    match other {
+        Response::Held(torque) | Response::Line(torque) => Response::Line(free.plus(torque)),
+        Response::Wall(contact) => Response::LineAndWall(free, contact),
+        Response::LineAndWall(line, contact) => Response::LineAndWall(free.plus(line), contact),
+    }
+}
+
 /// The law of a [`FreeModeWall`]: the sum of the two.
 #[derive(Clone, Debug)]
 pub struct FreeModeWallLaw<N: Number, L> {
@@ -115,12 +125,7 @@ pub struct FreeModeWallLaw<N: Number, L> {
 impl<N: Number, L: Law<N>> Law<N> for FreeModeWallLaw<N, L> {
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
-        let free = self.canceller.torque(x);
-        match self.wall.evaluate(x) {
-            Response::Held(wall) | Response::Line(wall) => Response::Line(free.plus(wall)),
-            Response::Wall(contact) => Response::LineAndWall(free, contact),
-            Response::LineAndWall(line, contact) => Response::LineAndWall(free.plus(line), contact),
-        }
+        beside(self.canceller.torque(x), self.wall.evaluate(x))
     }
 
     #[inline(always)]

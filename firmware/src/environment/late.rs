@@ -2,7 +2,7 @@
 
 use super::{
     DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
-    OneSided, Placed, Profile, ProfileModes, Rational,
+    OneSided, Placed, Profile, ProfileModes, Rational, WallAndProfile,
 };
 use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
@@ -44,6 +44,7 @@ delayed!(@ Environment, Rational,);
 )]
 pub trait SupportsTiming<M: OutputMode> {}
 
+impl<W: Delayed, P: Delayed> Delayed for WallAndProfile<W, P> {}
 impl<E: Delayed, const WHOLE: usize, const LAGS: usize> Delayed for Matched<E, WHOLE, LAGS> {}
 
 impl<E> SupportsTiming<Simultaneous> for E {}

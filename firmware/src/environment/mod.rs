@@ -10,7 +10,8 @@
 
 /// Gives a macro all environments, each with its generic parameters, with whether it may cancel the
 /// device's damping, with what its law remembers for a coupling, and with whether it may be a torque profile:
-/// the one list of them. Each is there as [`Matched`], too.
+/// the one list of them; `composed` is one that has something beside a profile. Each is there as [`Matched`],
+/// too.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
@@ -33,8 +34,32 @@ macro_rules! for_every_environment {
             [const KNOTS: usize, const N: usize] Profile<KNOTS, N>: false, None, true;
             [const KNOTS: usize, const N: usize] DampedProfile<KNOTS, N>: false, None, true;
             [const N: usize] ProfileModes<N>: false, None, true;
+            [const KNOTS: usize, const N: usize]
+                FreeModeProfile<Profile<KNOTS, N>>: true, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                WallAndProfile<DelayedSpring<D>, Profile<KNOTS, N>>: false, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                WallAndProfile<DamperWall<D>, Profile<KNOTS, N>>: false, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                WallAndProfile<OneSided<DelayedSpring<D>>, Profile<KNOTS, N>>:
+                false, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                WallAndProfile<OneSided<DamperWall<D>>, Profile<KNOTS, N>>:
+                false, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                FreeModeWallAndProfile<DelayedSpring<D>, Profile<KNOTS, N>>:
+                true, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                FreeModeWallAndProfile<DamperWall<D>, Profile<KNOTS, N>>:
+                true, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                FreeModeWallAndProfile<OneSided<DelayedSpring<D>>, Profile<KNOTS, N>>:
+                true, None, true, composed;
+            [const KNOTS: usize, const D: usize, const N: usize]
+                FreeModeWallAndProfile<OneSided<DamperWall<D>>, Profile<KNOTS, N>>:
+                true, None, true, composed;
             [] Rational: false, None, false;
-            [] Environment: true, Any, true;
+            [] Environment: true, Any, true, composed;
         }
     };
 }
@@ -46,6 +71,7 @@ mod sealed {
 }
 
 mod any;
+mod composed;
 mod data;
 mod delay_line;
 mod free_mode;
@@ -63,6 +89,10 @@ mod wall_law;
 mod walls;
 
 pub use any::{DataLaw, Environment, EnvironmentLaw, Wall};
+pub use composed::{
+    Composed, ComposedLaw, FreeModeProfile, FreeModeWallAndProfile, WallAndProfile,
+    WallAndProfileLaw,
+};
 pub use delay_line::{DelayLine, FixedDelay, VariableDelay};
 pub use free_mode::{FreeMode, FreeModeLaw, FreeModeWall, FreeModeWallLaw};
 pub use late::{Delayed, SupportsTiming};

@@ -66,6 +66,10 @@ pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// Whether it may be a torque profile. If not, the program omits the code that certifies one.
     const HAS_KNOTS: bool;
 
+    /// Whether something may be beside its torque profile. If not, the program omits the code that certifies
+    /// such a sum.
+    const IS_COMPOSED: bool;
+
     /// What its law remembers for a coupling.
     const MEMORY: Memory;
 
@@ -78,6 +82,7 @@ impl<E: StatedEnvironment> sealed::Sealed for E {}
 impl<E: StatedEnvironment> EnvironmentModel for E {
     const CANCELS_DAMPING: bool = false;
     const HAS_KNOTS: bool = false;
+    const IS_COMPOSED: bool = false;
     const MEMORY: Memory = Memory::None;
 
     fn as_data(&self, context: &LawContext) -> Environment {
@@ -86,7 +91,12 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 }
 
 macro_rules! known_models {
-    ($([$($generics:tt)*] $environment:ty: $cancels:literal, $memory:ident, $knots:literal;)*) => {$(
+    (@) => { false };
+    (@ composed) => { true };
+    ($(
+        [$($generics:tt)*] $environment:ty:
+        $cancels:literal, $memory:ident, $knots:literal $(, $composed:ident)?;
+    )*) => {$(
         impl<const WHOLE: usize, const LAGS: usize, $($generics)*> sealed::Sealed
             for Matched<$environment, WHOLE, LAGS>
         {
@@ -97,6 +107,7 @@ macro_rules! known_models {
         {
             const CANCELS_DAMPING: bool = $cancels;
             const HAS_KNOTS: bool = $knots;
+            const IS_COMPOSED: bool = known_models!(@ $($composed)?);
             const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS };
 
             fn as_data(&self, _: &LawContext) -> Environment {
@@ -118,6 +129,7 @@ macro_rules! known_models {
         impl<$($generics)*> EnvironmentModel for $environment {
             const CANCELS_DAMPING: bool = $cancels;
             const HAS_KNOTS: bool = $knots;
+            const IS_COMPOSED: bool = known_models!(@ $($composed)?);
             const MEMORY: Memory = Memory::$memory;
 
             fn as_data(&self, _: &LawContext) -> Environment {

@@ -1,6 +1,7 @@
 //! The numbers of any environment by name.
 
 use super::any::{Environment, Wall};
+use super::composed::Composed;
 use super::profile::{AnyProfile, Ends, ModeSelection};
 use super::stated::{StatedBound, StatedModel};
 use crate::parameter::{NamedParameters, Parameter, numbers};
@@ -30,7 +31,12 @@ impl Environment {
                 Parameter::UnitZeros,
                 Self::Rational(rational) | Self::Stated(StatedModel::Linear(rational)),
             ) if is_whole => rational.unit_zeros = value as usize,
-            (Parameter::Filter, Self::DamperWall(wall) | Self::FreeModeWall { wall, .. }) => {
+            (
+                Parameter::Filter,
+                Self::DamperWall(wall)
+                | Self::FreeModeWall { wall, .. }
+                | Self::Composed(Composed { wall: Some(wall), .. }),
+            ) => {
                 wall.filter = Some(value);
             }
             (Parameter::Mode, Self::Profile(profile)) => match profile.selecting(value) {
@@ -51,27 +57,54 @@ impl Environment {
             Self::DelayedSpring(Wall { stiffness: value, .. })
             | Self::DamperWall(Wall { stiffness: value, .. })
             | Self::FreeModeWall { wall: Wall { stiffness: value, .. }, .. }
-            | Self::Profile(AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. }),
+            | Self::Profile(AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. })
+            | Self::Composed(Composed { wall: Some(Wall { stiffness: value, .. }), .. })
+            | Self::Composed(Composed {
+                wall: None,
+                profile: AnyProfile { ends: Some(Ends { stiffness: value, .. }), .. },
+                ..
+            }),
         // A spring ignores its wall's damping.
         Damping:
             Self::DamperWall(Wall { damping: value, .. })
             | Self::FreeModeWall { wall: Wall { damping: value, .. }, .. }
-            | Self::Profile(AnyProfile { damping: value, .. }),
+            | Self::Profile(AnyProfile { damping: value, .. })
+            | Self::Composed(Composed { wall: Some(Wall { damping: value, .. }), .. })
+            | Self::Composed(Composed { wall: None, profile: AnyProfile { damping: value, .. }, .. }),
         Filter:
             Self::DamperWall(Wall { filter: Some(value), .. })
-            | Self::FreeModeWall { wall: Wall { filter: Some(value), .. }, .. },
+            | Self::FreeModeWall { wall: Wall { filter: Some(value), .. }, .. }
+            | Self::Composed(Composed { wall: Some(Wall { filter: Some(value), .. }), .. }),
         Face:
             Self::DelayedSpring(Wall { face: value, .. })
             | Self::DamperWall(Wall { face: value, .. })
-            | Self::FreeModeWall { wall: Wall { face: value, .. }, .. },
-        Residual: Self::FreeMode { residual: value, .. } | Self::FreeModeWall { residual: value, .. },
+            | Self::FreeModeWall { wall: Wall { face: value, .. }, .. }
+            | Self::Composed(Composed { wall: Some(Wall { face: value, .. }), .. }),
+        Residual:
+            Self::FreeMode { residual: value, .. }
+            | Self::FreeModeWall { residual: value, .. }
+            | Self::Composed(Composed { residual: Some(value), .. }),
         StatedIndex:
             Self::Stated(StatedModel::Bounded { bound: StatedBound { index: value, .. }, .. }),
-        ProfileTorque: Self::Profile(AnyProfile { torque: value, .. }),
-        Count: Self::Profile(AnyProfile { count: value, .. }),
-        Centre: Self::Profile(AnyProfile { centre: value, .. }),
-        From: Self::Profile(AnyProfile { ends: Some(Ends { from: value, .. }), .. }),
-        To: Self::Profile(AnyProfile { ends: Some(Ends { to: value, .. }), .. }),
+        ProfileTorque:
+            Self::Profile(AnyProfile { torque: value, .. })
+            | Self::Composed(Composed { profile: AnyProfile { torque: value, .. }, .. }),
+        Count:
+            Self::Profile(AnyProfile { count: value, .. })
+            | Self::Composed(Composed { profile: AnyProfile { count: value, .. }, .. }),
+        Centre:
+            Self::Profile(AnyProfile { centre: value, .. })
+            | Self::Composed(Composed { profile: AnyProfile { centre: value, .. }, .. }),
+        From:
+            Self::Profile(AnyProfile { ends: Some(Ends { from: value, .. }), .. })
+            | Self::Composed(Composed {
+                profile: AnyProfile { ends: Some(Ends { from: value, .. }), .. }, ..
+            }),
+        To:
+            Self::Profile(AnyProfile { ends: Some(Ends { to: value, .. }), .. })
+            | Self::Composed(Composed {
+                profile: AnyProfile { ends: Some(Ends { to: value, .. }), .. }, ..
+            }),
         Mode: Self::Profile(AnyProfile { modes: Some(ModeSelection { mode: value, .. }), .. }),
         StatedGain: Self::Stated(StatedModel::Bounded { bound: StatedBound { gain: value, .. }, .. }),
     }

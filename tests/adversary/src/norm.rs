@@ -117,9 +117,10 @@ impl Errors {
                 let (a, b) = (canceller(*residual), of(wall));
                 (a.0 + b.0, a.1 + b.1)
             }
-            Environment::Rational(_) | Environment::Stated(_) | Environment::Profile(_) => {
-                return None;
-            }
+            Environment::Rational(_)
+            | Environment::Stated(_)
+            | Environment::Profile(_)
+            | Environment::Composed(_) => return None,
         };
         let angle = rounding(format, std::f64::consts::TAU + compliance * bound);
         let numbers = 4.0 * states * angle + 8.0 * rounding(format, bound);

@@ -520,7 +520,7 @@ fn scaled(scene: &Scene, knob: Knob, by: f64) -> Scene {
             // What is cancelled is scaled.
             *residual = damping - (damping - *residual) * by;
         }
-        Environment::FreeMode { .. } | Environment::Stated(_) => {}
+        Environment::FreeMode { .. } | Environment::Stated(_) | Environment::Composed(_) => {}
         Environment::DelayedSpring(wall)
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => match knob {
@@ -621,7 +621,7 @@ fn another(rng: &mut impl Rng, scene: &Scene, size: f64, format: Numbers) -> Opt
         }
         Environment::Rational(_) => other = scaled(&other, Knob::Gain, log_uniform(rng, 0.1, 1.0)),
         Environment::Profile(profile) => profile.torque *= log_uniform(rng, 0.1, 1.0),
-        Environment::Stated(_) => {}
+        Environment::Stated(_) | Environment::Composed(_) => {}
     }
     passes(&other, format.format()).then_some(other)
 }

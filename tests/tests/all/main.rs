@@ -5,6 +5,7 @@ mod actuator_response;
 mod bits;
 mod boards;
 mod closed_forms;
+mod composed;
 mod contact;
 mod continuous;
 mod decision;

@@ -180,14 +180,14 @@ struct Hand {
 }
 
 /// What a damped mass on a spring does in a time under a torque that is held.
-struct Held {
+pub(crate) struct Held {
     state: [[f64; 2]; 2],
     torque: [f64; 2],
 }
 
 impl Held {
     /// By scaling and squaring of a series.
-    fn over(time: f64, mass: f64, damping: f64, spring: f64) -> Self {
+    pub(crate) fn over(time: f64, mass: f64, damping: f64, spring: f64) -> Self {
         const HALVINGS: i32 = 24;
         let h = time / 2_f64.powi(HALVINGS);
         let a = [[0.0, 1.0, 0.0], [-spring / mass, -damping / mass, -1.0 / mass], [0.0; 3]];
@@ -220,7 +220,7 @@ impl Held {
         Self { state: [[1.0 + a, b], [c, 1.0 + d]], torque: [e, f] }
     }
 
-    fn step(&self, x: f64, v: f64, torque: f64) -> (f64, f64) {
+    pub(crate) fn step(&self, x: f64, v: f64, torque: f64) -> (f64, f64) {
         let [[a, b], [c, d]] = self.state;
         let [e, f] = self.torque;
         (a * x + b * v + e * torque, c * x + d * v + f * torque)

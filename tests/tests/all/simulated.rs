@@ -86,7 +86,10 @@ fn stays_anywhere(scene: &Scene) -> bool {
         | Environment::DamperWall(wall)
         | Environment::FreeModeWall { wall, .. } => wall.stiffness == 0.0,
         Environment::FreeMode { .. } => true,
-        Environment::Rational(_) | Environment::Stated(_) | Environment::Profile(_) => false,
+        Environment::Rational(_)
+        | Environment::Stated(_)
+        | Environment::Profile(_)
+        | Environment::Composed(_) => false,
     }
 }
 
@@ -153,7 +156,10 @@ fn a_certified_scene_is_stable_and_its_motion_ends() {
             Environment::DamperWall(_) => 1,
             Environment::FreeMode { .. } => 2,
             Environment::FreeModeWall { .. } => 3,
-            Environment::Rational(_) | Environment::Stated(_) | Environment::Profile(_) => 4,
+            Environment::Rational(_)
+            | Environment::Stated(_)
+            | Environment::Profile(_)
+            | Environment::Composed(_) => 4,
         }] += 1;
     }
     println!(

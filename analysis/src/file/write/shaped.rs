@@ -1,6 +1,6 @@
 //! `[environment]` of a torque profile: its shapes as they were read, and what is no longer theirs.
 
-use firmware::environment::{AnyProfile, Ends, Shape};
+use firmware::environment::{AnyProfile, Ends, Shape, Wall};
 
 use super::{number, quoted};
 use crate::file::key::{self, Bound, Key};
@@ -8,9 +8,15 @@ use crate::file::kind::PROFILE;
 use crate::file::profile::{Shapes, span};
 use crate::file::shape;
 
-/// A torque profile.
-pub fn profile(lines: &mut Vec<String>, profile: &AnyProfile, shapes: &Shapes) {
+/// A torque profile, with what a canceller beside it leaves of the damping.
+pub fn profile(
+    lines: &mut Vec<String>,
+    residual: Option<f64>,
+    profile: &AnyProfile,
+    shapes: &Shapes,
+) {
     lines.push(format!("type = {}\ndelay = {}", quoted(PROFILE), profile.delay));
+    number(lines, key::RESIDUAL.name(), residual);
     // By its bits: -0.0 is another number than 0.0.
     number(lines, "damping", Some(profile.damping).filter(|damping| damping.to_bits() != 0));
     let own = shapes.sampled(profile.delay).ok();
@@ -35,6 +41,21 @@ pub fn profile(lines: &mut Vec<String>, profile: &AnyProfile, shapes: &Shapes) {
         [Shape::Periodic(knots)] => self::knots(lines, knots, true),
         _ => shapes.shapes.iter().for_each(|shape| named(lines, shape)),
     }
+}
+
+/// The wall beside it: below its shapes, whose tables end that of the environment's own keys.
+pub fn wall(wall: &Wall) -> Vec<String> {
+    let Wall { stiffness, damping, filter, delay, face, one_sided } = *wall;
+    let mut lines = vec![format!("[{}]", key::WALL.path)];
+    number(&mut lines, key::WALL_STIFFNESS.name(), Some(stiffness));
+    number(&mut lines, key::WALL_DAMPING.name(), Some(damping));
+    lines.push(format!("{} = {delay}", key::WALL_DELAY.name()));
+    number(&mut lines, key::WALL_FILTER.name(), filter);
+    number(&mut lines, key::WALL_FACE.name(), Some(face));
+    if one_sided {
+        lines.push(format!("{} = true", key::WALL_ONE_SIDED.name()));
+    }
+    lines
 }
 
 fn knots(lines: &mut Vec<String>, knots: &[(f64, f64)], is_periodic: bool) {

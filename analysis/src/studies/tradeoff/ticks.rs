@@ -129,6 +129,7 @@ fn type_of(environment: &Environment) -> String {
         Environment::Profile(profile) => {
             format!("{}, {}", profile_type(profile), delay(profile.delay))
         }
+        Environment::Composed(_) => "sum with a torque profile".to_owned(),
         Environment::Rational(rational) => {
             let degree = rational.denominator.as_slice().len().saturating_sub(1);
             format!("rational of degree {}, {}", measured(&DEGREES, degree), delay(rational.delay))

@@ -297,7 +297,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     is_late: bool,
     format: Format,
 ) -> Result<Limited, Step> {
-    if first_invalid_number(scene, E::HAS_KNOTS).is_some() {
+    if first_invalid_number(scene, E::HAS_KNOTS, E::IS_COMPOSED).is_some() {
         return Err(Step::Certificate);
     }
     if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {

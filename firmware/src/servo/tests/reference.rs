@@ -114,7 +114,7 @@ impl Reference {
             Environment::FreeModeWall { residual, wall: data } => {
                 vec![free(residual, 0), wall(data)]
             }
-            Environment::Stated(_) | Environment::Profile(_) => {
+            Environment::Stated(_) | Environment::Profile(_) | Environment::Composed(_) => {
                 panic!("no law is known of it here")
             }
             Environment::Rational(data) => {

@@ -12,7 +12,8 @@ use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{
-    DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, Profile, ProfileModes, Shape,
+    Composed, DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, Profile, ProfileModes,
+    Shape,
 };
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
@@ -213,6 +214,18 @@ fn largest_profile() -> Description {
     Description { scene: Scene { environment, ..largest.scene }, ..largest }
 }
 
+/// The same with a wall and a canceller beside it.
+fn largest_sum() -> Description {
+    let largest = largest_profile();
+    let mut environment = largest.scene.environment;
+    if let Environment::Profile(profile) = environment {
+        let wall = crate::environment::Wall::spring(1.0, 8);
+        let wall = Some(crate::environment::Wall { filter: Some(0.5), ..wall });
+        environment = Environment::Composed(Composed { residual: Some(1.0), wall, profile });
+    }
+    Description { scene: Scene { environment, ..largest.scene }, ..largest }
+}
+
 fn done(id: Id) -> Said {
     ToHost::Answer { id, outcome: Outcome::Done }
 }
@@ -403,6 +416,7 @@ fn every_message_fits_its_frame() {
         }),
         ToHost::Described(largest_description()),
         ToHost::Described(largest_profile()),
+        ToHost::Described(largest_sum()),
     ] {
         assert!(postcard::to_slice(&message, &mut [0; LONGEST_TO_HOST]).is_ok(), "{message:?}");
     }

@@ -65,6 +65,7 @@ fn every_field_of_every_message_is_there_in_order() {
         ("firmware/src/wire/description.rs", "Description"),
         ("firmware/src/scene.rs", "Scene"),
         ("firmware/src/environment/any.rs", "Wall"),
+        ("firmware/src/environment/composed.rs", "Composed"),
         ("firmware/src/environment/profile/any.rs", "AnyProfile"),
         ("firmware/src/environment/profile/knots.rs", "Outline"),
         ("firmware/src/transducers.rs", "Transducers"),

@@ -44,7 +44,9 @@ fn with_delay_type<const DELAY: usize, N: Number>(job: BenchJob<'_>) -> Result<(
         },
         Environment::Rational(rational) => job.run::<_, N>(rational),
         Environment::Profile(profile) => with_table::<N>(job, &profile),
-        Environment::DelayedSpring(_) | Environment::Stated(_) => as_data::<N>(job),
+        Environment::DelayedSpring(_) | Environment::Stated(_) | Environment::Composed(_) => {
+            as_data::<N>(job)
+        }
     }
 }
 

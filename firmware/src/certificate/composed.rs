@@ -1,0 +1,67 @@
+//! The index of a sum of a torque profile, a wall and a canceller: the sum of their bounds, which hold with
+//! the torque of the sum limited at any level (theory, section 14.3).
+
+use super::model::{LoopIntervals, Washout, canceller, damper, feedthrough_of_canceller};
+use super::profile::{ExtremeSlopes, delay_at_port, part_of_sample, profile_bound_at_port};
+use crate::environment::{Composed, Wall};
+use crate::passivity::interval::Interval;
+
+/// Upper bound on the index at the device's port, without a coupling: equation 48 with the slopes of the
+/// wall's spring added. `None` where none is known: beside a canceller or a damper, and where none is for the
+/// profile alone.
+pub(super) const fn composed_bound_at_port(
+    composed: &Composed,
+    n: &LoopIntervals,
+) -> Option<Interval> {
+    let (Some(alone), Some(late)) = (profile_bound_at_port(&composed.profile, n), delay_at_port(n))
+    else {
+        return None;
+    };
+    let Some(wall) = &composed.wall else {
+        return if composed.residual.is_none() { Some(alone) } else { None };
+    };
+    if composed.residual.is_some() || wall.damping != 0.0 {
+        return None;
+    }
+    let Some(slopes) = ExtremeSlopes::of(&composed.profile, n) else { return None };
+    let spring = n.coefficient(Interval::decimal(wall.stiffness)).mul(n.period);
+    let samples = Interval::exact(wall.delay as f64 + 0.5).add(late);
+    // The ripple is that of both slopes together, less that of the profile, which is in its own bound.
+    let both = slopes.steepest().mul(n.period).double().add(spring);
+    let ripple = part_of_sample(late).mul(spring).mul(both).div(n.delta.double().double());
+    Some(alone.add(spring.mul(samples)).add(ripple))
+}
+
+/// The most by which the torque of wall and canceller is off, in N m, for positions that are off by up to
+/// 1 rad each.
+pub(super) fn peak_gain_beside(composed: &Composed, n: &LoopIntervals) -> f64 {
+    let of_washout = |washout: Washout| {
+        let decays = Interval::ONE.sub(washout.pole.abs());
+        let after = Interval::ONE.sub(washout.pole).div(decays);
+        washout.gain.div(n.period).abs().mul(Interval::ONE.add(after))
+    };
+    let of_wall = |wall: &Wall| {
+        let spring = n.coefficient(Interval::decimal(wall.stiffness)).abs();
+        spring.add(of_washout(damper(wall, n)))
+    };
+    let wall = composed.wall.as_ref().map_or(Interval::ZERO, of_wall);
+    let cancelled = composed.residual.map_or(Interval::ZERO, |_| of_washout(canceller(n)));
+    wall.add(cancelled).hi()
+}
+
+/// The most by which the gains that solve a tick differ in contact and out of it, as rounded: a face then
+/// moves the torque of what is beside the wall by that part of it.
+pub(super) fn jump_at_face(composed: &Composed, n: &LoopIntervals) -> f64 {
+    match &composed.wall {
+        Some(wall) if wall.one_sided && wall.delay == 0 => {
+            let free = match composed.residual {
+                Some(_) => feedthrough_of_canceller(n),
+                None => Interval::ZERO,
+            };
+            let spring = n.coefficient(Interval::decimal(wall.stiffness));
+            let contact = free.add(spring).add(damper(wall, n).gain.div(n.period));
+            n.solved(contact).sub(n.solved(free)).magnitude()
+        }
+        _ => 0.0,
+    }
+}

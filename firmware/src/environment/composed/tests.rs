@@ -1,0 +1,394 @@
+use fixed::types::I8F24;
+use proptest::prelude::*;
+
+use super::*;
+use crate::certificate::{
+    Certified, QuantizationBound, Resolution, TimingChecked, certify, certify_in, certify_scene,
+    scene_data, timing_checked,
+};
+use crate::encoder::{CounterWidth, RawCount};
+use crate::energy::NoAction;
+use crate::environment::{Ends, EnvironmentModel, Knots, Matched, Shape};
+use crate::number::Format;
+use crate::passivity::interval::Interval;
+use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::servo::{AtPhase, Latched, Servo, Transducers};
+
+static ENDLESS: Knots<16> = Knots::of(&[Shape::detents(24, 0.02)]);
+static KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
+
+const DAMPING: f64 = 0.022;
+const PERIOD: f64 = 0.001;
+const WALL: DamperWall<1> = DamperWall { stiffness: 5.0, damping: 0.002 };
+const LATE: DamperWall<2> = DamperWall { stiffness: 3.0, damping: 0.001 };
+const UNDELAYED: DamperWall<0> = DamperWall { stiffness: 30.0, damping: 0.002 };
+
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits32,
+    full_scale_torque: 1.0,
+    largest_speed: 100.0,
+};
+
+fn scene<E>(environment: E) -> Scene<E> {
+    Scene {
+        device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
+        timing: Timing { period: PERIOD, worst_period: None },
+        coupling: Coupling::Spring { stiffness: 44.0 },
+        environment,
+        latency: Latency::NONE,
+        torque_limit: Some(0.5),
+    }
+}
+
+fn knob<const N: usize>() -> Profile<16, N> {
+    Profile::of(&KNOB)
+}
+
+fn behind<W: Copy>(wall: W) -> OneSided<W> {
+    OneSided { face: 0.3, wall }
+}
+
+/// Whether both give the same codes at these counts.
+fn is_same<N: Number, E: EnvironmentModel + Discretize<N>>(
+    scene: Scene<E>,
+    counts: &[i32],
+) -> bool {
+    let data = certify_scene(scene_data(&scene), N::FORMAT).unwrap_or_else(|why| panic!("{why}"));
+    let typed = certify_scene(scene, N::FORMAT).unwrap();
+    let mut typed: Servo<E, N> = Servo::new(&typed, &TRANSDUCERS).unwrap();
+    let mut data: Servo<Environment, N> = Servo::new(&data, &TRANSDUCERS).unwrap();
+    counts.iter().all(|&count| {
+        let raw = RawCount::from(count.cast_unsigned());
+        typed.tick(raw) == data.tick(raw) && typed.torque_nm() == data.torque_nm()
+    })
+}
+
+fn every_type_is_its_data<N: Number>(counts: &[i32]) {
+    let endless = Profile::<16, 1>::of(&ENDLESS);
+    let residual = 0.018;
+    assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: endless }), counts));
+    assert!(is_same::<N, _>(scene(FreeModeProfile { residual, profile: knob::<2>() }), counts));
+    let spring = DelayedSpring::<3> { stiffness: 2.0 };
+    let profile = knob::<2>();
+    assert!(is_same::<N, _>(scene(WallAndProfile { wall: spring, profile }), counts));
+    assert!(is_same::<N, _>(scene(WallAndProfile { wall: behind(spring), profile }), counts));
+    assert!(is_same::<N, _>(scene(WallAndProfile { wall: WALL, profile }), counts));
+    assert!(is_same::<N, _>(scene(WallAndProfile { wall: behind(UNDELAYED), profile }), counts));
+    let matched = |environment| Scene {
+        coupling: Coupling::Matched,
+        latency: Latency { output_jitter: 1e-6, ..Latency::delayed(2e-4) },
+        ..scene(Matched::<_, 0, 0> { environment })
+    };
+    let wall = behind(UNDELAYED);
+    assert!(is_same::<N, _>(matched(FreeModeWallAndProfile { residual, wall, profile }), counts));
+    let all = |wall| scene(FreeModeWallAndProfile { residual, wall, profile });
+    assert!(is_same::<N, _>(all(behind(LATE)), counts));
+    let scene = scene(FreeModeWallAndProfile { residual, wall: spring, profile });
+    assert!(is_same::<N, _>(scene, counts));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Across faces, end stops and turns.
+    #[test]
+    fn a_type_gives_the_torques_of_its_data(
+        steps in prop::collection::vec(prop_oneof![-40..40_i32, -4_000..4_000_i32], 400),
+    ) {
+        let walk = |count: &mut i32, step: &i32| {
+            *count = (*count + step).clamp(-600_000, 600_000);
+            Some(*count)
+        };
+        let counts: Vec<i32> = steps.iter().scan(0, walk).collect();
+        every_type_is_its_data::<f64>(&counts);
+        every_type_is_its_data::<f32>(&counts);
+        every_type_is_its_data::<I8F24>(&counts);
+    }
+}
+
+/// Slope in N m/rad of the detents, `4 n F / (2 pi)`, by which they rise and fall.
+const SLOPE: f64 = 4.0 * 24.0 * 0.02 / core::f64::consts::TAU;
+
+fn bound(environment: Environment) -> Interval {
+    certify(&scene(environment)).unwrap_or_else(|why| panic!("{why}")).bound.unwrap()
+}
+
+/// Computed by hand: `K T (n - 1/2) + B` of a wall, nothing of one without delay, what is cancelled, and
+/// `T (L/2 + (n - 1) M)`, where the end stops are the steepest rise, and the detents are beside them.
+#[test]
+fn indices_add() {
+    let detents = |n: f64| PERIOD * SLOPE * (n - 0.5);
+    let stops = |n: f64| PERIOD * (2.5 + (n - 1.0) * 5.0);
+    let residual = 0.015;
+    let cancelled = DAMPING - residual;
+    let endless = Profile::<16, 2>::of(&ENDLESS);
+    let free = FreeModeProfile { residual, profile: endless };
+    let late = |k: f64, n: f64, b: f64| k * PERIOD * (n - 0.5) + b;
+    for (environment, expected) in [
+        (free.as_data(), cancelled + detents(2.0)),
+        (
+            WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
+            late(5.0, 1.0, 0.002) + stops(1.0),
+        ),
+        (
+            WallAndProfile { wall: behind(LATE), profile: knob::<1>() }.as_data(),
+            late(3.0, 2.0, 0.001) + stops(1.0),
+        ),
+        (WallAndProfile { wall: behind(UNDELAYED), profile: knob::<2>() }.as_data(), stops(2.0)),
+        (
+            FreeModeWallAndProfile { residual, wall: behind(LATE), profile: knob::<1>() }.as_data(),
+            cancelled + late(3.0, 2.0, 0.001) + stops(1.0),
+        ),
+    ] {
+        let found = bound(environment);
+        // A knot is a whole number of units.
+        assert!((found.midpoint() / expected - 1.0).abs() < 1e-3, "{found:?} {expected}");
+        assert!(found.hi() - found.lo() < 1e-9 * expected, "{found:?}");
+    }
+}
+
+/// The rule at the port: `T (L/2 + (n + e) M)` and `K T (1/2 + n + e)`, and a ripple of both slopes.
+#[test]
+fn without_a_coupling_the_springs_add() {
+    let (n, e) = (1.0, 0.3);
+    let wall = DelayedSpring::<1> { stiffness: 2.0 };
+    let environment = WallAndProfile { wall, profile: knob::<1>() };
+    let at_port =
+        |latency| Scene { coupling: Coupling::Rigid, latency, ..scene(environment.as_data()) };
+    for (latency, e) in [(Latency::NONE, 0.0), (Latency::delayed(e * PERIOD), e)] {
+        let found = certify(&at_port(latency)).unwrap_or_else(|why| panic!("{why}")).bound.unwrap();
+        let slopes: f64 = 5.0 + 2.0;
+        let expected = PERIOD * (0.5 + n + e) * slopes
+            + e * (1.0 - e) * (PERIOD * slopes).powi(2) / (4.0 * DAMPING);
+        assert!((found.midpoint() / expected - 1.0).abs() < 1e-9, "{found:?} {expected}");
+    }
+}
+
+fn refusal(environment: Environment, coupling: Coupling) -> String {
+    certify(&Scene { coupling, ..scene(environment) }).unwrap_err().sentence().as_str().to_owned()
+}
+
+#[test]
+fn what_has_no_proof_is_refused_with_a_sentence() {
+    let spring = Coupling::Spring { stiffness: 44.0 };
+    let undelayed = FreeModeProfile { residual: 0.01, profile: Profile::<16, 0>::of(&ENDLESS) };
+    assert_eq!(
+        refusal(undelayed.as_data(), spring),
+        "rejected: the delay is 0 samples, and must be at least 1 where a wall or a canceller is beside the \
+         torque profile"
+    );
+    let endless = WallAndProfile { wall: behind(WALL), profile: Profile::<16, 1>::of(&ENDLESS) };
+    assert_eq!(
+        refusal(endless.as_data(), spring),
+        "rejected: the face is 0.3 rad, and must be beside a torque profile with end stops: one without them \
+         repeats in every turn, and a wall stands in one of them"
+    );
+    let pulling =
+        WallAndProfile { wall: DamperWall::<1> { stiffness: -1.0, ..WALL }, profile: knob::<1>() };
+    assert!(
+        refusal(pulling.as_data(), spring).contains("pulls away at rest like a negative spring")
+    );
+    let rigid = "no bound is known for a torque profile that no coupling separates from a damper, a canceller,";
+    for environment in [
+        FreeModeProfile { residual: 0.015, profile: knob::<1>() }.as_data(),
+        WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
+    ] {
+        let sentence = refusal(environment, Coupling::Rigid);
+        assert!(sentence.contains(rigid), "{sentence}");
+    }
+    let mut soft = knob::<1>();
+    soft.ends = Some(Ends { from: -2.0, to: 2.0, stiffness: -1.0 });
+    let sentence = refusal(WallAndProfile { wall: WALL, profile: soft }.as_data(), spring);
+    assert!(sentence.ends_with("must be greater than 0 beyond end stops"), "{sentence}");
+}
+
+/// Each remedy is certified, and the one of a sum is of its parts by name.
+#[test]
+fn remedies_name_the_parts() {
+    let wall = DamperWall::<1> { stiffness: 20.0, damping: 0.002 };
+    let all = FreeModeWallAndProfile { residual: 0.012, wall, profile: knob::<1>() };
+    let scene = scene(all.as_data());
+    let rejection = certify(&scene).unwrap_err();
+    let remedies: Vec<_> = rejection.remedies().iter().collect();
+    for (parameter, is_there) in
+        [(Parameter::Stiffness, true), (Parameter::Residual, true), (Parameter::Damping, false)]
+    {
+        let found = remedies.iter().any(|remedy| remedy.parameter == parameter);
+        assert_eq!(found, is_there, "{parameter:?}: {rejection}");
+    }
+    for remedy in remedies {
+        for value in [remedy.lowest, remedy.highest].into_iter().flatten() {
+            let changed = scene.with(remedy.parameter, value).unwrap();
+            assert!(certify(&changed).is_ok(), "{remedy}");
+        }
+    }
+}
+
+#[test]
+fn names_are_of_the_part_that_the_documentation_says() {
+    let mut all =
+        FreeModeWallAndProfile { residual: 0.012, wall: behind(WALL), profile: knob::<1>() };
+    let data = all.as_data();
+    for (parameter, expected) in [
+        (Parameter::Stiffness, 5.0),
+        (Parameter::Damping, 0.002),
+        (Parameter::Face, 0.3),
+        (Parameter::Residual, 0.012),
+        (Parameter::ProfileTorque, 0.02),
+        (Parameter::Count, 24.0),
+        (Parameter::From, -2.0),
+    ] {
+        assert_eq!(all.value(parameter).copied(), Some(expected), "{parameter:?}");
+        assert_eq!(data.get(parameter), Some(expected), "{parameter:?}");
+        assert_eq!(data.with(parameter, 1.0).unwrap().get(parameter), Some(1.0), "{parameter:?}");
+    }
+    let free = FreeModeProfile { residual: 0.012, profile: knob::<1>() };
+    assert_eq!(free.as_data().get(Parameter::Stiffness), Some(5.0));
+}
+
+/// The gains that solve a tick are rounded; so are all other coefficients.
+#[test]
+fn every_format_has_nearly_the_same_bound() {
+    let all = FreeModeWallAndProfile { residual: 0.012, wall: behind(LATE), profile: knob::<1>() };
+    let scene = scene(all.as_data());
+    let exact = certify(&scene).unwrap().bound.unwrap();
+    for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
+        let found = certify_in(&scene, format).unwrap().bound.unwrap();
+        assert!((found.hi() / exact.hi() - 1.0).abs() < 1e-4, "{found:?} {exact:?}");
+    }
+}
+
+type KnobAndWall = Scene<WallAndProfile<OneSided<DamperWall<2>>, Profile<16, 1>>>;
+const KNOB_AND_WALL: KnobAndWall = Scene {
+    device: Device { inertia: 2.2e-5, damping: DAMPING, passivity: None },
+    timing: Timing { period: PERIOD, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: WallAndProfile {
+        wall: OneSided { face: 0.3, wall: LATE },
+        profile: Profile::of(&KNOB),
+    },
+    latency: Latency::NONE,
+    torque_limit: None,
+};
+const CERTIFIED: Certified<KnobAndWall> = KNOB_AND_WALL.certified();
+const TIMED: TimingChecked<KnobAndWall, Latched> = CERTIFIED.timing_checked::<Latched>();
+
+/// What is late throughout, by the latch; what cancels, behind the matched coupling; and a board comes to the
+/// same verdict when it starts.
+#[test]
+fn boards_render_them() {
+    assert_eq!(TIMED.scene(), &KNOB_AND_WALL);
+    let environment =
+        FreeModeWallAndProfile { residual: 0.018, wall: behind(UNDELAYED), profile: knob::<1>() };
+    let matched = Scene {
+        coupling: Coupling::Matched,
+        latency: Latency { output_jitter: 1e-6, ..Latency::delayed(2e-4) },
+        ..scene(Matched::<_, 0, 0> { environment })
+    };
+    for format in [Format::F32, Format::Fixed { fraction_bits: 24 }] {
+        assert!(timing_checked::<_, Latched>(KNOB_AND_WALL, format).is_ok(), "{format}");
+        let certified = certify_scene(matched, format).unwrap_or_else(|why| panic!("{why}"));
+        assert!(certified.time::<AtPhase<200_000>>().is_ok(), "{format}");
+        assert!(timing_checked::<_, AtPhase<200_000>>(matched, format).is_ok(), "{format}");
+        let mut more = matched;
+        more.environment.environment.residual = 0.001;
+        assert!(certify_scene(more, format).is_err(), "{format}");
+        assert!(timing_checked::<_, AtPhase<200_000>>(more, format).is_err(), "{format}");
+    }
+}
+
+/// Against the same detents between ends that are far away, where angles are not those within a turn.
+#[test]
+fn a_canceller_beside_a_profile_without_ends_feels_no_turn() {
+    static FAR: Knots<16> =
+        Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-50.0, 50.0, 5.0)]);
+    let free = |profile| scene(FreeModeProfile { residual: 0.012, profile }).certify().unwrap();
+    let servo = |profile| Servo::<_, f64>::new(&free(profile), &TRANSDUCERS).unwrap();
+    let (mut endless, mut ended) =
+        (servo(Profile::<16, 1>::of(&ENDLESS)), servo(Profile::of(&FAR)));
+    let mut largest = 0.0_f64;
+    for tick in 0..40_000 {
+        let angle = 40.0 * (f64::from(tick) * 3e-4).sin() + 0.3 * (f64::from(tick) * 0.17).sin();
+        let count = (angle * 61_440.0 / core::f64::consts::TAU) as i32;
+        let raw = RawCount::from(count.cast_unsigned());
+        endless.tick(raw);
+        ended.tick(raw);
+        let off = (endless.torque_nm() - ended.torque_nm()).abs();
+        largest = largest.max(off);
+    }
+    // A few parts of a cell, in which places in the table are counted.
+    assert!(largest < 1e-5 && endless.torque_nm() != 0.0, "{largest}");
+}
+
+/// A servo with a coarse encoder and a DAC against one that has the positions as they are.
+fn largest_error<N: Number>(scene: &Scene, counts_per_turn: f64) -> f64 {
+    let servo_of =
+        |counts_per_turn| Transducers { counts_per_turn, largest_speed: 1e4, ..TRANSDUCERS };
+    let certified = scene.certify().unwrap();
+    let mut coarse: Servo<_, N> = Servo::new(&certified, &servo_of(counts_per_turn)).unwrap();
+    let fine = 1024.0 * counts_per_turn;
+    let mut exact: Servo<_, f64> = Servo::new(&certified, &servo_of(fine)).unwrap();
+    let mut largest = 0.0_f64;
+    for tick in 0..20_000 {
+        let angle = 1.5 * (f64::from(tick) * 7e-4).sin() + 0.02 * (f64::from(tick) * 0.13).sin();
+        let count = |counts: f64| (angle * counts / core::f64::consts::TAU).round() as i32;
+        coarse.tick(RawCount::from(count(counts_per_turn).cast_unsigned()));
+        exact.tick(RawCount::from(count(fine).cast_unsigned()));
+        largest = largest.max((coarse.torque_nm() - exact.torque_nm()).abs());
+    }
+    largest
+}
+
+#[test]
+fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
+    const COUNTS: f64 = 4096.0;
+    let spring = DelayedSpring::<1> { stiffness: 8.0 };
+    let residual = 0.016;
+    for environment in [
+        FreeModeProfile { residual, profile: Profile::<16, 1>::of(&ENDLESS) }.as_data(),
+        WallAndProfile { wall: behind(spring), profile: knob::<1>() }.as_data(),
+        WallAndProfile { wall: WALL, profile: knob::<1>() }.as_data(),
+        FreeModeWallAndProfile { residual, wall: behind(spring), profile: knob::<1>() }.as_data(),
+    ] {
+        let scene = scene(environment);
+        let steps = Resolution {
+            encoder: Some(core::f64::consts::TAU / COUNTS),
+            full_scale: Some(1.0),
+            friction: None,
+        };
+        for (found, format) in [
+            (largest_error::<f32>(&scene, COUNTS), Format::F32),
+            (largest_error::<I8F24>(&scene, COUNTS), Format::Fixed { fraction_bits: 24 }),
+        ] {
+            let bound = QuantizationBound::of(&scene, format, &steps).unwrap();
+            let encoder = bound.encoder.unwrap();
+            assert!(bound.in_any_motion);
+            assert!(found <= encoder + bound.numbers + encoder / 1024.0, "{found} {bound:?}");
+            assert!(found > 0.25 * encoder, "{found} {bound:?}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_latched_code_is_that_of_the_tick_after(steps in prop::collection::vec(-3_000..3_000_i32, 200)) {
+        fn check<N: Number>(steps: &[i32]) {
+            let certified = certify_scene(KNOB_AND_WALL, N::FORMAT).unwrap();
+            let servo: Servo<_, N> = Servo::new(&certified, &TRANSDUCERS).unwrap();
+            let (mut ahead, mut then) = (servo.clone(), servo);
+            let (mut count, mut latched) = (0_i32, None);
+            for step in steps {
+                count = (count + step).clamp(-30_000, 30_000);
+                let raw = RawCount::from(count.cast_unsigned());
+                let code = then.tick(raw).code;
+                assert!(latched.is_none_or(|latched| latched == code), "{latched:?} {code:?}");
+                latched = Some(ahead.timed_tick::<Latched>(raw, &mut NoAction).code);
+            }
+        }
+        check::<f32>(&steps);
+        check::<I8F24>(&steps);
+    }
+}
