@@ -103,6 +103,8 @@ pub(super) struct Limited {
     missed: Option<Missed>,
     /// Whether torques lag.
     lags: bool,
+    /// Whether its torque jumps where a knob snaps, so that [`Limited::gain`] is that between two snaps.
+    snaps: bool,
     /// Whether it takes torques beside its own: one that is solved in front of its coupling does not.
     takes_more: bool,
 }
@@ -111,6 +113,14 @@ pub(super) struct Limited {
 const fn is_solved_in_front(environment: &Environment) -> bool {
     match environment.profile() {
         Some(profile) => profile.delay == 0,
+        None => false,
+    }
+}
+
+/// Whether it is a torque profile with a snap point.
+const fn snaps(environment: &Environment) -> bool {
+    match environment.profile() {
+        Some(profile) => profile.snap.is_some(),
         None => false,
     }
 }
@@ -149,6 +159,7 @@ impl Limited {
             delta: n.delta,
             missed: n.missed,
             lags: n.latency.is_some(),
+            snaps: E::HAS_KNOTS && snaps(&scene.environment),
             takes_more: !(E::HAS_KNOTS && is_solved_in_front(&scene.environment)),
         })
     }
@@ -171,7 +182,8 @@ impl Limited {
         let injected = Interval::exact(injected);
         let bound = self.bound.add(injected);
         // Where torques lag no loss is known to be allowed: the coupling was made for this passivity.
-        if !bound.is_below(self.limit) || self.lags {
+        // Where torques jump, no `g` bounds them.
+        if !bound.is_below(self.limit) || self.lags || self.snaps {
             return 0.0;
         }
         let (k, gain) = (self.coupling, self.gain.add(injected.double()));

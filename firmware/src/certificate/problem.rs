@@ -122,6 +122,9 @@ impl PassivityProblem {
         }
         let stated = if scene.environment.has_transfer() { None } else { bound };
         let no_transfer = match &scene.environment {
+            Environment::Profile(profile) if profile.snap.is_some() => {
+                Some(UndecidedReason::NoSnapBound)
+            }
             Environment::Profile(_) => Some(UndecidedReason::NoProfileBound),
             environment if environment.has_transfer() => None,
             _ => Some(UndecidedReason::NoTransferFunction),

@@ -57,7 +57,8 @@ pub enum Environment {
     },
     /// One of another crate.
     Stated(StatedModel),
-    /// [`Profile`](super::Profile) or [`DampedProfile`](super::DampedProfile).
+    /// [`Profile`](super::Profile), [`DampedProfile`](super::DampedProfile) or
+    /// [`SnapProfile`](super::SnapProfile).
     Profile(AnyProfile),
     /// [`Rational`].
     // No board renders one, so it is not on the wire.
@@ -246,6 +247,13 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
         }
     }
 
+    fn hysteresis(&self) -> f64 {
+        match self {
+            Self::Profile(law) => law.hysteresis(),
+            _ => f64::INFINITY,
+        }
+    }
+
     fn slopes(&self) -> Slopes {
         match self {
             Self::Wall(law) => law.slopes(),
@@ -286,6 +294,10 @@ impl<N: Number> Law<N> for DataLaw<N> {
 
     fn shift(&mut self, by: N) {
         self.law.shift(by);
+    }
+
+    fn hysteresis(&self) -> f64 {
+        self.law.hysteresis()
     }
 
     fn slopes(&self) -> Slopes {

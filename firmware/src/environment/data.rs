@@ -48,6 +48,13 @@ impl<const KNOTS: usize, const N: usize> DampedProfile<KNOTS, N> {
     }
 }
 
+impl<const KNOTS: usize, const N: usize> SnapProfile<KNOTS, N> {
+    /// As data.
+    pub const fn as_data(&self) -> Environment {
+        Environment::Profile(self.as_any())
+    }
+}
+
 impl Rational {
     /// As data.
     pub const fn as_data(&self) -> Environment {

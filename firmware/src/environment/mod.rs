@@ -32,6 +32,7 @@ macro_rules! for_every_environment {
             [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None, false;
             [const KNOTS: usize, const N: usize] Profile<KNOTS, N>: false, None, true;
             [const KNOTS: usize, const N: usize] DampedProfile<KNOTS, N>: false, None, true;
+            [const KNOTS: usize, const N: usize] SnapProfile<KNOTS, N>: false, None, true;
             [] Rational: false, None, false;
             [] Environment: true, Any, true;
         }
@@ -69,8 +70,9 @@ pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
 pub use profile::{
-    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KnotTable, Knots, Layout, MODES, Mode,
-    Outline, Profile, ProfileLaw, Shape, ShapeError,
+    AnyProfile, AnySnap, Cell, DampedProfile, Ends, FULL_SCALE, Holding, KnotTable, Knots, Layout,
+    MODES, Mode, NoSnap, Outline, Profile, ProfileLaw, Shape, ShapeError, Snap, SnapPoint,
+    SnapProfile,
 };
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};

@@ -168,26 +168,26 @@ impl Case {
 
 /// An undamped hand, and how the device starts in it.
 #[derive(Debug)]
-struct Hand {
+pub(super) struct Hand {
     /// Of hand and device in kg m^2.
-    mass: f64,
+    pub mass: f64,
     /// Angle in rad of its swing on the hand's spring in a tick; 0: free.
-    swing: f64,
+    pub swing: f64,
     /// Where the hand's spring is at rest, in rad.
-    grip: f64,
+    pub grip: f64,
     /// Angle in rad and speed in rad/s.
-    start: (f64, f64),
+    pub start: (f64, f64),
 }
 
 /// What a damped mass on a spring does in a time under a torque that is held.
-struct Held {
+pub(super) struct Held {
     state: [[f64; 2]; 2],
     torque: [f64; 2],
 }
 
 impl Held {
     /// By scaling and squaring of a series.
-    fn over(time: f64, mass: f64, damping: f64, spring: f64) -> Self {
+    pub fn over(time: f64, mass: f64, damping: f64, spring: f64) -> Self {
         const HALVINGS: i32 = 24;
         let h = time / 2_f64.powi(HALVINGS);
         let a = [[0.0, 1.0, 0.0], [-spring / mass, -damping / mass, -1.0 / mass], [0.0; 3]];
@@ -220,7 +220,7 @@ impl Held {
         Self { state: [[1.0 + a, b], [c, 1.0 + d]], torque: [e, f] }
     }
 
-    fn step(&self, x: f64, v: f64, torque: f64) -> (f64, f64) {
+    pub fn step(&self, x: f64, v: f64, torque: f64) -> (f64, f64) {
         let [[a, b], [c, d]] = self.state;
         let [e, f] = self.torque;
         (a * x + b * v + e * torque, c * x + d * v + f * torque)

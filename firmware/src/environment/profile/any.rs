@@ -5,8 +5,9 @@ use super::law::ProfileLaw;
 use super::scale::Scale;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
+use super::snap::{AnySnap, NoSnap, Snap, SnapPoint};
 use super::sum::{Ends, Layout, sampled};
-use super::{DampedProfile, Profile};
+use super::{DampedProfile, Profile, SnapProfile};
 use crate::build_error::BuildError;
 use crate::environment::delay_line::VariableDelay;
 use crate::environment::law::{Discretize, LawContext};
@@ -34,6 +35,8 @@ pub struct AnyProfile {
     pub damping: f64,
     /// Delay in whole samples.
     pub delay: usize,
+    /// Detents with a snap point beside it.
+    pub snap: Option<SnapPoint>,
 }
 
 impl AnyProfile {
@@ -59,8 +62,8 @@ impl AnyProfile {
         damping: f64,
         delay: usize,
     ) -> Self {
-        let Layout { torque, count, centre, ends } = layout;
-        Self { units, outline, torque, count, centre, ends, damping, delay }
+        let Layout { torque, count, centre, ends, snap } = layout;
+        Self { units, outline, torque, count, centre, ends, damping, delay, snap }
     }
 
     /// The numbers by which its law multiplies.
@@ -80,7 +83,8 @@ impl AnyProfile {
 
     /// Where its table is.
     pub const fn layout(&self) -> Layout {
-        Layout { torque: self.torque, count: self.count, centre: self.centre, ends: self.ends }
+        let Self { torque, count, centre, ends, snap, .. } = *self;
+        Layout { torque, count, centre, ends, snap }
     }
 
     /// The knots in parts of its torque, [`FULL_SCALE`](super::FULL_SCALE) for all of it; none where it came over the wire.
@@ -104,8 +108,15 @@ impl<const KNOTS: usize, const DELAY: usize> DampedProfile<KNOTS, DELAY> {
     }
 }
 
+impl<const KNOTS: usize, const DELAY: usize> SnapProfile<KNOTS, DELAY> {
+    /// The profile as such data.
+    pub const fn as_any(&self) -> AnyProfile {
+        AnyProfile { snap: Some(self.snap), ..self.profile.as_any() }
+    }
+}
+
 impl<N: Number> Discretize<N> for AnyProfile {
-    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>>;
+    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>, AnySnap<N>>;
 
     fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
         if self.units.len() != self.outline.knots as usize || !self.units.len().is_power_of_two() {
@@ -117,6 +128,13 @@ impl<N: Number> Discretize<N> for AnyProfile {
             AnyVelocity::Difference(Difference::new(self.damping, context.period)?)
         };
         let delay = VariableDelay::at_rest(self.delay)?;
-        ProfileLaw::new(self.units, &self.outline, &self.layout(), velocity, delay)
+        let (layout, knots) = (self.layout(), self.outline.knots);
+        let snap = |origin| {
+            Ok(match &self.snap {
+                None => AnySnap::None(NoSnap),
+                Some(snap) => AnySnap::Snap(Snap::new(snap, &layout, knots, origin)?),
+            })
+        };
+        ProfileLaw::new(self.units, &self.outline, &layout, velocity, delay, snap)
     }
 }

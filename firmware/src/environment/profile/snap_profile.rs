@@ -1,0 +1,61 @@
+//! A torque profile with snap points.
+
+use super::Profile;
+use super::knots::{Cell, Knots};
+use super::law::ProfileLaw;
+use super::snap::{Snap, SnapPoint};
+use super::sum::Layout;
+use crate::build_error::BuildError;
+use crate::environment::delay_line::FixedDelay;
+use crate::environment::law::{Discretize, LawContext};
+use crate::environment::velocity::NoDamping;
+use crate::number::Number;
+use crate::parameter::{NamedParameters, Parameter};
+
+/// A [`Profile`] whose detents hold the knob up to a snap point: see [`Shape::snap`](super::Shape::snap).
+///
+/// Certified where it is late by at most one sample, behind a coupling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SnapProfile<const KNOTS: usize, const DELAY: usize> {
+    /// The table.
+    pub profile: Profile<KNOTS, DELAY>,
+    /// The detents that are added to it, in proportion to the table.
+    pub snap: SnapPoint,
+}
+
+impl<const KNOTS: usize, const DELAY: usize> SnapProfile<KNOTS, DELAY> {
+    /// The profile of a table, as it was built.
+    ///
+    /// # Panics
+    /// Where none of its shapes has a snap point: in a constant that is a compile error.
+    #[track_caller]
+    pub const fn of(knots: &'static Knots<KNOTS>) -> Self {
+        match knots.layout().snap {
+            Some(snap) => Self { profile: Profile::without_snap(knots), snap },
+            None => panic!("no detents have a snap point: use `Profile::of`"),
+        }
+    }
+
+    const fn layout(&self) -> Layout {
+        Layout { snap: Some(self.snap), ..self.profile.layout() }
+    }
+}
+
+impl<const KNOTS: usize, const DELAY: usize> NamedParameters for SnapProfile<KNOTS, DELAY> {
+    fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
+        self.profile.value(parameter)
+    }
+}
+
+impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N>
+    for SnapProfile<KNOTS, DELAY>
+{
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], NoDamping, FixedDelay<N, DELAY>, Snap<N>>;
+
+    fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
+        let Profile { knots, .. } = self.profile;
+        let (layout, outline) = (self.layout(), knots.outline());
+        let snap = |origin| Snap::new(&self.snap, &layout, outline.knots, origin);
+        ProfileLaw::new(knots.cells(), &outline, &layout, NoDamping, FixedDelay::at_rest(), snap)
+    }
+}
