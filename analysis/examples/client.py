@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 4
+PROTOCOL = 5
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",

@@ -140,4 +140,6 @@ impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N>
 }
 
 #[cfg(test)]
+mod snap_tests;
+#[cfg(test)]
 mod tests;

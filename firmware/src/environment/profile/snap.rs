@@ -200,7 +200,7 @@ impl<N: Number> Snap<N> {
     fn snap(&mut self, away: i32) {
         cold_path();
         // Never past the middle between two, where a snap would add energy.
-        self.hold(self.branch.saturating_add(self.lattice.pitches(away, HALF - HALF / 1024)));
+        self.hold(self.branch.saturating_add(self.lattice.pitches(away, HALF - HALF / 8192)));
     }
 }
 

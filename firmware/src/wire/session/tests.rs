@@ -11,7 +11,7 @@ use super::*;
 use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{DamperWall, Ends, Knots, OneSided, Profile, Shape};
+use crate::environment::{DamperWall, Ends, Knots, OneSided, Shape, SnapProfile};
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
 use crate::servo::{Latched, RenderingOptions, Step, Transducers};
@@ -201,8 +201,8 @@ fn largest_description() -> Description {
 
 /// The same of a torque profile.
 fn largest_profile() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
-    let mut profile = Profile::<1024, 8>::of(&KNOTS).damped(1.0);
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    let mut profile = SnapProfile::<1024, 8>::of(&KNOTS);
     profile.profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
     let largest = largest_description();
     Description { scene: Scene { environment: profile.as_data(), ..largest.scene }, ..largest }
