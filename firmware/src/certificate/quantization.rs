@@ -154,7 +154,7 @@ impl fmt::Display for QuantizationBound {
 
 /// Angle in rad from where a scene snaps to where it snaps back; `None` where it does not. Positions that
 /// are off by less than half of it move each snap to where it loses less energy, and none to where it would
-/// add some.
+/// add some (equation 50).
 fn hysteresis(scene: &Scene) -> Option<f64> {
     let profile = scene.environment.profile()?;
     Some(profile.snap?.hysteresis(&profile.layout()))

@@ -332,9 +332,12 @@ fn no_sequence_of_positions_takes_more_energy_than_the_index_says() {
         let rounding = 2.0 * knob.torque_of_part() * least.travel;
         assert!(least.sum >= -rounding, "{least:?}, {rounding}: {knob:?} at {angles:?}");
         if knob.delay == 1 {
-            let (less, _) = least_energy(&knob, &start, 0.9 * index, &mut random);
-            (shown, all) =
-                (shown + usize::from(less.is_some_and(|less| less.relative() < -1e-3)), all + 1);
+            let is_shown = (0..8).any(|_| {
+                let widths = [0.01, 0.1, 0.3];
+                let (less, _) = least_energy(&knob, &start, 0.9 * index, &widths, &mut random);
+                less.is_some_and(|less| less.relative() < -1e-3)
+            });
+            (shown, all) = (shown + usize::from(is_shown), all + 1);
         }
     }
     assert!(10 * found >= 9 * runs, "{found} of {runs}");

@@ -4,7 +4,7 @@
 //! The torque is that of the table and the line of the branch `b` that holds the knob,
 //! `f_b(x) = f(x) + k (x - c_b)`, which reaches the torque of the detents `snap` pitches from its centre
 //! `c_b`. The branch changes after a tick, by the position `x_E` of that tick: with `snap` above one half
-//! that takes energy away and adds none (theory, section 14.5).
+//! that takes energy away and adds none (theory, section 14.5, equation 49).
 
 use core::f64::consts::TAU;
 use core::hint::cold_path;
