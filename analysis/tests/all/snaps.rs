@@ -92,7 +92,7 @@ fn a_snap_point_that_makes_no_sense_is_named() {
     let second = SNAP.replace("delay = 1\n", "");
     refused(
         &format!("{SNAP}{second}"),
-        20,
+        21,
         &["`environment.shape[1]`", "second shape with `snap`"],
     );
     let stops = format!("{STOPS}snap = 1.1\n");
