@@ -182,9 +182,11 @@ impl Limited {
         let injected = Interval::exact(injected);
         let bound = self.bound.add(injected);
         // Where torques lag no loss is known to be allowed: the coupling was made for this passivity.
-        // Where torques jump, no `g` bounds them.
-        if !bound.is_below(self.limit) || self.lags || self.snaps {
+        if !bound.is_below(self.limit) || self.lags {
             return 0.0;
+        }
+        if self.snaps {
+            return self.margin_between_branches();
         }
         let (k, gain) = (self.coupling, self.gain.add(injected.double()));
         // V g, for V = T / (2 k).
@@ -197,6 +199,14 @@ impl Limited {
         };
         // Each end was rounded, and then their sum.
         (margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo())
+    }
+
+    /// The margin where torques jump, and no `g` bounds them: down to `k` alone.
+    const fn margin_between_branches(&self) -> f64 {
+        match &self.missed {
+            None => self.delta.sub(self.coupling).lo().max(0.0),
+            Some(_) => 0.0,
+        }
     }
 }
 
