@@ -238,38 +238,73 @@ fn certified<'a>(knob: &'a Knob, damping: f64) -> (Firmware<'a, impl Law<f64> + 
     (Firmware { knob, compliance: PERIOD / (2.0 * damping), law }, bound)
 }
 
-/// What a few repetitions of a sequence come to.
+/// Angles of the device in rad that repeat, each time so many rad further on.
+#[derive(Clone, Debug)]
+struct Path {
+    angles: Vec<f64>,
+    on: f64,
+}
+
+impl Path {
+    /// Back and forth, now and then in steps of many detents.
+    fn there_and_back(knob: &Knob, width: f64, random: &mut ChaCha8Rng) -> Self {
+        let [from, to] =
+            knob.ends.map_or([-2.0 * knob.pitch(), 2.0 * knob.pitch()], |[from, to, _]| [from, to]);
+        let middle = random.random_range(from..to);
+        let length = random.random_range(2..7);
+        let angles = (0..length).map(|_| middle + random.random_range(-1.0..1.0) * width).collect();
+        Self { angles, on: 0.0 }
+    }
+
+    /// On and on by a repetition of the base.
+    fn turning(knob: &Knob, random: &mut ChaCha8Rng) -> Self {
+        let sign = if random.random_bool(0.5) { 1.0 } else { -1.0 };
+        let on = sign * std::f64::consts::TAU / f64::from(knob.count);
+        // In small steps, too, which cost little: a motor would show.
+        let length = if random.random_bool(0.5) { 4..60 } else { 200..600 };
+        let length = random.random_range(length);
+        let start = random.random_range(-1.0..1.0) * on;
+        let angles = (0..length).map(|i| start + on * f64::from(i) / f64::from(length)).collect();
+        Self { angles, on }
+    }
+}
+
+/// What a few repetitions of a path come to.
 #[derive(Clone, Copy, Debug)]
 struct Energy {
     /// Sum of `F d + alpha d^2/T` in J.
     sum: f64,
     /// Its largest part.
     largest: f64,
-    /// Sum of all steps in rad.
+    /// Sum of all steps in rad, of the device and of the environment: where these are nearly the same, a
+    /// torque that is off moves the environment.
     travel: f64,
 }
 
 impl Energy {
-    /// Of some repetitions of these angles of the device, after some others; `None` where the environment does
-    /// not come back to where it was.
-    fn of(knob: &mut impl Tick, angles: &[f64], index: f64) -> Option<Self> {
-        let mut before = angles[0];
-        let mut run = || {
+    /// Of some repetitions, after some others; `None` where the environment is not as far on as the device.
+    fn of(knob: &mut impl Tick, path: &Path, index: f64) -> Option<Self> {
+        const REPETITIONS: i32 = 4;
+        let (mut before, mut device) = (path.angles[0], path.angles[0]);
+        let mut run = |from: i32| {
             let mut out = Self { sum: 0.0, largest: 1e-12, travel: 0.0 };
-            for &angle in angles.iter().cycle().take(4 * angles.len()) {
-                let (torque, inside) = knob.tick(angle);
-                let d = inside - before;
-                out.sum += torque * d + index / PERIOD * d * d;
-                out.largest = out.largest.max((torque * d).abs());
-                out.travel += d.abs();
-                before = inside;
+            for repetition in from..from + REPETITIONS {
+                for angle in &path.angles {
+                    let angle = angle + f64::from(repetition) * path.on;
+                    let (torque, inside) = knob.tick(angle);
+                    let d = inside - before;
+                    out.sum += torque * d + index / PERIOD * d * d;
+                    out.largest = out.largest.max((torque * d).abs());
+                    out.travel += d.abs() + (angle - device).abs();
+                    (before, device) = (inside, angle);
+                }
             }
-            (out, before)
+            (out, before - f64::from(from + REPETITIONS) * path.on)
         };
-        let ((_, from), (found, to), (again, _)) = (run(), run(), run());
-        let repeats =
-            (to - from).abs() < 1e-9 && (found.sum - again.sum).abs() < 1e-6 * found.largest;
-        repeats.then_some(found)
+        let ((_, from), (found, to), (again, _)) = (run(0), run(REPETITIONS), run(2 * REPETITIONS));
+        let is_periodic = (to - from).abs() < 1e-6 * (from.abs() + path.on.abs())
+            && (found.sum - again.sum).abs() < 1e-3 * found.largest;
+        is_periodic.then_some(found)
     }
 
     fn relative(&self) -> f64 {
@@ -277,33 +312,27 @@ impl Energy {
     }
 }
 
-/// Angles of the device, some of them far away, that take the least energy that a search by chance finds.
+/// The least energy that a search by chance finds from a path, and where.
 fn least_energy<T: Tick>(
-    knob: &Knob,
     start: &dyn Fn() -> T,
+    path: Path,
+    width: f64,
     index: f64,
-    widths: &[f64],
     random: &mut ChaCha8Rng,
-) -> (Option<Energy>, Vec<f64>) {
-    let [from, to] =
-        knob.ends.map_or([-2.0 * knob.pitch(), 2.0 * knob.pitch()], |[from, to, _]| [from, to]);
-    let middle = random.random_range(from..to);
-    let width = widths[random.random_range(0..widths.len())] * knob.pitch();
-    let length = random.random_range(2..7);
-    let mut angles: Vec<f64> =
-        (0..length).map(|_| middle + random.random_range(-1.0..1.0) * width).collect();
-    let mut least = Energy::of(&mut start(), &angles, index);
+) -> (Option<Energy>, Path) {
+    let mut best = path;
+    let mut least = Energy::of(&mut start(), &best, index);
     for attempt in 0..ATTEMPTS {
-        let mut other = angles.clone();
+        let mut other = best.clone();
         let by = width * 0.97_f64.powi(attempt) * random.random_range(-1.0..1.0);
-        let place = random.random_range(0..length);
-        other[place] += by;
+        let place = random.random_range(0..other.angles.len());
+        other.angles[place] += by;
         let Some(found) = Energy::of(&mut start(), &other, index) else { continue };
         if least.is_none_or(|least| found.relative() < least.relative()) {
-            (least, angles) = (Some(found), other);
+            (least, best) = (Some(found), other);
         }
     }
-    (least, angles)
+    (least, best)
 }
 
 fn runs(ordinary: usize) -> usize {
@@ -325,16 +354,23 @@ fn no_sequence_of_positions_takes_more_energy_than_the_index_says() {
         let damping = damping(&knob, &mut random);
         let index = certified(&knob, damping).1;
         let start = || certified(&knob, damping).0;
-        let (least, angles) =
-            least_energy(&knob, &start, index, &[0.3, 1.0, 3.0, 30.0], &mut random);
+        let is_turning = knob.ends.is_none() && random.random_bool(0.5);
+        let (path, width) = if is_turning {
+            (Path::turning(&knob, &mut random), 0.3 * knob.pitch())
+        } else {
+            let width = [0.3, 1.0, 3.0, 30.0][random.random_range(0..4)] * knob.pitch();
+            (Path::there_and_back(&knob, width, &mut random), width)
+        };
+        let (least, path) = least_energy(&start, path, width, index, &mut random);
         let Some(least) = least else { continue };
         found += 1;
         let rounding = 2.0 * knob.torque_of_part() * least.travel;
-        assert!(least.sum >= -rounding, "{least:?}, {rounding}: {knob:?} at {angles:?}");
+        assert!(least.sum >= -rounding, "{least:?}, {rounding}: {knob:?} at {path:?}");
         if knob.delay == 1 {
             let is_shown = (0..8).any(|_| {
-                let widths = [0.01, 0.1, 0.3];
-                let (less, _) = least_energy(&knob, &start, 0.9 * index, &widths, &mut random);
+                let width = [0.01, 0.1, 0.3][random.random_range(0..3)] * knob.pitch();
+                let path = Path::there_and_back(&knob, width, &mut random);
+                let (less, _) = least_energy(&start, path, width, 0.9 * index, &mut random);
                 less.is_some_and(|less| less.relative() < -1e-3)
             });
             (shown, all) = (shown + usize::from(is_shown), all + 1);

@@ -15,6 +15,32 @@ use crate::parameter::{NamedParameters, Parameter};
 /// A [`Profile`] whose detents hold the knob up to a snap point: see [`Shape::snap`](super::Shape::snap).
 ///
 /// Certified where it is late by at most one sample, behind a coupling.
+///
+/// ```
+/// use firmware::environment::{Knots, Shape, SnapProfile};
+/// use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+///
+/// static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05).snap(1.1)]);
+/// const SCENE: Scene<SnapProfile<16, 1>> = Scene {
+///     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+///     timing: Timing { period: 0.001, worst_period: None },
+///     coupling: Coupling::Spring { stiffness: 44.0 },
+///     environment: SnapProfile::of(&KNOTS),
+///     latency: Latency::NONE,
+///     torque_limit: Some(1.0),
+/// };
+/// assert!(SCENE.certify().is_ok());
+/// ```
+///
+/// A [`Profile`] has no snap point:
+///
+/// ```compile_fail
+/// use firmware::environment::{Knots, Profile, Shape};
+///
+/// static KNOTS: Knots<16> = Knots::of(&[Shape::detents(24, 0.05).snap(1.1)]);
+/// const PROFILE: Profile<16, 1> = Profile::of(&KNOTS);
+/// assert_eq!(PROFILE.count, 24.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SnapProfile<const KNOTS: usize, const DELAY: usize> {
     /// The table.
