@@ -46,6 +46,7 @@ pub mod profile_curve;
 pub mod response;
 pub mod run_csv;
 pub mod simulation;
+pub mod snap_branches;
 pub mod stability;
 pub mod stability_map;
 pub mod trace;

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use firmware::coupling::Response;
-use firmware::environment::{AnyProfile, Discretize, Ends, FULL_SCALE, Law};
+use firmware::environment::{AnyProfile, Ends, FULL_SCALE};
 use firmware::scene::Scene;
 
 use crate::design::{Answer, Choice, Quantity, Terms, largest};
+use crate::snap_branches::{self, Branch, held, slope};
 
 /// Points of a curve.
 const POINTS: usize = 4000;
@@ -43,6 +43,8 @@ pub struct ProfileCurve {
     /// The steepest rise in N m/rad with which the scene certifies, all torques in proportion, or the end
     /// stops where these are steepest; `None` where there is none.
     pub certified: Option<f64>,
+    /// The branches of a profile with a snap point, of which `points` has those of the nearest detents.
+    pub branches: Vec<Branch>,
 }
 
 impl ProfileCurve {
@@ -67,8 +69,26 @@ impl ProfileCurve {
         }
         let least = points.iter().map(|point| point[2]).fold(f64::INFINITY, f64::min);
         points.iter_mut().for_each(|point| point[2] -= least);
-        let [rise, fall] = steepest(profile, shown, &torque);
-        Some(Self { points, rise, fall, certified: certified_rise(scene, profile, rise.slope) })
+        let line = profile.snap.map_or(0.0, |snap| slope(&snap, profile));
+        let mut table = *profile;
+        table.snap = None;
+        let table = undelayed(scene, &table)?;
+        let mut pieces = steepest(profile, &shown, &table);
+        let certified =
+            certified_rise(scene, profile, pieces[0].slope, line).map(|slope| slope + line);
+        for piece in &mut pieces {
+            // The line of a branch is beside all of them; where the table is level there is nothing else.
+            if let (Some(snap), true) = (profile.snap, piece.slope == 0.0) {
+                (piece.angle, piece.width) = snap_branches::next_to(piece.angle, &snap, profile);
+            }
+            *piece = Piece { slope: piece.slope + line, torque: torque(piece.angle), ..*piece };
+        }
+        let [rise, mut fall] = pieces;
+        if fall.slope > 0.0 {
+            (fall.slope, fall.width) = (0.0, 0.0);
+        }
+        let branches = snap_branches::of(scene, profile, &shown);
+        Some(Self { points, rise, fall, certified, branches })
     }
 }
 
@@ -86,15 +106,10 @@ fn shown(profile: &AnyProfile) -> Range<f64> {
     }
 }
 
-/// The torque in N m at an angle in rad, neither late nor damped, by the law that runs.
-fn undelayed(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64) -> f64> {
-    let mut still = *profile;
-    (still.delay, still.damping) = (0, 0.0);
-    let law = Discretize::<f64>::law(&still, &scene.context()).ok()?;
-    Some(move |angle: f64| match law.evaluate(angle) {
-        Response::Held(torque) => torque,
-        _ => f64::NAN,
-    })
+/// The torque in N m at an angle in rad, in the nearest detent where there are several branches.
+fn undelayed(scene: &Scene, profile: &AnyProfile) -> Option<impl Fn(f64) -> f64 + use<>> {
+    let torque = held(scene, profile)?;
+    Some(move |angle: f64| torque(angle, angle))
 }
 
 /// The steepest pieces, up and down, next to the middle of what is shown.
@@ -153,7 +168,9 @@ fn steepest(profile: &AnyProfile, shown: &Range<f64>, torque: impl Fn(f64) -> f6
 /// The design's answer with everything else as it is.
 const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
 
-fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64) -> Option<f64> {
+/// Of the table and its end stops, beside the line to a snap point: that grows with the torque, and stays as
+/// it is where the end stops grow.
+fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64, line: f64) -> Option<f64> {
     let is_of_stops = profile.ends.is_some_and(|ends| ends.stiffness == rise);
     // A wall beside the profile has the name of that stiffness.
     if is_of_stops && scene.environment.wall().is_none() {
@@ -163,7 +180,7 @@ fn certified_rise(scene: &Scene, profile: &AnyProfile, rise: f64) -> Option<f64>
         };
     }
     match largest(scene, Quantity::Torque, &AS_IT_IS) {
-        Answer::Limit(torque, _) => Some(rise * torque / profile.torque),
+        Answer::Limit(torque, _) => Some((rise + line) * torque / profile.torque - line),
         _ => None,
     }
 }

@@ -63,6 +63,13 @@ pub enum BuildError {
         /// The most that it may have.
         largest: f64,
     },
+    /// The knob would snap there and back within a count of the encoder.
+    Hysteresis {
+        /// Angle in rad from where it snaps to where it snaps back.
+        hysteresis: f64,
+        /// Angle of a count in rad.
+        count: f64,
+    },
     /// The environment is known by its bounds alone, and its law is in another crate.
     LawElsewhere,
     /// A numerator of higher degree than its denominator, or a denominator that is zero.
@@ -193,6 +200,13 @@ impl BuildError {
                 );
                 t.push_number(*largest);
                 t.push(": give it end stops, or count at the shaft that it is on");
+            }
+            Self::Hysteresis { hysteresis, count } => {
+                t.push("from a snap point the knob goes back ");
+                t.push_number(*hysteresis);
+                t.push(" rad to snap back, and that must be more than an encoder count of ");
+                t.push_number(*count);
+                t.push(" rad: put the snap point farther from the centre, or take fewer detents");
             }
             Self::LawElsewhere => {
                 t.push(

@@ -8,6 +8,7 @@ use super::dash::Dash;
 use super::*;
 use crate::profile_curve::{Piece, ProfileCurve};
 use crate::quantity::significant;
+use crate::snap_branches::Branch;
 
 /// Heights of the two panels in pixels.
 const PANELS: [i32; 2] = [330, 220];
@@ -43,7 +44,8 @@ fn angles(curve: &ProfileCurve) -> Range<f64> {
 
 fn torque(area: &Area<'_>, curve: &ProfileCurve, limit: Option<f64>) -> Drawn<()> {
     let x = angles(curve);
-    let own = span(curve.points.iter().map(|point| point[1]));
+    let of_branches = curve.branches.iter().flat_map(|branch| &branch.points);
+    let own = span(curve.points.iter().map(|p| p[1]).chain(of_branches.map(|p| p[1])));
     let y = padded(own.clone(), 0.12);
     let mut chart =
         axes::chart(area).margin_right(MARGIN_RIGHT).build_cartesian_2d(x.clone(), y.clone())?;
@@ -56,7 +58,17 @@ fn torque(area: &Area<'_>, curve: &ProfileCurve, limit: Option<f64>) -> Drawn<()
         }
     }
     let line = curve.points.iter().map(|point| (point[0], point[1]));
-    chart.draw_series(LineSeries::new(line, pen(1)))?;
+    if curve.branches.is_empty() {
+        chart.draw_series(LineSeries::new(line, pen(1)))?;
+    }
+    for Branch { points, snaps } in &curve.branches {
+        let shown = points.iter().filter(|point| x.contains(&point[0]));
+        chart.draw_series(LineSeries::new(shown.map(|point| (point[0], point[1])), pen(1)))?;
+        for &[angle, before, after] in snaps.iter().filter(|snap| x.contains(&snap[0])) {
+            chart.draw_series(broken([(angle, before), (angle, after)], 2, 4, 1))?;
+            chart.draw_series([Circle::new((angle, before), units(3), BLACK.filled())])?;
+        }
+    }
     draw_pieces(&mut chart, curve, &y)?;
     draw_certified(&mut chart, curve, &x, &y)
 }
@@ -129,6 +141,10 @@ pub(super) fn legend(curve: &ProfileCurve, limit: Option<f64>) -> Vec<Row> {
         |bound| format!("steepest rise that certifies, {} N m/rad", slope(bound)),
     );
     rows.push((Dash::new(&[9, 5]), 2, bound));
+    if !curve.branches.is_empty() {
+        let words = "a detent snaps to the next one, from the dot on".to_owned();
+        rows.push((Dash::of(2), 1, words));
+    }
     rows.extend(
         limit.map(|limit| (Dash::of(2), 1, format!("torque limit, {} N m", significant(limit, 4)))),
     );

@@ -87,7 +87,10 @@ fn profile(lines: &mut Vec<String>, kind: &Kind, is_composed: bool) {
         lines.push(format!("[[{}]]", key::SHAPE.path));
         lines.push(format!("{} = \"{name}\"", key::SHAPE_TYPE.name()));
         let keys = kind.flat_map(|kind| kind.keys());
-        lines.extend(keys.map(|key| set(key, key.example)));
+        lines.extend(keys.map(|key| match key.presence {
+            Presence::Optional(_) => format!("# {}", set(key, key.example)),
+            _ => set(key, key.example),
+        }));
     }
     lines.push(format!("# {}", key::WALL.doc));
     if !is_composed {

@@ -370,6 +370,11 @@ keys! {
     /// Angle of the first detent.
     SHAPE_CENTRE = other("environment.shape.centre", "rad", FINITE),
         Default(0.0), "0.0";
+    /// Where the next detent takes the knob, in pitches from the centre of the present one: a line from there
+    /// to the torque, in place of the wave. Greater than 0.5 and at most 10; 1.1 is smooth, 0.55 is like a
+    /// switch. One shape may have it; it needs a coupling, and a delay of 0 or 1.
+    SHAPE_SNAP = other("environment.shape.snap", "pitches", POSITIVE),
+        Optional("a wave of straight lines, which has no snap point"), "1.1";
     /// Lower end.
     SHAPE_FROM = other("environment.shape.from", "rad", FINITE),
         Needed, "-2.618";

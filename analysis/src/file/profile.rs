@@ -4,7 +4,7 @@ use firmware::environment::{AnyProfile, Composed, Ends, Environment, Shape, Shap
 use firmware::parameter::Parameter;
 
 use super::faults::{Read, Reported, all};
-use super::key::{self, Key};
+use super::key::{self, Key, Presence};
 use super::problem::Problem;
 use super::section::{Found, Pair, Section};
 use super::shape::ShapeKind;
@@ -258,12 +258,14 @@ fn of_kind(kind: &ShapeKind, table: String, span: Span, section: &mut Section<'_
         return found.ok_or_else(|| section.missing(&key::SHAPE_KNOTS));
     }
     let numbers = all(kind.keys().map(|key| {
-        Ok(match section.found(key)? {
-            Some(Found { value, span }) => (key, value, span),
+        Ok(match (section.found(key)?, key.presence) {
+            (Some(Found { value, span }), _) => Some((key, value, span)),
+            (None, Presence::Optional(_)) => None,
             // With its default, or missing.
-            None => (key, section.number(key)?, span.clone()),
+            (None, _) => Some((key, section.number(key)?, span.clone())),
         })
     }))?;
+    let numbers: Vec<_> = numbers.into_iter().flatten().collect();
     let number = |key: &Key| {
         numbers.iter().find(|(other, ..)| *other == key).map_or(0.0, |(_, value, _)| *value)
     };
@@ -357,6 +359,11 @@ fn refused(
             let (key, reason) = (place.table.clone(), NEEDS_ENDS.to_owned());
             section.report(place.span.clone(), Problem::Shapes { key, reason })
         }
+        ShapeError::SecondSnap { shape } => {
+            let Place { table, span, .. } = &places[shape];
+            let (key, reason) = (table.clone(), SECOND_SNAP.to_owned());
+            section.report(span.clone(), Problem::Shapes { key, reason })
+        }
         ShapeError::TooFewKnots { needed, .. } => {
             let [least, most] = CELLS;
             let cells = shapes.cells.unwrap_or(most);
@@ -392,6 +399,7 @@ fn narrowest_of(shapes: &Shapes, places: &[Place]) -> (String, Span) {
         None => (format!("{width} rad of `{}`", place.table), place.span.clone()),
     }
 }
+const SECOND_SNAP: &str = "is the second shape with `snap`; a torque profile has one at most";
 
 const NEEDS_ENDS: &str = "repeats no whole number of times in a turn, so that it needs end stops, which hold the angle within \
      its range: a shape of type \"end_stops\", or `from`, `to` and `stiffness`";

@@ -23,7 +23,7 @@ pub const ALL: &[ShapeKind] = &[
         name: "detents",
         doc: "Places to rest at, evenly spaced over a turn.",
         needed: &[&key::SHAPE_COUNT, &key::SHAPE_TORQUE],
-        optional: &[&key::SHAPE_CENTRE],
+        optional: &[&key::SHAPE_CENTRE, &key::SHAPE_SNAP],
     },
     ShapeKind {
         name: "end_stops",
@@ -77,15 +77,17 @@ impl ShapeKind {
         self.needed.iter().chain(self.optional).copied()
     }
 
-    /// The shape of this type with these numbers; `None` for a table, which has none.
+    /// The shape of this type with these numbers, 0 for one that is left out; `None` for a table, which has none.
     pub fn shape(&self, number: impl Fn(&Key) -> f64) -> Option<Shape> {
         let torque = || number(&key::SHAPE_TORQUE);
         Some(match self.name {
-            "detents" => Shape::Detents {
-                count: number(&key::SHAPE_COUNT) as u32,
-                torque: torque(),
-                centre: number(&key::SHAPE_CENTRE),
-            },
+            "detents" => {
+                let count = number(&key::SHAPE_COUNT) as u32;
+                let detents =
+                    Shape::Detents { count, torque: torque(), centre: number(&key::SHAPE_CENTRE) };
+                let snap = number(&key::SHAPE_SNAP);
+                if snap == 0.0 { detents } else { detents.snap(snap) }
+            }
             "end_stops" => Shape::EndStops {
                 from: number(&key::SHAPE_FROM),
                 to: number(&key::SHAPE_TO),
@@ -121,6 +123,15 @@ pub fn written(shape: &Shape) -> (&'static str, Vec<(&'static Key, f64)>) {
                 (&key::SHAPE_COUNT, f64::from(count)),
                 (&key::SHAPE_TORQUE, torque),
                 (&key::SHAPE_CENTRE, centre),
+            ],
+        ),
+        Shape::SnapDetents { count, torque, centre, snap } => (
+            "detents",
+            vec![
+                (&key::SHAPE_COUNT, f64::from(count)),
+                (&key::SHAPE_TORQUE, torque),
+                (&key::SHAPE_CENTRE, centre),
+                (&key::SHAPE_SNAP, snap),
             ],
         ),
         Shape::EndStops { from, to, stiffness } => (

@@ -23,6 +23,7 @@ mod scene_files;
 mod set_up;
 mod simulate_program;
 mod simulation_reference;
+mod snaps;
 mod terminal;
 mod virtual_board;
 mod wire;

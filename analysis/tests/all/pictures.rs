@@ -77,10 +77,10 @@ fn the_pictures_of_the_documents_are_what_commands_draw() {
     }
 }
 
-/// The documents say of both that they are certified.
+/// The documents say of them that they are certified.
 #[test]
 fn the_scenes_of_the_pictures_are_certified() {
-    for name in ["wall.toml", "push.toml", "detents.toml"] {
+    for name in ["wall.toml", "push.toml", "detents.toml", "snap.toml"] {
         let scene = root().join("analysis/pictures").join(name);
         let judged = program(&["certify"]).arg(scene).output().unwrap();
         assert_eq!(judged.status.code(), Some(0), "{name}: {judged:?}");

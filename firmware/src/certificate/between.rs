@@ -86,6 +86,12 @@ const fn between_profiles(
     parameter: Parameter,
 ) -> Between {
     match parameter {
+        // What a line to a snap point takes from a fall is rounded by itself.
+        Parameter::ProfileTorque
+            if profile.snap.is_some() && profile.delay == 0 && !matches!(n.format, Format::F64) =>
+        {
+            Between::Unknown
+        }
         Parameter::Stiffness | Parameter::Damping | Parameter::ProfileTorque => {
             Between::PassesDownToZero
         }

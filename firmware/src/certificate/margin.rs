@@ -103,6 +103,8 @@ pub(super) struct Limited {
     missed: Option<Missed>,
     /// Whether torques lag.
     lags: bool,
+    /// Whether its torque jumps where a knob snaps, so that [`Limited::gain`] is that between two snaps.
+    snaps: bool,
     /// Whether it takes torques beside its own: one that is solved in front of its coupling does not.
     takes_more: bool,
 }
@@ -149,6 +151,7 @@ impl Limited {
             delta: n.delta,
             missed: n.missed,
             lags: n.latency.is_some(),
+            snaps: E::HAS_KNOTS && scene.environment.snaps(),
             takes_more: !(E::HAS_KNOTS && is_solved_in_front(&scene.environment)),
         })
     }
@@ -174,6 +177,9 @@ impl Limited {
         if !bound.is_below(self.limit) || self.lags {
             return 0.0;
         }
+        if self.snaps {
+            return self.margin_between_branches();
+        }
         let (k, gain) = (self.coupling, self.gain.add(injected.double()));
         // V g, for V = T / (2 k).
         let amplification = Interval::ONE.add(gain.div(k.double()));
@@ -185,6 +191,14 @@ impl Limited {
         };
         // Each end was rounded, and then their sum.
         (margin * (1.0 - f64::EPSILON)).max(0.0).min(self.delta.lo())
+    }
+
+    /// The margin where torques jump, and no `g` bounds them: down to `k` alone.
+    const fn margin_between_branches(&self) -> f64 {
+        match &self.missed {
+            None => self.delta.sub(self.coupling).lo().max(0.0),
+            Some(_) => 0.0,
+        }
     }
 }
 

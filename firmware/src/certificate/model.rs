@@ -573,7 +573,7 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
             Some(Interval::decimal(bound.index))
         }
         Environment::Profile(profile) if E::HAS_KNOTS => profile_bound(profile, n),
-        Environment::Composed(composed) if E::IS_COMPOSED => {
+        Environment::Composed(composed) if E::IS_COMPOSED && composed.profile.snap.is_none() => {
             sum_of::<E>(composed, n, wall, profile_bound(&composed.profile, n), Interval::ONE)
         }
         _ => None,

@@ -134,6 +134,7 @@ impl PassivityProblem {
         }
         let stated = if scene.environment.has_transfer() { None } else { bound };
         let no_transfer = match &scene.environment {
+            environment if environment.snaps() => Some(UndecidedReason::NoSnapBound),
             Environment::Profile(_) | Environment::Composed(_) => {
                 Some(UndecidedReason::NoProfileBound)
             }

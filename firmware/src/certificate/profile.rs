@@ -1,7 +1,7 @@
 //! The index of a torque profile: by its extreme slopes alone (theory, section 14).
 
 use super::model::LoopIntervals;
-use crate::environment::{AnyProfile, Ends};
+use crate::environment::{AnyProfile, Ends, SnapPoint};
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;
 
@@ -31,7 +31,8 @@ impl ExtremeSlopes {
         Some(Self { rise: rise.div(left), fall: fall.div(fed_back) })
     }
 
-    /// Those of the table and its end stops, wherever the coupling is.
+    /// Those of the table, its end stops and the line to a snap point, wherever the coupling is: all
+    /// branches have the same.
     pub const fn of_table(profile: &AnyProfile, n: &LoopIntervals) -> Self {
         let outline = profile.outline();
         let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
@@ -42,7 +43,13 @@ impl ExtremeSlopes {
             None => inside,
         };
         let fall = unit.mul(Interval::exact(outline.fall as f64));
-        Self { rise, fall }
+        match &profile.snap {
+            None => Self { rise, fall },
+            Some(snap) => {
+                let line = line(snap, profile, n);
+                Self { rise: rise.add(line), fall: fall.sub(line).max(Interval::ZERO) }
+            }
+        }
     }
 
     /// The steeper of the two.
@@ -51,13 +58,25 @@ impl ExtremeSlopes {
     }
 }
 
+/// Slope in N m/rad of the line to a snap point, as a law has it.
+const fn line(snap: &SnapPoint, profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+    let part = snap.torque_of_part(profile.torque, profile.outline().knots);
+    around(n.format.torque_of_part(part)).mul(parts_per_rad(profile, n))
+}
+
+/// Whether branches may change between the torques of a profile: the steps of one that is late by at most a
+/// sample telescope from branch to branch, and at the port none do (theory, section 14.5).
+const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
+    profile.snap.is_some() && (profile.delay > 1 || n.coupling.is_none())
+}
+
 /// Upper bound on the index of a profile: `T L/2` for a torque that is a sample late and rises by up to `L`,
 /// `T M` for each sample more, where `M` is the steepest slope (equation 46). One that is not late has `T/2`
 /// times the steepest fall (equation 47).
 ///
 /// A limit on the torque takes from slopes, and adds none.
 pub(super) const fn profile_bound(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
-    if is_motor(profile) {
+    if is_motor(profile) || snaps_unproved(profile, n) {
         return None;
     }
     let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
@@ -71,7 +90,8 @@ pub(super) const fn profile_bound(profile: &AnyProfile, n: &LoopIntervals) -> Op
     Some(half.mul(slopes.rise).add(late).add(damping))
 }
 
-/// The most by which the torque changes for a change of position, times the period: [`super::model::largest_gain`].
+/// The most by which the torque changes for a change of position, times the period:
+/// [`super::model::largest_gain`]. That of a branch, where there are some.
 pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
     let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
     let damping = damper(profile, n).mul(n.period).abs();
@@ -116,7 +136,12 @@ pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
 /// Whether a torque limit may make a motor of it: where it repeats for ever, and its torque is clipped on one
 /// side more than on the other.
 pub(super) const fn is_motor_where_limited(profile: &AnyProfile) -> bool {
-    profile.ends.is_none() && !profile.outline().is_odd
+    let is_odd = profile.outline().is_odd
+        && match &profile.snap {
+            Some(snap) => snap.is_centred(),
+            None => true,
+        };
+    profile.ends.is_none() && !is_odd
 }
 
 /// `B / T` in N m/rad of the damper beside it.
@@ -142,7 +167,7 @@ pub(super) const fn profile_bound_at_port(
     n: &LoopIntervals,
 ) -> Option<Interval> {
     let Some(delay) = delay_at_port(n) else { return None };
-    if is_motor(profile) || n.misses_updates || profile.damping != 0.0 {
+    if is_motor(profile) || n.misses_updates || profile.damping != 0.0 || profile.snap.is_some() {
         return None;
     }
     let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };

@@ -78,13 +78,24 @@ impl QuantizationBound {
     /// torque a position: where it is not stable, or so nearly that its response does not end.
     pub fn of(scene: &Scene, format: Format, steps: &Resolution) -> Option<Self> {
         let Peak { norm: peak, in_any_motion } = peak(scene, format)?;
-        Some(Self {
+        let found = Self {
             encoder: steps.encoder.map(|step| 0.5 * step * peak),
             numbers: numbers(scene, format, steps, peak)?,
             converter: steps.converter().map(|step| 0.5 * step),
             friction: steps.friction,
             in_any_motion,
-        })
+        };
+        let is_safe =
+            |hysteresis| hysteresis >= 2.0 * found.position_error(scene, format, steps, peak);
+        hysteresis(scene).is_none_or(is_safe).then_some(found)
+    }
+
+    /// The most by which the environment's position is off, in rad: half a count, what numbers make of it, and
+    /// the coupling's deflection by a torque that is off.
+    fn position_error(&self, scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> f64 {
+        let torque = self.encoder.unwrap_or(0.0) + self.numbers;
+        let counted = 0.5 * steps.encoder.unwrap_or(0.0) + self.numbers / peak;
+        counted + compliance(scene, format) * torque
     }
 
     /// Bound on the torque error of all stated steps together, in N m: the friction with which the
@@ -140,6 +151,14 @@ impl fmt::Display for QuantizationBound {
                      its speed",
         )
     }
+}
+
+/// Angle in rad from where a scene snaps to where it snaps back; `None` where it does not. Positions that
+/// are off by less than half of it move each snap to where it loses less energy, and none to where it would
+/// add some (equation 50).
+fn hysteresis(scene: &Scene) -> Option<f64> {
+    let profile = scene.environment.profile()?;
+    Some(profile.snap?.hysteresis(&profile.layout()))
 }
 
 /// What positions that are off do to the torque.
@@ -229,7 +248,11 @@ fn numbers(scene: &Scene, format: Format, steps: &Resolution, peak: f64) -> Opti
         // more lead to them.
         Some(profile) => {
             let part = step_of_part(profile, &LoopIntervals::of(scene, format));
-            (at_torque + 2.0 * part, at_position + angle * roundings(format, 1.0, 1.0))
+            // The line to a snap point is a product and a sum more, from a centre that is whole parts away.
+            let snaps = if profile.snap.is_some() { 1.0 } else { 0.0 };
+            let line = snaps * torque * roundings(format, 1.0, 1.0);
+            let parts = (2.0 + snaps) * part;
+            (at_torque + parts + line, at_position + angle * roundings(format, 1.0, 1.0))
         }
         None => (at_torque, at_position),
     };

@@ -331,6 +331,11 @@ const fn write_doubt(
             "no bound is known for a torque profile that no coupling separates from a damper, a canceller, a lag, \
              jitter or missed updates; couple it by a spring, or where torques lag by the matched coupling"
         }
+        UndecidedReason::NoSnapBound => {
+            "no proof is known for a snap point whose torque comes more than one sample late, without a coupling, or \
+             beside a wall or a canceller: the jump of each snap would add energy in every late tick; give it a \
+             delay of 0 or 1, a coupling spring or, where torques lag, the matched coupling, and nothing beside it"
+        }
         UndecidedReason::NoTransferFunction => {
             "the environment is stated by a bound, without a transfer function"
         }

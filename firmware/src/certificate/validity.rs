@@ -239,6 +239,9 @@ const fn profile_conflict(
         (Parameter::From, Some(_)) if !outline.wraps && value < profile.centre + 0.5 * cell => {
             ("within the table of the profile: at least", Some(profile.centre + 0.5 * cell))
         }
+        (Parameter::To, Some(_)) if holds_nothing(profile) => {
+            ("such that the centre of a detent with a snap point is between the end stops", None)
+        }
         (Parameter::To, Some(_)) if !outline.wraps => {
             let last = profile.centre + (outline.knots as f64 - 1.5) * cell;
             if value <= last {
@@ -261,6 +264,17 @@ const fn profile_conflict(
         _ => return None,
     };
     Some(InvalidParameter { parameter, value, bound, limit })
+}
+
+/// Whether a profile has detents with a snap point, none of them between its ends.
+const fn holds_nothing(profile: &AnyProfile) -> bool {
+    match &profile.snap {
+        Some(snap) => {
+            let (lowest, highest) = snap.branches(&profile.layout());
+            lowest > highest
+        }
+        None => false,
+    }
 }
 
 /// Knots that a place of a profile may be away from its centre.

@@ -58,7 +58,8 @@ pub enum Environment {
     },
     /// One of another crate.
     Stated(StatedModel),
-    /// [`Profile`](super::Profile) or [`DampedProfile`](super::DampedProfile).
+    /// [`Profile`](super::Profile), [`DampedProfile`](super::DampedProfile) or
+    /// [`SnapProfile`](super::SnapProfile).
     Profile(AnyProfile),
     /// [`FreeModeProfile`](super::FreeModeProfile), [`WallAndProfile`](super::WallAndProfile) or
     /// [`FreeModeWallAndProfile`](super::FreeModeWallAndProfile).
@@ -97,6 +98,14 @@ impl Environment {
             Self::Profile(profile) => Some(profile),
             Self::Composed(composed) => Some(&composed.profile),
             _ => None,
+        }
+    }
+
+    /// Whether its torque jumps where a knob snaps from one detent to the next.
+    pub(crate) const fn snaps(&self) -> bool {
+        match self.profile() {
+            Some(profile) => profile.snap.is_some(),
+            None => false,
         }
     }
 
@@ -271,6 +280,13 @@ impl<N: Number> Law<N> for EnvironmentLaw<N> {
         }
     }
 
+    fn hysteresis(&self) -> f64 {
+        match self {
+            Self::Profile(law) => law.hysteresis(),
+            _ => f64::INFINITY,
+        }
+    }
+
     fn slopes(&self) -> Slopes {
         match self {
             Self::Wall(law) => law.slopes(),
@@ -312,6 +328,10 @@ impl<N: Number> Law<N> for DataLaw<N> {
 
     fn shift(&mut self, by: N) {
         self.law.shift(by);
+    }
+
+    fn hysteresis(&self) -> f64 {
+        self.law.hysteresis()
     }
 
     fn slopes(&self) -> Slopes {

@@ -55,6 +55,13 @@ impl<const N: usize> ProfileModes<N> {
     }
 }
 
+impl<const KNOTS: usize, const N: usize> SnapProfile<KNOTS, N> {
+    /// As data.
+    pub const fn as_data(&self) -> Environment {
+        Environment::Profile(self.as_any())
+    }
+}
+
 impl Rational {
     /// As data.
     pub const fn as_data(&self) -> Environment {

@@ -2,7 +2,7 @@
 
 use super::{
     DampedProfile, DamperWall, DelayedSpring, Environment, FilteredWall, FreeMode, Matched,
-    OneSided, Placed, Profile, ProfileModes, Rational, WallAndProfile,
+    OneSided, Placed, Profile, ProfileModes, Rational, SnapProfile, WallAndProfile,
 };
 use crate::output_timing::{AtPhase, Latched, OutputMode, Simultaneous};
 
@@ -31,6 +31,9 @@ macro_rules! delayed {
 }
 
 delayed!(1 2 3 4 5 6 7 8);
+// What snaps is certified up to one sample late.
+impl<const KNOTS: usize> Delayed for SnapProfile<KNOTS, 1> {}
+
 delayed!(@ Environment, Rational,);
 
 /// An environment that can be rendered in the mode `M`: any environment where count and torque

@@ -45,6 +45,11 @@ pub trait Law<N: Number> {
     }
     /// Moves all positions that it remembers by so many rad.
     fn shift(&mut self, _by: N) {}
+    /// Angle in rad by which the device goes back before a law that snaps from one branch to another snaps
+    /// back: more than an encoder's count. Infinite for a law with one branch.
+    fn hysteresis(&self) -> f64 {
+        f64::INFINITY
+    }
     /// Slopes of the lines that are offered, in N m/rad, of the coefficients as rounded.
     fn slopes(&self) -> Slopes;
 }

@@ -164,6 +164,10 @@ impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
         self.law.shift(by);
     }
 
+    fn hysteresis(&self) -> f64 {
+        self.law.hysteresis()
+    }
+
     fn slopes(&self) -> Slopes {
         self.law.slopes()
     }

@@ -58,6 +58,7 @@ macro_rules! for_every_environment {
             [const KNOTS: usize, const D: usize, const N: usize]
                 FreeModeWallAndProfile<OneSided<DamperWall<D>>, Profile<KNOTS, N>>:
                 true, None, true, composed;
+            [const KNOTS: usize, const N: usize] SnapProfile<KNOTS, N>: false, None, true;
             [] Rational: false, None, false;
             [] Environment: true, Any, true, composed;
         }
@@ -100,9 +101,9 @@ pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
 pub use model::{EnvironmentModel, Memory, StatedEnvironment};
 pub use profile::{
-    AnyProfile, Cell, DampedProfile, Ends, FULL_SCALE, KNOB_MODES, KnotTable, Knots, Layout, MODES,
-    Mode, ModeSelection, ModeTable, Outline, Profile, ProfileLaw, ProfileMode, ProfileModes, Shape,
-    ShapeError,
+    AnyProfile, AnySnap, Cell, DampedProfile, Ends, FULL_SCALE, Holding, KNOB_MODES, KnotTable,
+    Knots, Layout, MODES, Mode, ModeSelection, ModeTable, NoSnap, Outline, Profile, ProfileLaw,
+    ProfileMode, ProfileModes, Shape, ShapeError, Snap, SnapPoint, SnapProfile,
 };
 pub use rational::{Coefficients, Rational, RationalLaw};
 pub use stated::{StatedBound, StatedModel};

@@ -75,6 +75,8 @@ pub enum UndecidedReason {
     MissedWithLatency,
     /// No bound is known for a torque profile with this damper, lag or missed updates.
     NoProfileBound,
+    /// No bound is known for snap points with this delay or without a coupling.
+    NoSnapBound,
 }
 
 /// Names the circle poles of `G`, cancels what cancels exactly, and proves the rest inside.

@@ -96,6 +96,10 @@ impl<E: Discretize<N>, N: Number> Servo<E, N> {
         if let Some(turn) = law.turn() {
             turn.set_counts(transducers.counts_per_turn)?;
         }
+        let hysteresis = law.hysteresis();
+        if hysteresis <= radians_per_count {
+            return Err(BuildError::Hysteresis { hysteresis, count: radians_per_count });
+        }
         let compliance = scene.coupling.compliance(law.matched_compliance())?;
         Ok(Self {
             position: Position::new(transducers.counter),

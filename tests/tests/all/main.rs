@@ -30,6 +30,7 @@ mod random;
 mod reference;
 mod remedies;
 mod simulated;
+mod snaps;
 mod soundness;
 mod vectors;
 mod virtual_board;

@@ -168,15 +168,15 @@ impl Case {
 
 /// An undamped hand, and how the device starts in it.
 #[derive(Debug)]
-struct Hand {
+pub(super) struct Hand {
     /// Of hand and device in kg m^2.
-    mass: f64,
+    pub mass: f64,
     /// Angle in rad of its swing on the hand's spring in a tick; 0: free.
-    swing: f64,
+    pub swing: f64,
     /// Where the hand's spring is at rest, in rad.
-    grip: f64,
+    pub grip: f64,
     /// Angle in rad and speed in rad/s.
-    start: (f64, f64),
+    pub start: (f64, f64),
 }
 
 /// What a damped mass on a spring does in a time under a torque that is held.

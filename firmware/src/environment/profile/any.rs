@@ -6,8 +6,9 @@ use super::scale::Scale;
 use super::selection::ModeSelection;
 use super::shape::Shape;
 use super::shape_error::ShapeError;
+use super::snap::{AnySnap, NoSnap, Snap, SnapPoint};
 use super::sum::{Ends, Layout, sampled};
-use super::{DampedProfile, Profile};
+use super::{DampedProfile, Profile, SnapProfile};
 use crate::build_error::BuildError;
 use crate::environment::delay_line::VariableDelay;
 use crate::environment::law::{Discretize, LawContext};
@@ -35,6 +36,8 @@ pub struct AnyProfile {
     pub damping: f64,
     /// Delay in whole samples.
     pub delay: usize,
+    /// Detents with a snap point beside it.
+    pub snap: Option<SnapPoint>,
     /// The modes of which it is the selected one; `None`: it is the only profile.
     pub modes: Option<ModeSelection>,
 }
@@ -62,8 +65,8 @@ impl AnyProfile {
         damping: f64,
         delay: usize,
     ) -> Self {
-        let Layout { torque, count, centre, ends } = layout;
-        Self { units, outline, torque, count, centre, ends, damping, delay, modes: None }
+        let Layout { torque, count, centre, ends, snap } = layout;
+        Self { units, outline, torque, count, centre, ends, damping, delay, snap, modes: None }
     }
 
     /// The same as one of several modes, late by so many samples.
@@ -78,6 +81,16 @@ impl AnyProfile {
             Some(modes) => modes.selecting(mode).profile(self.delay),
             None => None,
         }
+    }
+
+    /// What its law does about snap points, with the place of the first knot.
+    pub(super) fn snap_law<N: Number>(&self, origin: i32) -> Result<AnySnap<N>, BuildError> {
+        Ok(match &self.snap {
+            None => AnySnap::None(NoSnap),
+            Some(snap) => {
+                AnySnap::Snap(Snap::new(snap, &self.layout(), self.outline.knots, origin)?)
+            }
+        })
     }
 
     /// The numbers by which its law multiplies.
@@ -97,7 +110,8 @@ impl AnyProfile {
 
     /// Where its table is.
     pub const fn layout(&self) -> Layout {
-        Layout { torque: self.torque, count: self.count, centre: self.centre, ends: self.ends }
+        let Self { torque, count, centre, ends, snap, .. } = *self;
+        Layout { torque, count, centre, ends, snap }
     }
 
     /// The knots in parts of its torque, [`FULL_SCALE`](super::FULL_SCALE) for all of it; none where it came over the wire.
@@ -121,8 +135,15 @@ impl<const KNOTS: usize, const DELAY: usize> DampedProfile<KNOTS, DELAY> {
     }
 }
 
+impl<const KNOTS: usize, const DELAY: usize> SnapProfile<KNOTS, DELAY> {
+    /// The profile as such data.
+    pub const fn as_any(&self) -> AnyProfile {
+        AnyProfile { snap: Some(self.snap), ..self.profile.as_any() }
+    }
+}
+
 impl<N: Number> Discretize<N> for AnyProfile {
-    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>>;
+    type Law = ProfileLaw<N, &'static [i16], AnyVelocity<N>, VariableDelay<N>, AnySnap<N>>;
 
     fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
         if self.units.len() != self.outline.knots as usize || !self.units.len().is_power_of_two() {
@@ -134,6 +155,7 @@ impl<N: Number> Discretize<N> for AnyProfile {
             AnyVelocity::Difference(Difference::new(self.damping, context.period)?)
         };
         let delay = VariableDelay::at_rest(self.delay)?;
-        ProfileLaw::new(self.units, &self.outline, &self.layout(), velocity, delay)
+        let snap = |origin| self.snap_law(origin);
+        ProfileLaw::new(self.units, &self.outline, &self.layout(), velocity, delay, snap)
     }
 }

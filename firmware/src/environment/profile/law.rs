@@ -2,6 +2,7 @@
 
 use super::knots::{KnotTable, Outline};
 use super::scale::Scale;
+use super::snap::Holding;
 use super::sum::{Ends, Layout};
 use crate::build_error::BuildError;
 use crate::coupling::{Response, Slopes};
@@ -13,7 +14,7 @@ use crate::number::Number;
 
 /// The law of a torque profile.
 #[derive(Clone, Debug)]
-pub struct ProfileLaw<N: Number, K, V, D> {
+pub struct ProfileLaw<N: Number, K, V, D, S> {
     /// Parts of a cell in a rad.
     parts: N::Coefficient,
     /// The place of the lower end in parts from the angle of zero.
@@ -32,6 +33,7 @@ pub struct ProfileLaw<N: Number, K, V, D> {
     turn: Turn<N>,
     velocity: V,
     delay: D,
+    snap: S,
     /// The steepest that it rises in N m/rad.
     steepest: f64,
 }
@@ -45,13 +47,17 @@ struct End<N> {
     torque: N,
 }
 
-impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, V, D> {
+impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>>
+    ProfileLaw<N, K, V, D, S>
+{
+    /// `snap` makes the law of its snap point of the place of the first knot.
     pub(super) fn new(
         knots: K,
         outline: &Outline,
         layout: &Layout,
         velocity: V,
         delay: D,
+        snap: impl FnOnce(i32) -> Result<S, BuildError>,
     ) -> Result<Self, BuildError> {
         let scale = Scale::of(layout, outline);
         let unrepresentable = |name| move |reason| BuildError::Unrepresentable { name, reason };
@@ -60,12 +66,13 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
         let torque =
             N::part_scale(scale.torque_of_part).map_err(unrepresentable("profile torque"))?;
         let centre: N = BuildError::number("profile centre", layout.centre)?;
+        let origin = centre.parts(parts);
         let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
         let mut law = Self {
             parts,
             from: i32::MIN,
             span: u32::MAX,
-            origin: centre.parts(parts),
+            origin,
             knots,
             torque,
             ends: [End { angle: N::ZERO, torque: N::ZERO }; 2],
@@ -73,7 +80,8 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
             turn: Turn::none(),
             velocity,
             delay,
-            steepest: scale.steepest_rise(outline).max(stiffness).max(f64::MIN_POSITIVE),
+            snap: snap(origin)?,
+            steepest: steepest_rise(layout, outline).max(f64::MIN_POSITIVE),
         };
         match &layout.ends {
             Some(ends) => law.limit(ends)?,
@@ -116,7 +124,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
             let end = if place < self.from { lower } else { upper };
             x.minus(end.angle).times(self.stiffness).plus(end.torque)
         };
-        self.velocity.add_to(torque, x)
+        self.velocity.add_to(self.snap.add_to(torque, place), x)
     }
 
     #[inline(always)]
@@ -125,7 +133,18 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> ProfileLaw<N, K, 
     }
 }
 
-impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for ProfileLaw<N, K, V, D> {
+/// The steepest that a profile rises in N m/rad, in its table, beyond its ends, and in a line to a snap
+/// point beside either.
+fn steepest_rise(layout: &Layout, outline: &Outline) -> f64 {
+    let scale = Scale::of(layout, outline);
+    let stiffness = layout.ends.map_or(0.0, |ends| ends.stiffness);
+    let line = layout.snap.map_or(0.0, |snap| snap.torque_of_part(layout.torque, outline.knots));
+    scale.steepest_rise(outline).max(stiffness) + line * scale.parts_per_rad
+}
+
+impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>, S: Holding<N>> Law<N>
+    for ProfileLaw<N, K, V, D, S>
+{
     #[inline(always)]
     fn evaluate(&self, x: N) -> Response<N> {
         // The torque of a profile that is not late is that in front of the coupling.
@@ -134,6 +153,8 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for Profil
 
     #[inline(always)]
     fn update(&mut self, x_e: N) {
+        // The torque of a later tick is that of the branch which this position decides.
+        self.snap.update(x_e.parts(self.parts));
         if self.delay.due().is_some() {
             let torque = self.torque(x_e);
             self.delay.push(torque);
@@ -143,6 +164,7 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for Profil
 
     fn rest_at(&mut self, x_e: N) {
         self.velocity.rest_at(x_e);
+        self.snap.rest_at(x_e.parts(self.parts));
         let torque = self.torque(x_e);
         self.delay.fill(torque);
     }
@@ -162,5 +184,10 @@ impl<N: Number, K: KnotTable, V: Velocity<N>, D: DelayLine<N>> Law<N> for Profil
 
     fn shift(&mut self, by: N) {
         self.velocity.shift(by);
+        self.snap.shift(by.parts(self.parts));
+    }
+
+    fn hysteresis(&self) -> f64 {
+        self.snap.hysteresis()
     }
 }

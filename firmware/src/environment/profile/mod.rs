@@ -19,6 +19,8 @@ mod scale;
 mod selection;
 mod shape;
 mod shape_error;
+mod snap;
+mod snap_profile;
 mod sum;
 
 pub use any::AnyProfile;
@@ -30,6 +32,8 @@ pub use profile_modes::ProfileModes;
 pub use selection::ModeSelection;
 pub use shape::Shape;
 pub use shape_error::ShapeError;
+pub use snap::{AnySnap, Holding, NoSnap, Snap, SnapPoint};
+pub use snap_profile::SnapProfile;
 pub use sum::{Ends, Layout};
 
 use super::delay_line::FixedDelay;
@@ -66,8 +70,19 @@ pub struct DampedProfile<const KNOTS: usize, const DELAY: usize> {
 
 impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
     /// The profile of a table, as it was built.
+    ///
+    /// # Panics
+    /// Where shapes of it have a snap point, which a [`SnapProfile`] renders: in a constant that is a compile
+    /// error.
+    #[track_caller]
     pub const fn of(knots: &'static Knots<KNOTS>) -> Self {
-        let Layout { torque, count, centre, ends } = knots.layout();
+        assert!(knots.layout().snap.is_none(), "detents with a snap point: use `SnapProfile::of`");
+        Self::without_snap(knots)
+    }
+
+    /// The table alone.
+    const fn without_snap(knots: &'static Knots<KNOTS>) -> Self {
+        let Layout { torque, count, centre, ends, .. } = knots.layout();
         Self { knots, torque, count, centre, ends }
     }
 
@@ -77,7 +92,8 @@ impl<const KNOTS: usize, const DELAY: usize> Profile<KNOTS, DELAY> {
     }
 
     const fn layout(&self) -> Layout {
-        Layout { torque: self.torque, count: self.count, centre: self.centre, ends: self.ends }
+        let Self { torque, count, centre, ends, .. } = *self;
+        Layout { torque, count, centre, ends, snap: None }
     }
 }
 
@@ -106,26 +122,30 @@ impl<const KNOTS: usize, const DELAY: usize> NamedParameters for DampedProfile<K
 }
 
 impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N> for Profile<KNOTS, DELAY> {
-    type Law = ProfileLaw<N, &'static [Cell; KNOTS], NoDamping, FixedDelay<N, DELAY>>;
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], NoDamping, FixedDelay<N, DELAY>, NoSnap>;
 
     fn law(&self, _: &LawContext) -> Result<Self::Law, BuildError> {
         let (cells, outline) = (self.knots.cells(), self.knots.outline());
-        ProfileLaw::new(cells, &outline, &self.layout(), NoDamping, FixedDelay::at_rest())
+        let (layout, delay) = (self.layout(), FixedDelay::at_rest());
+        ProfileLaw::new(cells, &outline, &layout, NoDamping, delay, |_| Ok(NoSnap))
     }
 }
 
 impl<N: Number, const KNOTS: usize, const DELAY: usize> Discretize<N>
     for DampedProfile<KNOTS, DELAY>
 {
-    type Law = ProfileLaw<N, &'static [Cell; KNOTS], Difference<N>, FixedDelay<N, DELAY>>;
+    type Law = ProfileLaw<N, &'static [Cell; KNOTS], Difference<N>, FixedDelay<N, DELAY>, NoSnap>;
 
     fn law(&self, context: &LawContext) -> Result<Self::Law, BuildError> {
         let Profile { knots, .. } = self.profile;
         let velocity = Difference::new(self.damping, context.period)?;
-        let layout = self.profile.layout();
-        ProfileLaw::new(knots.cells(), &knots.outline(), &layout, velocity, FixedDelay::at_rest())
+        let (layout, delay) = (self.profile.layout(), FixedDelay::at_rest());
+        let outline = knots.outline();
+        ProfileLaw::new(knots.cells(), &outline, &layout, velocity, delay, |_| Ok(NoSnap))
     }
 }
 
+#[cfg(test)]
+mod snap_tests;
 #[cfg(test)]
 mod tests;

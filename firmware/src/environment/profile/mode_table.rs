@@ -34,7 +34,8 @@ impl<const KNOTS: usize> ModeTable<KNOTS> {
         const { assert!(KNOTS.is_power_of_two() && KNOTS >= 8, "a power of two from 8 on") };
         let mut units = [0; KNOTS];
         // All units are zero, whatever they stand for.
-        let mut found = (Layout { torque: 1.0, count: 1.0, centre: 0.0, ends: None }, true);
+        let mut found =
+            (Layout { torque: 1.0, count: 1.0, centre: 0.0, ends: None, snap: None }, true);
         if !shapes.is_empty() {
             found = match sampled(shapes, &mut units) {
                 Ok(found) => found,

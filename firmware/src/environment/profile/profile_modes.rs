@@ -4,6 +4,7 @@ use super::any::AnyProfile;
 use super::law::ProfileLaw;
 use super::mode_table::ProfileMode;
 use super::selection::ModeSelection;
+use super::snap::AnySnap;
 use crate::build_error::BuildError;
 use crate::environment::delay_line::FixedDelay;
 use crate::environment::law::{Discretize, LawContext};
@@ -63,7 +64,7 @@ named_parameters! {
 
 /// The law of any mode: its table is read through a reference, so that all have one type.
 type ModeLaw<N, const DELAY: usize> =
-    ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>>;
+    ProfileLaw<N, &'static [i16], NoDamping, FixedDelay<N, DELAY>, AnySnap<N>>;
 
 impl<N: Number, const DELAY: usize> Discretize<N> for ProfileModes<DELAY> {
     type Law = ModeLaw<N, DELAY>;
@@ -83,8 +84,8 @@ fn law<N: Number, const DELAY: usize>(
     profile: &AnyProfile,
 ) -> Result<ModeLaw<N, DELAY>, BuildError> {
     let (outline, layout) = (profile.outline(), profile.layout());
-    let law =
-        ProfileLaw::new(profile.units(), &outline, &layout, NoDamping, FixedDelay::at_rest())?;
+    let (delay, snap) = (FixedDelay::at_rest(), |origin| profile.snap_law(origin));
+    let law = ProfileLaw::new(profile.units(), &outline, &layout, NoDamping, delay, snap)?;
     Ok(law.counting_turns_anew(&layout))
 }
 

@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 
 use super::shape_error::ShapeError;
+use super::snap::SNAP;
 
 /// Torque over angle. A positive torque pushes back from a positive angle, as for all environments.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +19,19 @@ pub enum Shape {
         /// Angle of the first one in rad.
         centre: f64,
     },
-    /// The same for a pitch in rad instead of a number of them, to be felt rather than to be rested at.
+    /// Places to rest at, each a spring up to its snap point, from where the next one takes the knob: see
+    /// [`Shape::snap`]. At most one shape of a sum is this one.
+    SnapDetents {
+        /// Number of them in a turn.
+        count: u32,
+        /// Torque in N m at the snap point.
+        torque: f64,
+        /// Angle of the first one in rad.
+        centre: f64,
+        /// Pitches from the centre of a detent to its snap point.
+        snap: f64,
+    },
+    /// [`Detents`](Self::Detents) for a pitch in rad instead of a number of them, to be felt rather than to be rested at.
     Texture {
         /// Distance of two ridges in rad.
         pitch: f64,
@@ -80,6 +93,24 @@ impl Shape {
         Self::Detents { count, torque, centre: 0.0 }
     }
 
+    /// Detents with a snap point: each is a spring, and the next detent takes the knob where it is `snap`
+    /// pitches away from the centre, and the torque its largest. On the way back that happens as far from
+    /// the centre of the other one, so that a knob that is held between two detents stays in one of them.
+    /// Above 1 it is smooth, and the nearer to 1/2, the more like a switch.
+    ///
+    /// # Panics
+    /// Where the shape is no detents: in a constant that is a compile error.
+    #[must_use]
+    pub const fn snap(self, snap: f64) -> Self {
+        match self {
+            Self::Detents { count, torque, centre }
+            | Self::SnapDetents { count, torque, centre, .. } => {
+                Self::SnapDetents { count, torque, centre, snap }
+            }
+            _ => panic!("only detents have a snap point"),
+        }
+    }
+
     /// Springs beyond two angles.
     pub const fn end_stops(from: f64, to: f64, stiffness: f64) -> Self {
         Self::EndStops { from, to, stiffness }
@@ -105,9 +136,13 @@ impl Shape {
         Self::Magnet { angle, width, torque }
     }
 
-    /// The torque in N m at an angle in rad.
+    /// The torque in N m at an angle in rad; of detents with a snap point that of the nearest one.
     pub const fn torque_at(&self, angle: f64) -> f64 {
         match *self {
+            Self::SnapDetents { count, torque, centre, snap } => {
+                let pitches = (angle - centre) * count as f64 / TAU;
+                torque * (pitches - nearest(pitches)) / snap
+            }
             Self::Detents { count, torque, centre } => {
                 torque * triangle((angle - centre) * count as f64 / TAU)
             }
@@ -138,7 +173,7 @@ impl Shape {
     /// How often it repeats in a turn, as a whole number; `None` where it does not.
     pub(super) const fn repeats(&self) -> Option<u32> {
         let repeats = match *self {
-            Self::Detents { count, .. } => return Some(count),
+            Self::Detents { count, .. } | Self::SnapDetents { count, .. } => return Some(count),
             Self::Magnet { .. } => return Some(1),
             Self::Texture { pitch, .. } => TAU / pitch,
             Self::Periodic(knots) => TAU / period(knots),
@@ -169,7 +204,9 @@ impl Shape {
     /// Width in rad of the narrowest straight piece that a table has to show.
     pub const fn narrowest(&self) -> f64 {
         match *self {
-            Self::Detents { count, .. } => 0.25 * TAU / count as f64,
+            Self::Detents { count, .. } | Self::SnapDetents { count, .. } => {
+                0.25 * TAU / count as f64
+            }
             Self::Texture { pitch, .. } => 0.25 * pitch,
             Self::EndStops { .. } | Self::Centre { .. } => f64::INFINITY,
             Self::Bistable { distance, .. } => 0.5 * distance,
@@ -182,7 +219,12 @@ impl Shape {
     /// Whether its numbers make sense; `shape` is its place among others.
     pub(super) const fn checked(&self, shape: usize) -> Result<(), ShapeError> {
         let numbers: [(&'static str, f64, bool); 3] = match *self {
-            Self::Detents { count, torque, centre } => {
+            Self::SnapDetents { snap, .. } if !(snap > SNAP[0] && snap <= SNAP[1]) => {
+                let bound = "greater than 0.5, half-way to the next detent, and at most 10";
+                return Err(ShapeError::Number { shape, name: "snap", value: snap, bound });
+            }
+            Self::Detents { count, torque, centre }
+            | Self::SnapDetents { count, torque, centre, .. } => {
                 [("count", count as f64, true), ("torque", torque, true), ("centre", centre, false)]
             }
             Self::Texture { pitch, amplitude } => {
@@ -299,7 +341,7 @@ const fn triangle(periods: f64) -> f64 {
 }
 
 /// The largest whole number that is not above `x`, for magnitudes below 2^62.
-const fn down(x: f64) -> f64 {
+pub(super) const fn down(x: f64) -> f64 {
     let whole = x as i64 as f64;
     if whole > x { whole - 1.0 } else { whole }
 }

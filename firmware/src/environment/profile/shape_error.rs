@@ -45,6 +45,11 @@ pub enum ShapeError {
         /// How many it takes.
         needed: f64,
     },
+    /// A second shape with a snap point.
+    SecondSnap {
+        /// Which shape, from 0.
+        shape: usize,
+    },
     /// There is no torque anywhere.
     Flat,
     /// The torque of a profile without ends is not zero in the mean: a motor.
@@ -97,6 +102,13 @@ impl ShapeError {
                 t.push_number(knots as f64);
                 t.push(" knots, and its narrowest straight piece takes ");
                 t.push_number(needed);
+            }
+            Self::SecondSnap { shape } => {
+                t.push("shape ");
+                t.push_number(shape as f64);
+                t.push(
+                    " is the second one with a snap point, and a torque profile has one at most",
+                );
             }
             Self::Flat => t.push("the torque profile has no torque anywhere"),
             Self::Mean { mean } => {

@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use super::knots::{FULL_SCALE, Knots, Outline};
 use super::shape::{Shape, nearest};
 use super::shape_error::ShapeError;
+use super::snap::SnapPoint;
 
 /// The ends of a range, and the springs beyond them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub struct Layout {
     pub centre: f64,
     /// The ends of its range; `None`: it repeats for ever.
     pub ends: Option<Ends>,
+    /// Detents with a snap point that are added to it.
+    pub snap: Option<SnapPoint>,
 }
 
 impl Layout {
@@ -77,7 +80,10 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
         Ok(frame) => frame,
         Err(error) => return Err(error),
     };
-    let mut torque: f64 = 0.0;
+    let mut torque: f64 = match frame.snap {
+        Some(Shape::SnapDetents { torque, .. }) => torque,
+        _ => 0.0,
+    };
     let mut i = 0;
     while i < units.len() {
         torque = torque.max(frame.torque_at(shapes, i).abs());
@@ -110,7 +116,11 @@ pub const fn sampled(shapes: &[Shape], units: &mut [i16]) -> Result<(Layout, boo
         }
     }
     let Frame { count, centre, ends, wraps, .. } = frame;
-    Ok((Layout { torque, count, centre, ends }, wraps))
+    let mut layout = Layout { torque, count, centre, ends, snap: None };
+    if let Some(Shape::SnapDetents { count, torque, centre, snap }) = frame.snap {
+        layout.snap = Some(SnapPoint::new(&layout, count, torque, centre, snap));
+    }
+    Ok((layout, wraps))
 }
 
 /// Makes the knots odd about the first one, where they are but for rounding; gives whether they are.
@@ -177,6 +187,8 @@ struct Frame {
     ends: Option<Ends>,
     /// The shape whose springs are the ends.
     outermost: Option<usize>,
+    /// The detents with a snap point, which are in no table.
+    snap: Option<Shape>,
     wraps: bool,
 }
 
@@ -191,10 +203,17 @@ impl Frame {
         let mut ends: Option<Ends> = None;
         let mut outermost = None;
         let mut single = None;
+        let mut snap = None;
         let mut i = 0;
         while i < shapes.len() {
             if let Err(error) = shapes[i].checked(i) {
                 return Err(error);
+            }
+            if let Shape::SnapDetents { .. } = shapes[i] {
+                if snap.is_some() {
+                    return Err(ShapeError::SecondSnap { shape: i });
+                }
+                snap = Some(shapes[i]);
             }
             narrowest = narrowest.min(shapes[i].narrowest());
             if let Some(of_this) = shapes[i].extent()
@@ -221,7 +240,12 @@ impl Frame {
             match (shapes[i].repeats(), &shapes[i]) {
                 (_, Shape::EndStops { .. }) => {}
                 (Some(count), shape) => {
-                    if let (Shape::Detents { centre: of_this, .. }, 0) = (shape, repeats) {
+                    if let (
+                        Shape::Detents { centre: of_this, .. }
+                        | Shape::SnapDetents { centre: of_this, .. },
+                        0,
+                    ) = (shape, repeats)
+                    {
                         centre = *of_this;
                     }
                     repeats = common_divisor(repeats, count);
@@ -236,14 +260,14 @@ impl Frame {
                 // A level cell at either end keeps clear of the one from the last knot to the first.
                 let cell = (to - from) / (knots - 3) as f64;
                 let (count, centre) = (TAU / (cell * knots as f64), from - cell);
-                Self { cell, count, centre, ends, outermost, wraps: false }
+                Self { cell, count, centre, ends, outermost, snap, wraps: false }
             }
             (None, None) if repeats == 0 => return Err(ShapeError::Flat),
             (None, ends) => {
                 // What is nothing between its ends repeats as often as one likes.
                 let count = if repeats == 0 { 1.0 } else { repeats as f64 };
                 let cell = TAU / count / knots as f64;
-                Self { cell, count, centre, ends, outermost, wraps: true }
+                Self { cell, count, centre, ends, outermost, snap, wraps: true }
             }
         };
         // Narrower ones, so that each straight piece shows.
@@ -270,7 +294,7 @@ impl Frame {
                 Some(outermost) => outermost == i,
                 None => false,
             };
-            if !is_beyond {
+            if !is_beyond && !matches!(shapes[i], Shape::SnapDetents { .. }) {
                 sum += shapes[i].torque_at(angle);
             }
             i += 1;

@@ -12,8 +12,8 @@ use crate::certificate::Parameter;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{
-    Composed, DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, Profile, ProfileModes,
-    Shape,
+    Composed, DamperWall, Ends, Environment, KNOB_MODES, Knots, OneSided, ProfileModes, Shape,
+    SnapProfile,
 };
 use crate::number::Format;
 use crate::scene::{Coupling, Device, Latency, Timing};
@@ -204,8 +204,8 @@ fn largest_description() -> Description {
 
 /// The same of a torque profile.
 fn largest_profile() -> Description {
-    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0)]);
-    let mut profile = Profile::<1024, 8>::of(&KNOTS).damped(1.0);
+    static KNOTS: Knots<1024> = Knots::of(&[Shape::detents(24, 1.0).snap(1.1)]);
+    let mut profile = SnapProfile::<1024, 8>::of(&KNOTS);
     profile.profile.ends = Some(Ends { from: -1.0, to: 1.0, stiffness: 1.0 });
     let (mut profile, largest) = (profile.as_any(), largest_description());
     profile.modes = ProfileModes::<1>::of(&KNOB_MODES).as_any().modes;

@@ -1,0 +1,313 @@
+//! Snap points: a detent holds the knob by a straight line up to its snap point, from where the next one
+//! takes it.
+//!
+//! The torque is that of the table and the line of the branch `b` that holds the knob,
+//! `f_b(x) = f(x) + k (x - c_b)`, which reaches the torque of the detents `snap` pitches from its centre
+//! `c_b`. The branch changes after a tick, by the position `x_E` of that tick: with `snap` above one half
+//! that takes energy away and adds none (theory, section 14.5, equation 49).
+
+use core::f64::consts::TAU;
+use core::hint::cold_path;
+
+use super::knots::PART_BITS;
+use super::sum::{Ends, Layout};
+use crate::build_error::BuildError;
+use crate::number::Number;
+
+/// Detents with a snap point, in proportion to the table that they are added to, so that they change with
+/// its torque, its number of repetitions, and its centre. Only [shapes](super::Shape::snap) give one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
+pub struct SnapPoint {
+    /// Detents in a repetition of the table.
+    pitches: f64,
+    /// Centre of the first one in pitches from the first knot, of a magnitude up to one half.
+    offset: f64,
+    /// Torque at the snap point in torques of the table.
+    share: f64,
+    /// Pitches from the centre to the snap point.
+    snap: f64,
+}
+
+/// Bounds on the number of pitches from a centre to its snap point: above the lower one, where the branches
+/// on either side of a snap meet half-way.
+pub(super) const SNAP: [f64; 2] = [0.5, 10.0];
+
+/// How far a detent's centre may be beyond an end, in pitches: ends are written with a few digits.
+const AT_THE_END: f64 = 0.01;
+
+impl SnapPoint {
+    /// Of detents `count` times a turn, the first at the angle `centre` in rad, of `torque` N m, beside a
+    /// table with this layout.
+    pub(super) const fn new(
+        layout: &Layout,
+        count: u32,
+        torque: f64,
+        centre: f64,
+        snap: f64,
+    ) -> Self {
+        let offset = (centre - layout.centre) * count as f64 / TAU;
+        let offset = offset - super::shape::nearest(offset);
+        Self { pitches: count as f64 / layout.count, offset, share: torque / layout.torque, snap }
+    }
+
+    /// Distance in rad of two detents.
+    pub const fn pitch(&self, layout: &Layout) -> f64 {
+        TAU / (layout.count * self.pitches)
+    }
+
+    /// Centre in rad of a detent.
+    pub const fn centre(&self, layout: &Layout, branch: i32) -> f64 {
+        layout.centre + (self.offset + branch as f64) * self.pitch(layout)
+    }
+
+    /// Pitches from a centre to the snap point.
+    pub const fn snap(&self) -> f64 {
+        self.snap
+    }
+
+    /// Torque in N m at the snap point.
+    pub const fn torque(&self, layout: &Layout) -> f64 {
+        layout.torque * self.share
+    }
+
+    /// Angle in rad by which the knob goes back from a snap point to where it would snap back.
+    pub const fn hysteresis(&self, layout: &Layout) -> f64 {
+        (2.0 * self.snap - 1.0) * self.pitch(layout)
+    }
+
+    /// The detents that can hold the knob: those with their centre between the ends; all where there are
+    /// none. The first is above the last where none of them can.
+    pub const fn branches(&self, layout: &Layout) -> (i32, i32) {
+        let Some(Ends { from, to, .. }) = layout.ends else { return (i32::MIN, i32::MAX) };
+        let (pitch, first) = (self.pitch(layout), self.centre(layout, 0));
+        let lowest = -super::shape::down(AT_THE_END - (from - first) / pitch);
+        let highest = super::shape::down(AT_THE_END + (to - first) / pitch);
+        (lowest as i32, highest as i32)
+    }
+
+    /// Whether the detents are the same seen from the first knot of the table to either side.
+    pub(crate) const fn is_centred(&self) -> bool {
+        self.offset == 0.0 || self.offset.abs() == 0.5
+    }
+
+    /// Parts of a cell from one detent to the next, of a table of so many knots.
+    const fn parts(&self, knots: u32) -> f64 {
+        knots as f64 * (1_u32 << PART_BITS) as f64 / self.pitches
+    }
+
+    /// Torque in N m for a part of a cell: the slope of all branches.
+    pub(crate) const fn torque_of_part(&self, torque: f64, knots: u32) -> f64 {
+        torque * self.share / (self.snap * self.parts(knots))
+    }
+}
+
+/// What the law of a profile does about snap points, all in whole parts of a cell, so that no turn changes
+/// anything.
+pub trait Holding<N: Number>: Clone + core::fmt::Debug {
+    /// `torque` plus that of the branch that holds the knob, in N m, at a place in parts.
+    fn add_to(&self, torque: N, place: i32) -> N;
+    /// Ends the tick with the environment at a place: the knob snaps where that is beyond the snap point.
+    fn update(&mut self, place: i32);
+    /// Holds the knob in the detent next to a place.
+    fn rest_at(&mut self, place: i32);
+    /// Moves what holds the knob by so many parts, a whole number of turns.
+    fn shift(&mut self, by: i32);
+    /// [`SnapPoint::hysteresis`]; infinite where there is no snap point.
+    fn hysteresis(&self) -> f64;
+}
+
+/// No snap point: costs nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct NoSnap;
+
+impl<N: Number> Holding<N> for NoSnap {
+    #[inline(always)]
+    fn add_to(&self, torque: N, _: i32) -> N {
+        torque
+    }
+
+    #[inline(always)]
+    fn update(&mut self, _: i32) {}
+
+    fn rest_at(&mut self, _: i32) {}
+
+    fn shift(&mut self, _: i32) {}
+
+    fn hysteresis(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// The branch of a snap point that holds the knob.
+#[derive(Clone, Debug)]
+pub struct Snap<N: Number> {
+    /// Torque of a part of a cell.
+    slope: N::Coefficient,
+    /// The centre of the branch, a place in parts.
+    centre: i32,
+    /// Parts from there to the snap point.
+    reach: u32,
+    branch: i32,
+    lattice: Lattice,
+    hysteresis: f64,
+}
+
+impl<N: Number> Snap<N> {
+    /// Of a table of so many knots, the first at the place `origin`.
+    pub(super) fn new(
+        snap: &SnapPoint,
+        layout: &Layout,
+        knots: u32,
+        origin: i32,
+    ) -> Result<Self, BuildError> {
+        let (lowest, highest) = snap.branches(layout);
+        if lowest > highest {
+            let name = "number of detents between the end stops";
+            return Err(BuildError::NotPositive { name, value: 0.0 });
+        }
+        let slope = N::part_scale(snap.torque_of_part(layout.torque, knots))
+            .map_err(|reason| BuildError::Unrepresentable { name: "snap point", reason })?;
+        let parts = snap.parts(knots);
+        let lattice = Lattice {
+            first: origin.saturating_add((snap.offset * parts) as i32),
+            pitch: (parts * f64::from(1_u32 << PITCH_BITS)) as i64,
+            per_part: ((1_u64 << RECIPROCAL_BITS) as f64 / parts) as u32,
+            lowest,
+            highest,
+        };
+        // More than half a pitch, however it is rounded.
+        let reach = (snap.snap * parts) as u32 + 1;
+        let mut out = Self {
+            slope,
+            centre: 0,
+            reach,
+            branch: 0,
+            lattice,
+            hysteresis: snap.hysteresis(layout),
+        };
+        out.rest_at(origin);
+        Ok(out)
+    }
+
+    fn hold(&mut self, branch: i32) {
+        self.branch = branch.clamp(self.lattice.lowest, self.lattice.highest);
+        self.centre = self.lattice.centre(self.branch);
+    }
+
+    /// The next tick is that of the detent next to a place so far from the centre.
+    #[inline(never)]
+    fn snap(&mut self, away: i32) {
+        cold_path();
+        // Never past the middle between two, where a snap would add energy.
+        self.hold(self.branch.saturating_add(self.lattice.pitches(away, HALF - HALF / 8192)));
+    }
+}
+
+impl<N: Number> Holding<N> for Snap<N> {
+    #[inline(always)]
+    fn add_to(&self, torque: N, place: i32) -> N {
+        torque.plus(N::of_parts(place.saturating_sub(self.centre), self.slope))
+    }
+
+    #[inline(always)]
+    fn update(&mut self, place: i32) {
+        let away = place.saturating_sub(self.centre);
+        if away.unsigned_abs() > self.reach {
+            self.snap(away);
+        }
+    }
+
+    fn rest_at(&mut self, place: i32) {
+        let away = place.saturating_sub(self.lattice.first);
+        self.hold(self.lattice.pitches(away, HALF));
+    }
+
+    fn shift(&mut self, by: i32) {
+        self.hold(self.branch.saturating_add(self.lattice.pitches(by, HALF)));
+    }
+
+    fn hysteresis(&self) -> f64 {
+        self.hysteresis
+    }
+}
+
+/// A snap point or none, as data has it.
+#[derive(Clone, Debug)]
+pub enum AnySnap<N: Number> {
+    /// None.
+    None(NoSnap),
+    /// One.
+    Snap(Snap<N>),
+}
+
+impl<N: Number> Holding<N> for AnySnap<N> {
+    #[inline(always)]
+    fn add_to(&self, torque: N, place: i32) -> N {
+        match self {
+            Self::None(none) => none.add_to(torque, place),
+            Self::Snap(snap) => snap.add_to(torque, place),
+        }
+    }
+
+    #[inline(always)]
+    fn update(&mut self, place: i32) {
+        if let Self::Snap(snap) = self {
+            snap.update(place);
+        }
+    }
+
+    fn rest_at(&mut self, place: i32) {
+        if let Self::Snap(snap) = self {
+            snap.rest_at(place);
+        }
+    }
+
+    fn shift(&mut self, by: i32) {
+        if let Self::Snap(snap) = self {
+            snap.shift(by);
+        }
+    }
+
+    fn hysteresis(&self) -> f64 {
+        match self {
+            Self::None(none) => Holding::<N>::hysteresis(none),
+            Self::Snap(snap) => snap.hysteresis(),
+        }
+    }
+}
+
+/// Bits of a pitch below a part: a turn of 2^14 detents is off by less than a thousandth of a part.
+const PITCH_BITS: u32 = 24;
+/// Bits of its reciprocal, which is below 2^30: a detent is at least four cells wide, that is 2^16 parts.
+const RECIPROCAL_BITS: u32 = 46;
+/// Half a pitch as the reciprocal counts it.
+const HALF: u64 = 1 << (RECIPROCAL_BITS - 1);
+
+/// The centres of the detents.
+#[derive(Clone, Copy, Debug)]
+struct Lattice {
+    /// Place of the centre of the branch 0.
+    first: i32,
+    /// From one to the next, in parts with [`PITCH_BITS`] bits below them.
+    pitch: i64,
+    /// Pitches of a part, with [`RECIPROCAL_BITS`] bits below them.
+    per_part: u32,
+    lowest: i32,
+    highest: i32,
+}
+
+impl Lattice {
+    fn centre(&self, branch: i32) -> i32 {
+        const HALF_A_PART: i64 = 1 << (PITCH_BITS - 1);
+        let parts = i64::from(branch).wrapping_mul(self.pitch).wrapping_add(HALF_A_PART);
+        self.first.wrapping_add((parts >> PITCH_BITS) as i32)
+    }
+
+    /// Whole pitches in so many parts, of which the part of one that `half` completes is one more.
+    fn pitches(&self, parts: i32, half: u64) -> i32 {
+        let whole = u64::from(parts.unsigned_abs()).wrapping_mul(self.per_part.into());
+        let whole = (whole.wrapping_add(half) >> RECIPROCAL_BITS) as i32;
+        if parts < 0 { -whole } else { whole }
+    }
+}
