@@ -170,7 +170,10 @@ fn the_guide_describes_the_modes_that_there_are() {
                 }
                 Shape::Centre { stiffness, .. } => vec![format!("{stiffness} N m/rad")],
                 Shape::Bistable { distance, torque } => {
-                    vec![format!("{:.0} degrees", distance.to_degrees()), format!("| {torque} N m |")]
+                    vec![
+                        format!("{:.0} degrees", distance.to_degrees()),
+                        format!("| {torque} N m |"),
+                    ]
                 }
                 Shape::Magnet { angle, width, torque } => vec![
                     format!("{:.0}", angle.to_degrees()),
