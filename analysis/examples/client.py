@@ -46,12 +46,15 @@ REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
         ("face", "f64"), ("one_sided", "bool")]
 FREE = ("residual", "f64")
+FREE_OPTION = ("residual", ("option", "f64"))
 STATED = ("enum", [("bounded", [("delay", "u"), ("index", "f64"), ("gain", "f64")])])
 PROFILE = [("outline", [("knots", "u"), ("rise", "i"), ("fall", "i"), ("wraps", "bool"),
                         ("sum", "i"), ("is_odd", "bool")]),
            ("torque", "f64"), ("count", "f64"), ("centre", "f64"),
            ("ends", ("option", [("from", "f64"), ("to", "f64"), ("stiffness", "f64")])),
            ("damping", "f64"), ("delay", "u"),
+           ("snap", ("option", [("pitches", "f64"), ("offset", "f64"), ("share", "f64"),
+                                ("snap", "f64")])),
            ("modes", ("option", [("mode", "f64"), ("count", "u")]))]
 TIME_RANGE = [("least", "f64"), ("most", "f64")]
 SCENE = [
@@ -61,7 +64,9 @@ SCENE = [
     ("environment", ("enum", [("delayed-spring", WALL), ("damper-wall", WALL),
                               ("free-mode", [FREE, ("delay", "u")]),
                               ("free-mode-wall", [FREE, ("wall", WALL)]),
-                              ("stated", [("model", STATED)]), ("profile", PROFILE)])),
+                              ("stated", [("model", STATED)]), ("profile", PROFILE),
+                              ("composed", [FREE_OPTION, ("wall", ("option", WALL)),
+                                            ("profile", PROFILE)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
                  ("actuator_response", TIME_RANGE)]),
