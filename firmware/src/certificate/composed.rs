@@ -3,7 +3,7 @@
 
 use super::model::{LoopIntervals, Washout, canceller, damper, feedthrough_of_canceller};
 use super::profile::{ExtremeSlopes, delay_at_port, part_of_sample, profile_bound_at_port};
-use crate::environment::{Composed, Wall};
+use crate::environment::{Composed, Environment, Wall};
 use crate::passivity::interval::Interval;
 
 /// Upper bound on the index at the device's port, without a coupling: equation 48 with the slopes of the
@@ -23,7 +23,7 @@ pub(super) const fn composed_bound_at_port(
     if composed.residual.is_some() || wall.damping != 0.0 {
         return None;
     }
-    let Some(slopes) = ExtremeSlopes::of(&composed.profile, n) else { return None };
+    let Some(slopes) = ExtremeSlopes::of::<Environment>(&composed.profile, n) else { return None };
     let spring = n.coefficient(Interval::decimal(wall.stiffness)).mul(n.period);
     let samples = Interval::exact(wall.delay as f64 + 0.5).add(late);
     // The ripple is that of both slopes together, less that of the profile, which is in its own bound.

@@ -151,8 +151,8 @@ impl Limited {
             delta: n.delta,
             missed: n.missed,
             lags: n.latency.is_some(),
-            snaps: E::HAS_KNOTS && scene.environment.snaps(),
-            takes_more: !(E::HAS_KNOTS && is_solved_in_front(&scene.environment)),
+            snaps: E::PROFILE.snaps && scene.environment.snaps(),
+            takes_more: !(E::PROFILE.is_prompt && is_solved_in_front(&scene.environment)),
         })
     }
 

@@ -285,7 +285,7 @@ impl<E: Copy> Certified<Scene<E>> {
 macro_rules! certify_for {
     ($(
         [$($generics:tt)*] $environment:ty:
-        $cancels:literal, $memory:ident, $knots:literal $(, $composed:ident)?;
+        $cancels:literal, $memory:ident, $profile:expr;
     )*) => {$(
         certify_for! { @ [$($generics)*] $environment }
         certify_for! { @

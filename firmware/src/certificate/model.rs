@@ -184,7 +184,7 @@ impl LoopIntervals {
                 scene.timing.worst_period,
                 Some(worst) if worst != scene.timing.period
             ),
-            is_at_port: E::HAS_KNOTS
+            is_at_port: E::PROFILE.exists
                 && matches!(scene.coupling, Coupling::Rigid)
                 && scene.environment.profile().is_some(),
             is_matched: matches!(scene.coupling, Coupling::Matched),
@@ -496,7 +496,7 @@ pub(super) const fn largest_solved<E: EnvironmentModel>(
     if matches!(n.format, Format::F64) || environment.is_late() {
         return Some(Interval::ONE);
     }
-    if E::HAS_KNOTS && matches!(environment, Environment::Profile(_)) {
+    if E::PROFILE.exists && matches!(environment, Environment::Profile(_)) {
         // It is solved in front of the coupling, without a gain.
         return Some(Interval::ONE);
     }
@@ -527,7 +527,7 @@ const fn scale<E: EnvironmentModel>(
         (Environment::DelayedSpring(_) | Environment::DamperWall(_), Some(w)) => {
             wall(&w, n).feedthrough()
         }
-        (Environment::Composed(composed), beside) if E::IS_COMPOSED => {
+        (Environment::Composed(composed), beside) if E::PROFILE.is_composed => {
             let mut sum = match beside {
                 Some(w) => wall(&w, n).feedthrough(),
                 None => Interval::ZERO,
@@ -572,9 +572,11 @@ const fn exactly_solved_bound<E: EnvironmentModel>(
         Environment::Stated(StatedModel::Bounded { bound, .. }) => {
             Some(Interval::decimal(bound.index))
         }
-        Environment::Profile(profile) if E::HAS_KNOTS => profile_bound(profile, n),
-        Environment::Composed(composed) if E::IS_COMPOSED && composed.profile.snap.is_none() => {
-            sum_of::<E>(composed, n, wall, profile_bound(&composed.profile, n), Interval::ONE)
+        Environment::Profile(profile) if E::PROFILE.exists => profile_bound::<E>(profile, n),
+        Environment::Composed(composed)
+            if E::PROFILE.is_composed && composed.profile.snap.is_none() =>
+        {
+            sum_of::<E>(composed, n, wall, profile_bound::<E>(&composed.profile, n), Interval::ONE)
         }
         _ => None,
     }
@@ -628,12 +630,12 @@ pub(super) const fn largest_gain<E: EnvironmentModel>(
             }
         }
         Environment::Stated(StatedModel::Bounded { bound, .. }) => Interval::decimal(bound.gain),
-        Environment::Profile(profile) if E::HAS_KNOTS => match profile_gain(profile, n) {
+        Environment::Profile(profile) if E::PROFILE.exists => match profile_gain::<E>(profile, n) {
             Some(gain) => gain,
             None => return None,
         },
-        Environment::Composed(composed) if E::IS_COMPOSED => {
-            let profile = profile_gain(&composed.profile, n);
+        Environment::Composed(composed) if E::PROFILE.is_composed => {
+            let profile = profile_gain::<E>(&composed.profile, n);
             match sum_of::<E>(composed, n, wall, profile, Interval::ONE.double()) {
                 Some(gain) => gain,
                 None => return None,

@@ -440,10 +440,10 @@ const fn profile_rejection(
         let units = outline.sum as f64 / (outline.knots as f64 * FULL_SCALE as f64);
         return Some(Rejection::Motor { mean: units * profile.torque });
     }
-    if scene.torque_limit.is_some() && is_motor_where_limited(profile) {
+    if scene.torque_limit.is_some() && is_motor_where_limited::<Environment>(profile) {
         return Some(Rejection::Uneven);
     }
-    if profile.delay > 0 || ExtremeSlopes::of(profile, n).is_some() {
+    if profile.delay > 0 || ExtremeSlopes::of::<Environment>(profile, n).is_some() {
         return None;
     }
     let coupling = Interval::ONE.div(n.compliance);

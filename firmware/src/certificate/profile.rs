@@ -1,7 +1,7 @@
 //! The index of a torque profile: by its extreme slopes alone (theory, section 14).
 
 use super::model::LoopIntervals;
-use crate::environment::{AnyProfile, Ends, SnapPoint};
+use crate::environment::{AnyProfile, Ends, Environment, EnvironmentModel, SnapPoint};
 use crate::latency::{Latency, TimeRange};
 use crate::passivity::interval::Interval;
 
@@ -18,9 +18,10 @@ pub(super) struct ExtremeSlopes {
 impl ExtremeSlopes {
     /// `None` where there is none: a torque in front of the coupling that rises faster than the coupling's
     /// own.
-    pub const fn of(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
-        let Self { rise, fall } = Self::of_table(profile, n);
-        if profile.delay > 0 {
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub const fn of<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Option<Self> {
+        let Self { rise, fall } = Self::of_table::<E>(profile, n);
+        if profile.delay > 0 || !E::PROFILE.is_prompt {
             return Some(Self { rise, fall });
         }
         let left = Interval::ONE.sub(rise.mul(n.compliance));
@@ -33,7 +34,7 @@ impl ExtremeSlopes {
 
     /// Those of the table, its end stops and the line to a snap point, wherever the coupling is: all
     /// branches have the same.
-    pub const fn of_table(profile: &AnyProfile, n: &LoopIntervals) -> Self {
+    pub const fn of_table<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Self {
         let outline = profile.outline();
         let unit = around(n.format.torque_of_part(profile.scale().torque_of_part));
         let unit = unit.mul(parts_per_rad(profile, n));
@@ -44,11 +45,11 @@ impl ExtremeSlopes {
         };
         let fall = unit.mul(Interval::exact(outline.fall as f64));
         match &profile.snap {
-            None => Self { rise, fall },
-            Some(snap) => {
+            Some(snap) if E::PROFILE.snaps => {
                 let line = line(snap, profile, n);
                 Self { rise: rise.add(line), fall: fall.sub(line).max(Interval::ZERO) }
             }
+            _ => Self { rise, fall },
         }
     }
 
@@ -75,26 +76,32 @@ const fn snaps_unproved(profile: &AnyProfile, n: &LoopIntervals) -> bool {
 /// times the steepest fall (equation 47).
 ///
 /// A limit on the torque takes from slopes, and adds none.
-pub(super) const fn profile_bound(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
-    if is_motor(profile) || snaps_unproved(profile, n) {
+pub(super) const fn profile_bound<E: EnvironmentModel>(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+) -> Option<Interval> {
+    if is_motor(profile) || E::PROFILE.snaps && snaps_unproved(profile, n) {
         return None;
     }
-    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
+    let Some(slopes) = ExtremeSlopes::of::<E>(profile, n) else { return None };
     let half = n.period.half();
-    if profile.delay == 0 {
+    if profile.delay == 0 && E::PROFILE.is_prompt {
         return Some(half.mul(slopes.fall));
     }
     let more = Interval::exact(profile.delay as f64 - 1.0);
-    let damping = damper(profile, n).mul(n.period).abs();
+    let damping = damper::<E>(profile, n).mul(n.period).abs();
     let late = n.period.mul(more).mul(slopes.steepest());
     Some(half.mul(slopes.rise).add(late).add(damping))
 }
 
 /// The most by which the torque changes for a change of position, times the period:
 /// [`super::model::largest_gain`]. That of a branch, where there are some.
-pub(super) const fn profile_gain(profile: &AnyProfile, n: &LoopIntervals) -> Option<Interval> {
-    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
-    let damping = damper(profile, n).mul(n.period).abs();
+pub(super) const fn profile_gain<E: EnvironmentModel>(
+    profile: &AnyProfile,
+    n: &LoopIntervals,
+) -> Option<Interval> {
+    let Some(slopes) = ExtremeSlopes::of::<E>(profile, n) else { return None };
+    let damping = damper::<E>(profile, n).mul(n.period).abs();
     Some(slopes.steepest().mul(n.period).add(damping.double()))
 }
 
@@ -108,8 +115,9 @@ pub(super) const fn peak_gain(
     n: &LoopIntervals,
     compliance: f64,
 ) -> Option<f64> {
-    let steepest = ExtremeSlopes::of_table(profile, n).steepest();
-    let gain = steepest.add(damper(profile, n).abs().double()).add(Interval::exact(beside));
+    let steepest = ExtremeSlopes::of_table::<Environment>(profile, n).steepest();
+    let gain =
+        steepest.add(damper::<Environment>(profile, n).abs().double()).add(Interval::exact(beside));
     if profile.delay == 0 && !n.is_matched {
         // In front of the coupling.
         return Some(gain.hi());
@@ -120,7 +128,10 @@ pub(super) const fn peak_gain(
 
 /// Torque in N m over a part of a cell of the table, the smallest step of a place, at most.
 pub(super) const fn step_of_part(profile: &AnyProfile, n: &LoopIntervals) -> f64 {
-    ExtremeSlopes::of_table(profile, n).steepest().div(parts_per_rad(profile, n)).hi()
+    ExtremeSlopes::of_table::<Environment>(profile, n)
+        .steepest()
+        .div(parts_per_rad(profile, n))
+        .hi()
 }
 
 /// Whether a torque that is not zero in the mean would turn the device for ever.
@@ -135,17 +146,20 @@ pub(super) const fn is_motor(profile: &AnyProfile) -> bool {
 
 /// Whether a torque limit may make a motor of it: where it repeats for ever, and its torque is clipped on one
 /// side more than on the other.
-pub(super) const fn is_motor_where_limited(profile: &AnyProfile) -> bool {
+pub(super) const fn is_motor_where_limited<E: EnvironmentModel>(profile: &AnyProfile) -> bool {
     let is_odd = profile.outline().is_odd
         && match &profile.snap {
-            Some(snap) => snap.is_centred(),
-            None => true,
+            Some(snap) if E::PROFILE.snaps => snap.is_centred(),
+            _ => true,
         };
     profile.ends.is_none() && !is_odd
 }
 
 /// `B / T` in N m/rad of the damper beside it.
-const fn damper(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+const fn damper<E: EnvironmentModel>(profile: &AnyProfile, n: &LoopIntervals) -> Interval {
+    if !E::PROFILE.is_damped {
+        return Interval::ZERO;
+    }
     n.coefficient(Interval::decimal(profile.damping).div(n.period))
 }
 
@@ -170,7 +184,7 @@ pub(super) const fn profile_bound_at_port(
     if is_motor(profile) || n.misses_updates || profile.damping != 0.0 || profile.snap.is_some() {
         return None;
     }
-    let Some(slopes) = ExtremeSlopes::of(profile, n) else { return None };
+    let Some(slopes) = ExtremeSlopes::of::<Environment>(profile, n) else { return None };
     let (rise, steepest) = (slopes.rise.mul(n.period), slopes.steepest().mul(n.period));
     let late = Interval::exact(profile.delay as f64).add(delay);
     let ripple = part_of_sample(delay).mul(steepest).mul(steepest).div(n.delta.double().double());

@@ -1,6 +1,6 @@
 //! The range in which each number of a scene makes sense at all.
 
-use crate::environment::{AnyProfile, Composed, Environment, StatedModel};
+use crate::environment::{AnyProfile, Composed, Environment, ProfileUse, StatedModel};
 use crate::latency::{LONGEST_DELAY, LONGEST_LAG, TimeRange};
 use crate::parameter::{Parameter, Range};
 use crate::scene::Scene;
@@ -67,7 +67,7 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    match (first_invalid_number(scene, true, true), scene.environment.rational()) {
+    match (first_invalid_number(scene, ProfileUse::ANY), scene.environment.rational()) {
         (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
             Some(value) => Some(not_finite(Parameter::Numerator, value)),
             None => match first_not_finite(rational.denominator.as_slice()) {
@@ -79,62 +79,67 @@ pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
     }
 }
 
-/// The same without polynomials, on which no bound for a board depends. A program whose environment has no
-/// knots omits the code for those of torque profiles, and so does one without sums for those of sums.
+/// The same without polynomials, on which no bound for a board depends. A program omits the code for all that
+/// its environment does not have of torque profiles; one that asks only whether there is such a number has
+/// no sentences.
+#[inline(always)]
 pub(super) const fn first_invalid_number(
     scene: &Scene,
-    has_knots: bool,
-    is_composed: bool,
+    profile: ProfileUse,
 ) -> Option<InvalidParameter> {
     let environment = &scene.environment;
-    if let Some(invalid) = first_of(scene, &scene.own_numbers(), false) {
-        return Some(invalid);
-    }
-    if let Some(invalid) = first_of(scene, &environment.numbers(), has_knots) {
-        return Some(invalid);
-    }
+    let (own, numbers) = (scene.own_numbers(), environment.numbers());
     let whole = [
         (Parameter::Delay, environment.get(Parameter::Delay)),
         (Parameter::UnitZeros, environment.get(Parameter::UnitZeros)),
     ];
-    if let Some(invalid) = first_of(scene, &whole, has_knots) {
-        return Some(invalid);
+    let lists: [&[(Parameter, Option<f64>)]; 3] = [&own, &numbers, &whole];
+    let mut list = 0;
+    while list < lists.len() {
+        let mut i = 0;
+        while i < lists[list].len() {
+            if let (parameter, Some(value)) = lists[list][i]
+                && let Some(invalid) = invalid(scene, parameter, value, profile, list > 0)
+            {
+                return Some(invalid);
+            }
+            i += 1;
+        }
+        list += 1;
     }
     match environment {
-        Environment::Composed(composed) if is_composed => sum_conflict(composed),
+        Environment::Composed(composed) if profile.is_composed => sum_conflict(composed),
         _ => None,
     }
 }
 
-/// The first of these numbers of the scene that is out of its range or conflicts with another.
-const fn first_of(
+/// What is wrong with a number of the scene: it is out of its range or conflicts with another.
+#[inline(always)]
+const fn invalid(
     scene: &Scene,
-    numbers: &[(Parameter, Option<f64>)],
-    has_knots: bool,
+    parameter: Parameter,
+    value: f64,
+    profile: ProfileUse,
+    is_environments: bool,
 ) -> Option<InvalidParameter> {
-    let mut i = 0;
-    while i < numbers.len() {
-        if let (parameter, Some(value)) = numbers[i] {
-            if !parameter.range().admits(value) {
-                let bound = requirement(parameter.range());
-                return Some(InvalidParameter { parameter, value, bound, limit: None });
-            }
-            if let Some(invalid) = conflict(scene, parameter, value) {
-                return Some(invalid);
-            }
-            if has_knots
-                && let Some(profile) = profile_of(&scene.environment, parameter)
-                && let Some(invalid) = profile_conflict(profile, parameter, value)
-            {
-                return Some(invalid);
-            }
-        }
-        i += 1;
+    if !parameter.range().admits(value) {
+        let bound = requirement(parameter.range());
+        return Some(InvalidParameter { parameter, value, bound, limit: None });
+    }
+    if let Some(conflict) = conflict(scene, parameter, value) {
+        return Some(conflict);
+    }
+    if profile.exists
+        && is_environments
+        && let Some(of) = profile_of(&scene.environment, parameter)
+    {
+        return profile_conflict(of, parameter, value, profile);
     }
     None
 }
 
 /// A number in its range that conflicts with another one of the scene.
+#[inline(always)]
 const fn conflict(scene: &Scene, parameter: Parameter, value: f64) -> Option<InvalidParameter> {
     let (bound, limit) = match parameter {
         Parameter::Passivity if value > scene.device.damping => {
@@ -199,7 +204,7 @@ const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
             let bound = requirement(parameter.range());
             return Some(InvalidParameter { parameter, value, bound, limit: None });
         }
-        if let Some(invalid) = profile_conflict(profile, parameter, value) {
+        if let Some(invalid) = profile_conflict(profile, parameter, value, ProfileUse::ANY) {
             return Some(invalid);
         }
         i += 1;
@@ -212,10 +217,12 @@ const BESIDE_ENDS: &str = "beside a torque profile with end stops: one without t
                            and a wall stands in one of them";
 
 /// The same of a number of a torque profile.
+#[inline(always)]
 const fn profile_conflict(
     profile: &AnyProfile,
     parameter: Parameter,
     value: f64,
+    has: ProfileUse,
 ) -> Option<InvalidParameter> {
     let outline = profile.outline();
     let cell = 1.0 / profile.knots_per_rad();
@@ -239,7 +246,7 @@ const fn profile_conflict(
         (Parameter::From, Some(_)) if !outline.wraps && value < profile.centre + 0.5 * cell => {
             ("within the table of the profile: at least", Some(profile.centre + 0.5 * cell))
         }
-        (Parameter::To, Some(_)) if holds_nothing(profile) => {
+        (Parameter::To, Some(_)) if has.snaps && holds_nothing(profile) => {
             ("such that the centre of a detent with a snap point is between the end stops", None)
         }
         (Parameter::To, Some(_)) if !outline.wraps => {
@@ -252,13 +259,13 @@ const fn profile_conflict(
         (Parameter::Stiffness, Some(_)) if value <= 0.0 => {
             ("greater than 0 beyond end stops", None)
         }
-        (Parameter::Mode, _) => match &profile.modes {
+        (Parameter::Mode, _) if has.has_modes => match &profile.modes {
             Some(modes) if modes.index().is_none() => {
                 ("a whole number from 0 to", Some(modes.last() as f64))
             }
             _ => return None,
         },
-        (Parameter::Damping, _) if value != 0.0 && profile.delay == 0 => {
+        (Parameter::Damping, _) if has.is_damped && value != 0.0 && profile.delay == 0 => {
             ("0 beside a torque profile that is not late", None)
         }
         _ => return None,
@@ -283,6 +290,7 @@ const MOST_KNOTS: f64 = 65536.0;
 const LARGEST_ANGLE: f64 = 100.0;
 
 /// The same of a time between count and torque.
+#[inline(always)]
 const fn latency_conflict(
     scene: &Scene,
     parameter: Parameter,

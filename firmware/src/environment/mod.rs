@@ -9,58 +9,57 @@
 //! [`StatedEnvironment`] of another crate runs beside them.
 
 /// Gives a macro all environments, each with its generic parameters, with whether it may cancel the
-/// device's damping, with what its law remembers for a coupling, and with whether it may be a torque profile:
-/// the one list of them; `composed` is one that has something beside a profile. Each is there as [`Matched`],
-/// too.
+/// device's damping, with what its law remembers for a coupling, and with what it may have of a torque profile:
+/// the one list of them. Each is there as [`Matched`], too.
 macro_rules! for_every_environment {
     ($apply:ident) => {
         $apply! {
-            [const N: usize] DelayedSpring<N>: false, None, false;
-            [const N: usize] Placed<DelayedSpring<N>>: false, None, false;
-            [const N: usize] OneSided<DelayedSpring<N>>: false, None, false;
-            [const N: usize] DamperWall<N>: false, None, false;
-            [const N: usize] Placed<DamperWall<N>>: false, None, false;
-            [const N: usize] OneSided<DamperWall<N>>: false, None, false;
-            [const N: usize] FilteredWall<N>: false, None, false;
-            [const N: usize] Placed<FilteredWall<N>>: false, None, false;
-            [const N: usize] OneSided<FilteredWall<N>>: false, None, false;
-            [const N: usize] FreeMode<N>: true, None, false;
-            [const N: usize] FreeModeWall<DelayedSpring<N>>: true, None, false;
-            [const N: usize] FreeModeWall<DamperWall<N>>: true, None, false;
-            [const N: usize] FreeModeWall<FilteredWall<N>>: true, None, false;
-            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true, None, false;
-            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true, None, false;
-            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None, false;
-            [const KNOTS: usize, const N: usize] Profile<KNOTS, N>: false, None, true;
-            [const KNOTS: usize, const N: usize] DampedProfile<KNOTS, N>: false, None, true;
-            [const N: usize] ProfileModes<N>: false, None, true;
+            [const N: usize] DelayedSpring<N>: false, None, ProfileUse::NONE;
+            [const N: usize] Placed<DelayedSpring<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] OneSided<DelayedSpring<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] DamperWall<N>: false, None, ProfileUse::NONE;
+            [const N: usize] Placed<DamperWall<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] OneSided<DamperWall<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] FilteredWall<N>: false, None, ProfileUse::NONE;
+            [const N: usize] Placed<FilteredWall<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] OneSided<FilteredWall<N>>: false, None, ProfileUse::NONE;
+            [const N: usize] FreeMode<N>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<DelayedSpring<N>>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<DamperWall<N>>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<FilteredWall<N>>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<OneSided<DelayedSpring<N>>>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<OneSided<DamperWall<N>>>: true, None, ProfileUse::NONE;
+            [const N: usize] FreeModeWall<OneSided<FilteredWall<N>>>: true, None, ProfileUse::NONE;
+            [const KNOTS: usize, const N: usize] Profile<KNOTS, N>: false, None, ProfileUse::table(N);
+            [const KNOTS: usize, const N: usize] DampedProfile<KNOTS, N>: false, None, ProfileUse::damped(N);
+            [const N: usize] ProfileModes<N>: false, None, ProfileUse::modes(N);
             [const KNOTS: usize, const N: usize]
-                FreeModeProfile<Profile<KNOTS, N>>: true, None, true, composed;
+                FreeModeProfile<Profile<KNOTS, N>>: true, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
-                WallAndProfile<DelayedSpring<D>, Profile<KNOTS, N>>: false, None, true, composed;
+                WallAndProfile<DelayedSpring<D>, Profile<KNOTS, N>>: false, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
-                WallAndProfile<DamperWall<D>, Profile<KNOTS, N>>: false, None, true, composed;
+                WallAndProfile<DamperWall<D>, Profile<KNOTS, N>>: false, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 WallAndProfile<OneSided<DelayedSpring<D>>, Profile<KNOTS, N>>:
-                false, None, true, composed;
+                false, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 WallAndProfile<OneSided<DamperWall<D>>, Profile<KNOTS, N>>:
-                false, None, true, composed;
+                false, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 FreeModeWallAndProfile<DelayedSpring<D>, Profile<KNOTS, N>>:
-                true, None, true, composed;
+                true, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 FreeModeWallAndProfile<DamperWall<D>, Profile<KNOTS, N>>:
-                true, None, true, composed;
+                true, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 FreeModeWallAndProfile<OneSided<DelayedSpring<D>>, Profile<KNOTS, N>>:
-                true, None, true, composed;
+                true, None, ProfileUse::sum(N);
             [const KNOTS: usize, const D: usize, const N: usize]
                 FreeModeWallAndProfile<OneSided<DamperWall<D>>, Profile<KNOTS, N>>:
-                true, None, true, composed;
-            [const KNOTS: usize, const N: usize] SnapProfile<KNOTS, N>: false, None, true;
-            [] Rational: false, None, false;
-            [] Environment: true, Any, true, composed;
+                true, None, ProfileUse::sum(N);
+            [const KNOTS: usize, const N: usize] SnapProfile<KNOTS, N>: false, None, ProfileUse::snap(N);
+            [] Rational: false, None, ProfileUse::NONE;
+            [] Environment: true, Any, ProfileUse::ANY;
         }
     };
 }
@@ -99,7 +98,7 @@ pub use free_mode::{FreeMode, FreeModeLaw, FreeModeWall, FreeModeWallLaw};
 pub use late::{Delayed, SupportsTiming};
 pub use law::{Discretize, Law, LawContext};
 pub use matched::{CouplingMemory, Matched, MatchedLaw};
-pub use model::{EnvironmentModel, Memory, StatedEnvironment};
+pub use model::{EnvironmentModel, Memory, ProfileUse, StatedEnvironment};
 pub use profile::{
     AnyProfile, AnySnap, Cell, DampedProfile, Ends, FULL_SCALE, Holding, KNOB_MODES, KnotTable,
     Knots, Layout, MODES, Mode, ModeSelection, ModeTable, NoSnap, Outline, Profile, ProfileLaw,

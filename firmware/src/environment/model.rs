@@ -57,18 +57,78 @@ impl Memory {
     }
 }
 
+/// What a type of environment may have of a torque profile. Its program omits the code that certifies
+/// anything else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProfileUse {
+    /// Whether it may be one, alone or in a sum.
+    pub exists: bool,
+    /// Whether that may be one that is not late.
+    pub is_prompt: bool,
+    /// Whether it may have a damper of its own.
+    pub is_damped: bool,
+    /// Whether it may have a snap point.
+    pub snaps: bool,
+    /// Whether it may be one of several modes.
+    pub has_modes: bool,
+    /// Whether something may be beside it.
+    pub is_composed: bool,
+}
+
+impl ProfileUse {
+    /// There is none.
+    pub const NONE: Self = Self {
+        exists: false,
+        is_prompt: false,
+        is_damped: false,
+        snaps: false,
+        has_modes: false,
+        is_composed: false,
+    };
+    /// Whatever there is.
+    pub const ANY: Self = Self {
+        exists: true,
+        is_prompt: true,
+        is_damped: true,
+        snaps: true,
+        has_modes: true,
+        is_composed: true,
+    };
+
+    /// A table, late by so many samples.
+    pub const fn table(delay: usize) -> Self {
+        Self { exists: true, is_prompt: delay == 0, ..Self::NONE }
+    }
+
+    /// A table with a damper.
+    pub const fn damped(delay: usize) -> Self {
+        Self { is_damped: true, ..Self::table(delay) }
+    }
+
+    /// A table with a snap point.
+    pub const fn snap(delay: usize) -> Self {
+        Self { snaps: true, ..Self::table(delay) }
+    }
+
+    /// Tables of which one is selected.
+    pub const fn modes(delay: usize) -> Self {
+        Self { has_modes: true, ..Self::snap(delay) }
+    }
+
+    /// A table with something beside it.
+    pub const fn sum(delay: usize) -> Self {
+        Self { is_composed: true, ..Self::table(delay) }
+    }
+}
+
 /// An environment that the certificate knows: one of this crate's, or a [`StatedEnvironment`].
 pub trait EnvironmentModel: NamedParameters + Copy + sealed::Sealed + 'static {
     /// Whether it may cancel the device's damping. If not, the program of the environment omits the
     /// code that certifies cancelled damping.
     const CANCELS_DAMPING: bool;
 
-    /// Whether it may be a torque profile. If not, the program omits the code that certifies one.
-    const HAS_KNOTS: bool;
-
-    /// Whether something may be beside its torque profile. If not, the program omits the code that certifies
-    /// such a sum.
-    const IS_COMPOSED: bool;
+    /// What it may have of a torque profile.
+    const PROFILE: ProfileUse;
 
     /// What its law remembers for a coupling.
     const MEMORY: Memory;
@@ -81,8 +141,7 @@ impl<E: StatedEnvironment> sealed::Sealed for E {}
 
 impl<E: StatedEnvironment> EnvironmentModel for E {
     const CANCELS_DAMPING: bool = false;
-    const HAS_KNOTS: bool = false;
-    const IS_COMPOSED: bool = false;
+    const PROFILE: ProfileUse = ProfileUse::NONE;
     const MEMORY: Memory = Memory::None;
 
     fn as_data(&self, context: &LawContext) -> Environment {
@@ -91,11 +150,9 @@ impl<E: StatedEnvironment> EnvironmentModel for E {
 }
 
 macro_rules! known_models {
-    (@) => { false };
-    (@ composed) => { true };
     ($(
         [$($generics:tt)*] $environment:ty:
-        $cancels:literal, $memory:ident, $knots:literal $(, $composed:ident)?;
+        $cancels:literal, $memory:ident, $profile:expr;
     )*) => {$(
         impl<const WHOLE: usize, const LAGS: usize, $($generics)*> sealed::Sealed
             for Matched<$environment, WHOLE, LAGS>
@@ -106,8 +163,7 @@ macro_rules! known_models {
             for Matched<$environment, WHOLE, LAGS>
         {
             const CANCELS_DAMPING: bool = $cancels;
-            const HAS_KNOTS: bool = $knots;
-            const IS_COMPOSED: bool = known_models!(@ $($composed)?);
+            const PROFILE: ProfileUse = $profile;
             const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS };
 
             fn as_data(&self, _: &LawContext) -> Environment {
@@ -128,8 +184,7 @@ macro_rules! known_models {
 
         impl<$($generics)*> EnvironmentModel for $environment {
             const CANCELS_DAMPING: bool = $cancels;
-            const HAS_KNOTS: bool = $knots;
-            const IS_COMPOSED: bool = known_models!(@ $($composed)?);
+            const PROFILE: ProfileUse = $profile;
             const MEMORY: Memory = Memory::$memory;
 
             fn as_data(&self, _: &LawContext) -> Environment {

@@ -86,9 +86,9 @@ impl<N: Number> Turn<N> {
     /// Starts at a position that may be any number of turns away from zero.
     pub(crate) fn start_at(&mut self, count: i64) {
         let origin = match self.extent {
-            Extent::Turn => count - count % i64::from(self.counts),
+            Extent::Turn => whole_turns(count, self.counts),
             Extent::Counted { turn, from, to } => {
-                count - nearest(count, turn.into(), [from.into(), to.into()])
+                count - nearest(count, turn, [from.into(), to.into()])
             }
             Extent::Device | Extent::Range(_) => return,
         };
@@ -137,13 +137,29 @@ impl<N: Number> Turn<N> {
 }
 
 /// The position whole turns from `count` that is nearest to a range, and of these the nearest to `count`.
-fn nearest(count: i64, turn: i64, [from, to]: [i64; 2]) -> i64 {
+fn nearest(count: i64, turn: i32, [from, to]: [i64; 2]) -> i64 {
     let away = |count: i64| (from - count).max(count - to).max(0);
-    let toward = if count < from { turn } else { -turn };
+    let sign = if count < from { 1 } else { -1 };
     // The last one on this side of the range, or at its end; the next one may be within it or nearer.
-    let here = count + away(count) / turn * toward;
-    let next = here + toward;
+    let here = count + sign * whole_turns(away(count), turn);
+    let next = here + sign * i64::from(turn);
     if away(next) < away(here) { next } else { here }
+}
+
+/// A count less what it is over whole turns, toward zero. By digits, once in a start: a division of numbers
+/// as wide would take more of a board's flash than all the rest of this.
+#[cold]
+#[inline(never)]
+fn whole_turns(count: i64, turn: i32) -> i64 {
+    const DIGIT: u32 = 4;
+    let (mut digits, turn) = (count.unsigned_abs(), turn.unsigned_abs());
+    let mut rest = 0;
+    for _ in 0..u64::BITS / DIGIT {
+        digits = digits.rotate_left(DIGIT);
+        // A turn has at most 2^28 counts, so that a digit more fits 32 bits.
+        rest = (rest << DIGIT | digits as u32 % (1 << DIGIT)) % turn;
+    }
+    count - i64::from(rest) * count.signum()
 }
 
 #[cfg(test)]
@@ -160,10 +176,22 @@ mod tests {
                 let best = (-1000..=1000).min_by_key(|&turns| (away(turns).max(0), turns.abs()));
                 let best = count + best.unwrap() * turn;
                 assert_eq!(
-                    nearest(count, turn, [from, to]),
+                    nearest(count, turn as i32, [from, to]),
                     best,
                     "{count} of {turn}: {from} to {to}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn whole_turns_are_those_of_a_division() {
+        for turn in [1, 2, 7, 1000, 16384, (1 << 28) - 1, 1 << 28] {
+            for count in [0, 1, 999, 1000, 1001, 1 << 40, i64::MAX, (7 << 32) + 123] {
+                for count in [count, -count] {
+                    let divided = count / i64::from(turn) * i64::from(turn);
+                    assert_eq!(whole_turns(count, turn), divided, "{count} of {turn}");
+                }
             }
         }
     }

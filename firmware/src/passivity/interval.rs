@@ -210,6 +210,7 @@ impl Interval {
     }
 
     /// The smaller of two numbers, one from each interval.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub const fn min(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi) }
     }

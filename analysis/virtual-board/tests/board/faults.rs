@@ -136,8 +136,9 @@ const CASES: &[Case] = &[
         program: "damper_wall",
         bound: 1.0,
         provoke: |bench| {
-            let coefficient = coefficient(bench);
-            assert!(bench.machine.core_mut().set_memory(coefficient, &f32::NAN.to_le_bytes()));
+            for place in coefficient(bench) {
+                assert!(bench.machine.core_mut().set_memory(place, &f32::NAN.to_le_bytes()));
+            }
             bench.machine.board().now
         },
         resets: false,
@@ -287,8 +288,9 @@ fn panics(bench: &mut Bench) -> u64 {
     bench.machine.board().now
 }
 
-/// Where the servo has the angle of a count, as a number in single precision.
-pub fn coefficient(bench: &mut Bench) -> u32 {
+/// Where the servo has the angle of a count, as a number in single precision. A move of the servo may have left
+/// it in a gap between two fields as well, where nothing reads it.
+pub fn coefficient(bench: &mut Bench) -> Vec<u32> {
     let (place, size) = bench.symbol("9ISR_STATE");
     let angle = std::f32::consts::TAU / 61_440.0;
     let core = bench.machine.core_mut();
@@ -297,8 +299,8 @@ pub fn coefficient(bench: &mut Bench) -> u32 {
         (value / angle - 1.0).abs() < 1e-6
     };
     let found: Vec<_> = (place..place + size).step_by(4).filter(is_it).collect();
-    assert_eq!(found.len(), 1, "the coefficient is found once");
-    found[0]
+    assert!(matches!(found.len(), 1 | 2), "{found:x?}");
+    found
 }
 
 impl Case {

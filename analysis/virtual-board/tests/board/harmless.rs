@@ -166,8 +166,9 @@ fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
     on_both(|chip| {
         for bit in 0..32 {
             let mut bench = pushing(chip);
-            let coefficient = coefficient(&mut bench);
-            bench.flip(coefficient, 1 << bit);
+            for place in coefficient(&mut bench) {
+                bench.flip(place, 1 << bit);
+            }
             let from = bench.pins().samples.len();
             bench.run(100);
             let what = format!("{}, bit {bit}", chip.name);
@@ -186,9 +187,10 @@ fn a_coefficient_with_a_flipped_bit_pushes_no_harder_than_the_limit() {
 fn a_position_that_is_no_number_with_a_negative_sign_gives_no_torque() {
     on_both(|chip| {
         let mut bench = pushing(chip);
-        let coefficient = coefficient(&mut bench);
         let negative = (-f32::NAN).to_le_bytes();
-        assert!(bench.machine.core_mut().set_memory(coefficient, &negative));
+        for place in coefficient(&mut bench) {
+            assert!(bench.machine.core_mut().set_memory(place, &negative));
+        }
         bench.run(3);
         assert_eq!(bench.machine.board().torque(), Some(MID_SCALE), "{}", chip.name);
         assert_running(&mut bench, chip.name);

@@ -297,7 +297,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
     is_late: bool,
     format: Format,
 ) -> Result<Limited, Step> {
-    if first_invalid_number(scene, E::HAS_KNOTS, E::IS_COMPOSED).is_some() {
+    if first_invalid_number(scene, E::PROFILE).is_some() {
         return Err(Step::Certificate);
     }
     if !M::TIMING.fits(scene.timing.period) || !is_at_its_phase(M::TIMING, scene) {
@@ -316,7 +316,7 @@ pub(super) const fn judged<E: EnvironmentModel, M: OutputMode>(
         }
     };
     let Some(solved) = solved else { return Err(Step::Certificate) };
-    if E::HAS_KNOTS && is_uneven(&scene.environment) {
+    if E::PROFILE.exists && is_uneven::<E>(&scene.environment) {
         return Err(Step::Certificate);
     }
     let Some(bound) = nonlinear_bound::<E>(&scene.environment, solved, n) else {
@@ -435,9 +435,9 @@ const fn read_late(limited: &Limited, n: &LoopIntervals) -> Interval {
 }
 
 /// Whether a torque limit may make a motor of it.
-const fn is_uneven(environment: &Environment) -> bool {
+const fn is_uneven<E: EnvironmentModel>(environment: &Environment) -> bool {
     match environment.profile() {
-        Some(profile) => is_motor_where_limited(profile),
+        Some(profile) => is_motor_where_limited::<E>(profile),
         None => false,
     }
 }
@@ -455,7 +455,7 @@ pub(super) const fn limited_bound(
     bound: Option<Interval>,
     n: &LoopIntervals,
 ) -> Option<Interval> {
-    if is_uneven(&scene.environment) {
+    if is_uneven::<Environment>(&scene.environment) {
         return None;
     }
     if matches!(rule, Rule::Nonlinear) {

@@ -166,7 +166,7 @@ fn what_no_proof_covers_is_refused_with_a_sentence() {
             matches!(error, Rejection::Undecided { doubt: UndecidedReason::NoSnapBound, .. }),
             "{error}"
         );
-        assert!(error.to_string().contains("give it a delay of 0 or 1, and a coupling"), "{error}");
+        assert!(error.to_string().contains("give it a delay of 0 or 1, a coupling"), "{error}");
     };
     no_proof(&scene(SnapProfile::<64, 2>::of(&KNOB).as_data()));
     for delayed in

@@ -123,8 +123,11 @@ impl Host {
                     code = output.code.get();
                     (code.into(), output.limit as u32)
                 });
-                let instructions = self.scale.measured(time);
-                *output = Output { value: servo.torque_nm(), code, instructions };
+                *output = Output { value: servo.torque_nm(), code, instructions: time };
+            }
+            // Not before: what the scale needs would be loaded within the measured stretch.
+            for output in &mut outputs {
+                output.instructions = self.scale.measured(output.instructions);
             }
             self.outputs(&outputs)?;
         }

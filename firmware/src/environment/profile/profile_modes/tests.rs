@@ -4,7 +4,9 @@ use super::*;
 use crate::certificate::{Rejection, certify_in, certify_scene, first_refused_mode};
 use crate::coupling::{Coupling, Response};
 use crate::encoder::{CounterWidth, RawCount};
-use crate::environment::{Environment, KNOB_MODES, Law, MODES, ModeTable, Shape};
+use crate::environment::{
+    Environment, KNOB_MODES, Knots, Law, MODES, ModeTable, Shape, SnapProfile,
+};
 use crate::number::Format;
 use crate::scene::{Device, Latency, Scene, Timing};
 use crate::servo::{BuildError, Latched, PreparedServo, RenderingOptions, Servo, Transducers};
@@ -187,5 +189,40 @@ fn a_mode_with_end_stops_starts_in_the_nearest_turn() {
                 servo.torque_nm()
             );
         }
+    }
+}
+
+/// A mode may have a snap point: its torques are those of the type that has it alone.
+#[test]
+fn a_mode_has_its_snap_point() {
+    const SHAPES: [Shape; 2] =
+        [Shape::detents(24, 0.05).snap(1.1), Shape::end_stops(-1.0, 1.0, 15.0)];
+    static TABLE: ModeTable<16> = ModeTable::of(&SHAPES);
+    static MODES: [ProfileMode; 1] = [TABLE.named("snap")];
+    static KNOTS: Knots<16> = Knots::of(&SHAPES);
+    let modes = scene(ProfileModes::of(&MODES)).certified();
+    let context = modes.scene().context();
+    let mut law: ModeLaw<f32, 1> = Discretize::law(&modes.scene().environment, &context).unwrap();
+    let mut alone = Discretize::<f32>::law(&SnapProfile::<16, 1>::of(&KNOTS), &context).unwrap();
+    law.rest_at(0.0);
+    alone.rest_at(0.0);
+    let (mut seen, mut snaps) = ([0.0; 2], 0);
+    for tick in 0..400 {
+        // There and back, by a count a tick and a little more.
+        let x = 0.7 * (tick as f32 / 64.0).sin();
+        let before = seen;
+        seen = [held(&law, x), held(&alone, x)];
+        assert_eq!(seen[0], seen[1], "tick {tick}");
+        snaps += u32::from((seen[0] - before[0]).abs() > 0.03);
+        law.update(x);
+        alone.update(x);
+    }
+    assert!(snaps > 4, "{snaps}");
+}
+
+fn held<L: Law<f32>>(law: &L, x: f32) -> f32 {
+    match law.evaluate(x) {
+        Response::Held(torque) => torque,
+        other => panic!("{other:?}"),
     }
 }
