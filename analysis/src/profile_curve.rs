@@ -73,7 +73,7 @@ impl ProfileCurve {
         let mut table = *profile;
         table.snap = None;
         let table = undelayed(scene, &table)?;
-        let mut pieces = steepest(profile, &shown, &table);
+        let mut pieces = steepest(profile, shown, &table);
         let certified =
             certified_rise(scene, profile, pieces[0].slope, line).map(|slope| slope + line);
         for piece in &mut pieces {
@@ -87,7 +87,7 @@ impl ProfileCurve {
         if fall.slope > 0.0 {
             (fall.slope, fall.width) = (0.0, 0.0);
         }
-        let branches = snap_branches::of(scene, profile, &shown);
+        let branches = snap_branches::of(scene, profile, shown);
         Some(Self { points, rise, fall, certified, branches })
     }
 }

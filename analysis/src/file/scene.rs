@@ -76,7 +76,7 @@ pub fn read(source: (&str, &Faults), root: Node, purpose: Purpose) -> Read<Scene
             table.within(&top, full_scale)?;
             (table.environment, Some(table.shapes))
         }
-        EnvironmentTable::Other(environment) => (environment, None),
+        EnvironmentTable::Other(environment) => (*environment, None),
     };
     let latency = latency_of(&top, &servo, &table, environment.is_late())?;
     let DeviceTable { chain, device, friction, .. } = table;
@@ -213,7 +213,7 @@ fn limits_of(mut section: Section<'_>) -> Read<[Option<f64>; 3]> {
 /// What `[environment]` says.
 enum EnvironmentTable {
     Profile(Box<ProfileTable>),
-    Other(Environment),
+    Other(Box<Environment>),
 }
 
 fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
@@ -228,7 +228,8 @@ fn environment_of(mut section: Section<'_>) -> Read<EnvironmentTable> {
             match kind.blank {
                 Environment::Profile(_) => profile::profile(&mut section)
                     .map(|table| EnvironmentTable::Profile(Box::new(table))),
-                _ => of_kind(kind, &mut section).map(EnvironmentTable::Other),
+                _ => of_kind(kind, &mut section)
+                    .map(|other| EnvironmentTable::Other(Box::new(other))),
             }
         }
         Err(reported) => {

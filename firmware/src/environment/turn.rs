@@ -157,7 +157,7 @@ fn whole_turns(count: i64, turn: i32) -> i64 {
     for _ in 0..u64::BITS / DIGIT {
         digits = digits.rotate_left(DIGIT);
         // A turn has at most 2^28 counts, so that a digit more fits 32 bits.
-        rest = (rest << DIGIT | digits as u32 % (1 << DIGIT)) % turn;
+        rest = ((rest << DIGIT) | (digits as u32 % (1 << DIGIT))) % turn;
     }
     count - i64::from(rest) * count.signum()
 }
