@@ -24,7 +24,7 @@ pub const MAX_CHANGES: usize = 8;
 /// Longest message to a board, in bytes: the longest set, nine bytes a number.
 pub const LONGEST_TO_BOARD: usize = 8 + 10 * MAX_CHANGES;
 /// Longest message to the host, in bytes: a full batch of ticks, and a program described.
-pub const LONGEST_TO_HOST: usize = 344;
+pub const LONGEST_TO_HOST: usize = 352;
 
 /// Numbers of a scene and what they are, or shall be together or not at all, in the units of a
 /// scene file.
