@@ -1,7 +1,9 @@
 //! Yes and no without the numbers against the assessment with them: the same answers, far from the
 //! line, next to it, and where rounding decides.
 
-use firmware::certificate::{Answer, PassivityProblem, Rejection, assess, timing_checked};
+use firmware::certificate::{
+    Answer, PassivityProblem, Rejection, assess, assess_in, timing_checked,
+};
 use firmware::environment::{Environment, Wall};
 use firmware::number::{Format, Number};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -36,7 +38,12 @@ where
     Environment: SupportsTiming<M>,
 {
     let quick = timing_checked::<_, M>(*scene, format);
-    let (room, margin) = match scene.certify_in(format).map(|scene| scene.time::<M>()) {
+    // A refused scene is not certified again, which would search for its remedies.
+    let certified = match assess_in(scene, format).outcome {
+        Ok(()) => scene.certify_in(format),
+        Err(rejection) => Err(rejection),
+    };
+    let (room, margin) = match certified.map(|scene| scene.time::<M>()) {
         Ok(Ok(timed)) => (timed.injectable_damping(), timed.margin()),
         // A search may leave open what the bound in closed form settles, next to the line only.
         Err(Rejection::Undecided { index: Some(index), limit: Some(limit), .. })
