@@ -399,7 +399,7 @@ fn narrowest_of(shapes: &Shapes, places: &[Place]) -> (String, Span) {
         None => (format!("{width} rad of `{}`", place.table), place.span.clone()),
     }
 }
-const SECOND_SNAP: &str = "is the second shape with `snap`; a torque profile has one at most";
+const SECOND_SNAP: &str = "this is the second shape with `snap`; a torque profile has one at most";
 
 const NEEDS_ENDS: &str = "repeats no whole number of times in a turn, so that it needs end stops, which hold the angle within \
      its range: a shape of type \"end_stops\", or `from`, `to` and `stiffness`";

@@ -67,8 +67,12 @@ pub(super) const fn half_down(value: f64) -> f64 {
 /// `value == 0.0`.
 pub(super) const fn is_zero(value: f64) -> bool {
     let bits = value.to_bits();
-    // In halves: of the whole the compiler makes a comparison of doubles again.
-    (bits >> 32) as u32 & (u32::MAX >> 1) | bits as u32 == 0
+    // Of the whole the compiler makes a comparison of doubles again, which a board calls.
+    if cfg!(target_os = "none") { is_zero_by_halves(bits) } else { bits & MAGNITUDE == 0 }
+}
+
+const fn is_zero_by_halves(bits: u64) -> bool {
+    ((bits >> 32) as u32 & (u32::MAX >> 1)) | bits as u32 == 0
 }
 
 /// `value >= 0.0`.
@@ -129,6 +133,7 @@ mod tests {
             assert_eq!(is_normal(value.to_bits()), value.is_normal(), "{value:e}");
             assert_eq!(is_not_negative(value), value >= 0.0, "{value:e}");
             assert_eq!(is_zero(value), value == 0.0, "{value:e}");
+            assert_eq!(is_zero_by_halves(value.to_bits()), value == 0.0, "{value:e}");
         }
         for value in [f64::NAN, -f64::NAN] {
             assert_eq!(below(value), f64::NEG_INFINITY);
