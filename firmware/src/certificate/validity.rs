@@ -113,6 +113,16 @@ pub(super) const fn first_invalid_number(
     }
 }
 
+/// A number that is out of the range of all numbers of its kind.
+#[inline(always)]
+const fn out_of_range(parameter: Parameter, value: f64) -> Option<InvalidParameter> {
+    if parameter.range().admits(value) {
+        return None;
+    }
+    let bound = requirement(parameter.range());
+    Some(InvalidParameter { parameter, value, bound, limit: None })
+}
+
 /// What is wrong with a number of the scene: it is out of its range or conflicts with another.
 #[inline(always)]
 const fn invalid(
@@ -122,9 +132,8 @@ const fn invalid(
     profile: ProfileUse,
     is_environments: bool,
 ) -> Option<InvalidParameter> {
-    if !parameter.range().admits(value) {
-        let bound = requirement(parameter.range());
-        return Some(InvalidParameter { parameter, value, bound, limit: None });
+    if let Some(out) = out_of_range(parameter, value) {
+        return Some(out);
     }
     if let Some(conflict) = conflict(scene, parameter, value) {
         return Some(conflict);
@@ -200,9 +209,8 @@ const fn sum_conflict(composed: &Composed) -> Option<InvalidParameter> {
     let mut i = 0;
     while i < hidden.len() {
         let (parameter, value) = hidden[i];
-        if !parameter.range().admits(value) {
-            let bound = requirement(parameter.range());
-            return Some(InvalidParameter { parameter, value, bound, limit: None });
+        if let Some(out) = out_of_range(parameter, value) {
+            return Some(out);
         }
         if let Some(invalid) = profile_conflict(profile, parameter, value, ProfileUse::ANY) {
             return Some(invalid);

@@ -2,15 +2,16 @@ use core::f64::consts::TAU;
 
 use fixed::types::I8F24;
 
+use super::tests::TRANSDUCERS;
 use super::*;
 use crate::certificate::{Rejection, certify};
 use crate::coupling::Response;
-use crate::encoder::{CounterWidth, RawCount};
+use crate::encoder::RawCount;
 use crate::environment::{Discretize, Environment, Law, Matched};
 use crate::number::{Number, Truncated};
 use crate::output_timing::Latched;
 use crate::passivity::poles::UndecidedReason;
-use crate::scene::{Coupling, Device, Latency, Scene, Timing};
+use crate::scene::{Coupling, Latency, Scene};
 use crate::servo::{BuildError, Servo, Transducers};
 
 static KNOB: Knots<64> =
@@ -18,22 +19,8 @@ static KNOB: Knots<64> =
 static ENDLESS: Knots<64> =
     Knots::of(&[Shape::detents(24, 0.05).snap(0.6), Shape::detents(8, 0.01)]);
 
-const TRANSDUCERS: Transducers = Transducers {
-    counts_per_turn: 61_440.0,
-    counter: CounterWidth::Bits16,
-    full_scale_torque: 1.0,
-    largest_speed: 100.0,
-};
-
 fn scene<E>(environment: E) -> Scene<E> {
-    Scene {
-        device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
-        timing: Timing { period: 0.001, worst_period: None },
-        coupling: Coupling::Spring { stiffness: 44.0 },
-        environment,
-        latency: Latency::NONE,
-        torque_limit: Some(0.5),
-    }
+    Scene { torque_limit: Some(0.5), ..tests::scene(environment) }
 }
 
 fn counts() -> impl Iterator<Item = RawCount> {

@@ -16,14 +16,15 @@ use crate::servo::{Servo, Transducers};
 const DETENTS: Knots<64> = Knots::of(&[Shape::detents(24, 0.02)]);
 const KNOB: Knots<16> = Knots::of(&[Shape::detents(24, 0.02), Shape::end_stops(-2.0, 2.0, 5.0)]);
 
-const TRANSDUCERS: Transducers = Transducers {
+pub(super) const TRANSDUCERS: Transducers = Transducers {
     counts_per_turn: 61_440.0,
     counter: CounterWidth::Bits16,
     full_scale_torque: 1.0,
     largest_speed: 100.0,
 };
 
-fn scene<E>(environment: E) -> Scene<E> {
+/// On the paddle of the examples at 1 kHz, with its torque not limited.
+pub(super) fn scene<E>(environment: E) -> Scene<E> {
     Scene {
         device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
         timing: Timing { period: 0.001, worst_period: None },
