@@ -15,7 +15,7 @@ use analysis::studies::bench::live::live_set;
 use analysis::studies::bench::matched::contact_instructions;
 use analysis::studies::number_format::{Motion, cost};
 use analysis::studies::tradeoff::{servo, sine};
-use analysis::toolchain::{NumberFormat, Toolchain, Tools, prepare};
+use analysis::toolchain::{NumberFormat, Program, Toolchain, Tools, prepare};
 use firmware::certificate::{Certified, Parameter, assess};
 use firmware::encoder::RawCount;
 use firmware::environment::{Environment, Wall};
@@ -261,6 +261,19 @@ fn behind_the_matched_coupling_a_board_computes_as_the_host_does() {
     let [most, with_a_lag] = contact_instructions(&elf).unwrap();
     println!("in contact: {most} instructions, {with_a_lag} with one lag");
     assert!(most <= 50 && with_a_lag <= 60, "{most}, {with_a_lag}");
+}
+
+/// What the servo leaves of a board's memory: 128 KiB of flash, 22 KiB of RAM.
+#[test]
+fn programs_without_a_log_fit_the_smallest_board() {
+    let scenes = TOOLCHAIN.scenes().unwrap();
+    let scenes: Vec<_> = scenes.iter().map(String::as_str).collect();
+    let built = TOOLCHAIN.build_bare(&scenes).unwrap_or_else(|error| panic!("{error}"));
+    for (scene, Program { sizes, .. }) in scenes.iter().zip(built) {
+        println!("{scene} {sizes:?}");
+        assert!(sizes.text > 0 && sizes.flash() <= 128 << 10);
+        assert!(sizes.bss > 0 && sizes.ram() <= 22 << 10);
+    }
 }
 
 /// A program that never answers is an error after a while, and not a wait for ever.

@@ -17,7 +17,7 @@ fn no_hand_takes_energy_out_of_a_certified_scene() {
     // A number of scenes, not a time: the same ones on every machine.
     let search = Search {
         seed: number("ADVERSARY_SEED").unwrap_or(1),
-        scenes: number("ADVERSARY_SCENES").unwrap_or(25_000),
+        scenes: number("ADVERSARY_SCENES").unwrap_or(50_000),
         time: None,
         choice: Choice::ANY,
         output: None,
