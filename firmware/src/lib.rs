@@ -18,7 +18,9 @@ pub mod environment;
 pub mod energy;
 pub mod torque;
 
+pub mod current;
 pub mod dac;
+pub mod torque_output;
 
 // Numbers of sensor and motor, for a servo.
 pub mod transducers;
