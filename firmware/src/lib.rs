@@ -20,6 +20,9 @@ pub mod torque;
 
 pub mod dac;
 
+// The current of a motor on a board's own power stage.
+pub mod current;
+
 // Numbers of sensor and motor, for a servo.
 pub mod transducers;
 
