@@ -22,6 +22,9 @@ pub mod current;
 pub mod dac;
 pub mod torque_output;
 
+// The current of a motor on a board's own power stage.
+pub mod current;
+
 // Numbers of sensor and motor, for a servo.
 pub mod transducers;
 

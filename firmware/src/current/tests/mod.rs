@@ -1,0 +1,1 @@
+//! The current loop against a motor that is computed otherwise.
