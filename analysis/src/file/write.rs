@@ -105,6 +105,9 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);
     time(lines, "actuator_response", scene.latency.actuator_response);
+    if scene.latency.actuator_updates > 0 {
+        lines.push(format!("actuator_updates = {}", scene.latency.actuator_updates));
+    }
     if chain.masses().len() > 1 {
         let damped = |table: &str, key: &str, value: f64, damping: f64| {
             format!("[[device.{table}]]\n{key} = {value:?}\ndamping = {damping:?}")

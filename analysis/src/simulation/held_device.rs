@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use firmware::scene::{Device, Latency, Scene};
 use nalgebra::{DMatrix, DVector};
 
-use super::discrete_plant::{DiscretePlant, Discretization};
+use super::discrete_plant::{DiscretePlant, Discretization, Pieces};
 use super::error::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
@@ -83,12 +83,14 @@ impl HeldDevice {
         hand: Hand,
         period: f64,
     ) -> Result<Self, SimulationError> {
-        let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency);
+        let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency, period);
         let delayed = Discretization::exact(period).delayed(latency.torque_delay().middle());
+        delayed.at_updates(&plant)?;
         let lags = !latency.actuator_lag.is_zero();
-        let part = |length: f64| Part::new(&plant, length, lags);
-        let before = (delayed.latency > 0.0).then(|| part(delayed.latency)).transpose()?;
-        let after = part(period - delayed.latency)?;
+        let part = |pieces: Pieces| Part::new(&plant, pieces, lags);
+        let [before, after] = delayed.pieces(&plant);
+        let before = (delayed.latency > 0.0).then(|| part(before)).transpose()?;
+        let after = part(after)?;
         Ok(Self { device, period, plant, whole: delayed.whole, before, after })
     }
 
@@ -111,7 +113,8 @@ impl HeldDevice {
         state.states[GRIP] = setpoint.from;
         let before = self.before.as_ref().map(|part| (part, old));
         let mut work = 0.0;
-        for (part, motor) in before.into_iter().chain([(&self.after, new)]) {
+        for (part, command) in before.into_iter().chain([(&self.after, new)]).flat_map(each) {
+            let motor = self.plant.motor_input(command, &state.states);
             let start = state.motion();
             let spent = part.spent(&self.device, &mut state.states, motor, speed);
             work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
@@ -124,9 +127,16 @@ impl HeldDevice {
     }
 }
 
-/// A part of a tick over which the commanded torque is held.
+/// A part of a tick as often as it is repeated.
+fn each<'p>((part, command): (&'p Part, f64)) -> impl Iterator<Item = (&'p Part, f64)> {
+    std::iter::repeat_n((part, command), part.count as usize)
+}
+
+/// A part of a tick over which the motor's input is held.
 #[derive(Clone, Debug)]
 struct Part {
+    /// How often it is repeated: once, unless the amplifier is updated.
+    count: u32,
     tick: DiscretePlant,
     /// `int x'^2 dt` over it as a quadratic form of [`at`] its start.
     velocity_energy: DMatrix<f64>,
@@ -135,11 +145,12 @@ struct Part {
 }
 
 impl Part {
-    fn new(plant: &Plant, length: f64, lags: bool) -> Result<Self, SimulationError> {
+    fn new(plant: &Plant, pieces: Pieces, lags: bool) -> Result<Self, SimulationError> {
+        let Pieces { count, length, .. } = pieces;
         let tick = DiscretePlant::checked(plant, &Discretization::exact(length), 0.0)?;
         let velocity_energy = integral(plant, length, [VELOCITY; 2]);
         let motor_work = lags.then(|| integral(plant, length, [VELOCITY, TORQUE]));
-        Ok(Self { tick, velocity_energy, motor_work })
+        Ok(Self { count, tick, velocity_energy, motor_work })
     }
 
     /// Takes the states to its end; gives the energy in J that the device's damping took less that which
