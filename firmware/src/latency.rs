@@ -127,6 +127,17 @@ impl Latency {
         Self { output_delay, actuator_lag, actuator_updates: updates, ..Self::NONE }
     }
 
+    /// Time in s from a count to the instant at which its code is taken over, beside whole samples: what an
+    /// [`OutputTiming`](crate::output_timing::OutputTiming) is about. A current loop's torque begins an update
+    /// later.
+    pub const fn code_delay(&self, period: f64) -> f64 {
+        let delay = self.output_delay.middle();
+        match self.actuator_updates {
+            0 => delay,
+            _ => self.delay_at_update(self.nearest_update(period).saturating_sub(1), period),
+        }
+    }
+
     /// The whole number of updates that is nearest to the output delay, at this period in s.
     pub const fn nearest_update(&self, period: f64) -> u32 {
         (self.output_delay.most / period * self.actuator_updates as f64 + 0.5) as u32

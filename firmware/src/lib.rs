@@ -18,7 +18,6 @@ pub mod environment;
 pub mod energy;
 pub mod torque;
 
-pub mod current;
 pub mod dac;
 pub mod torque_output;
 

@@ -52,6 +52,10 @@ pub const TIMER_TRIGGER: u8 = 7;
 /// the resistor to ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOA, pin: 15 };
 
+/// The power stage.
+#[cfg(feature = "bridge")]
+pub use crate::current::B_G431B_ESC1 as POWER_STAGE;
+
 /// The gates of the bridge: TIM1's channels and complementary channels, which are the high sides and the low
 /// sides of the phases U, V and W (UM2516, table 4; alternate functions by DS12589).
 #[cfg(feature = "bridge")]

@@ -71,6 +71,14 @@ impl CurrentController {
         }
     }
 
+    /// The fault of a comparator that has taken the gates away, with the larger of the two currents of the
+    /// instant after it.
+    #[cold]
+    pub fn over_current(&self, sample: &Sample) -> PowerFault {
+        let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
+        self.design.limits.over_current(counts(0).max(counts(1)))
+    }
+
     /// The same of a brushed motor.
     #[inline(always)]
     fn step_brushed(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {

@@ -77,7 +77,7 @@ impl Limits {
 
     #[cold]
     #[inline(never)]
-    fn over_current(&self, counts: f32) -> PowerFault {
+    pub(super) fn over_current(&self, counts: f32) -> PowerFault {
         let milliamps = |counts: f32| (counts * self.milliamps_per_count) as u32;
         PowerFault::OverCurrent {
             current: milliamps(counts),

@@ -116,10 +116,8 @@ fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
     let is_for = |name: &&str, output| toolchain.output_of(name).unwrap() == output;
-    let (bridged, programs): (Vec<_>, Vec<_>) = programs
-        .iter()
-        .map(String::as_str)
-        .partition(|name| is_for(name, TorqueOutput::Bridge));
+    let (bridged, programs): (Vec<_>, Vec<_>) =
+        programs.iter().map(String::as_str).partition(|name| is_for(name, TorqueOutput::Bridge));
     let ours = ["damper_wall", "delayed_spring", "free_mode", "identify", "supervised_spring"];
     assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
     for board in Board::ALL {

@@ -7,8 +7,6 @@ use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
 use super::{STATE, State, WAITING, off, pace, pwm, sense, tell};
-use crate::board::stm32::quadrature::Counter;
-use crate::board::stm32::wiring::ENCODER;
 use crate::current::{CurrentController, CurrentLoop, PowerFault, Sample};
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
@@ -17,6 +15,8 @@ use crate::output_timing::OutputTiming;
 pub struct CurrentIsr {
     controller: CurrentController,
     current_loop: &'static CurrentLoop,
+    /// Instants in a period of the servo.
+    updates: u32,
     /// The instant of the servo's period: 0 where one begins.
     instant: u32,
     /// The instant at which a code becomes the reference.
@@ -31,7 +31,8 @@ impl CurrentIsr {
         Self {
             controller: CurrentController::new(current_loop),
             current_loop,
-            instant: 1 % current_loop.updates(),
+            updates: current_loop.updates().into(),
+            instant: 1 % u32::from(current_loop.updates()),
             due: current_loop.instants_in(timing),
             reference: 0,
         }
@@ -40,15 +41,16 @@ impl CurrentIsr {
     /// One instant.
     #[inline(always)]
     pub fn run(&mut self) {
+        // Sampling.
+        let position = pace::captured();
         let begins = self.instant == 0;
         if begins {
-            pace::sample();
+            pace::begin_period(position);
         }
-        // Sampling.
         pwm::acknowledge();
         let currents = sense::currents();
         let (bus, temperature) = sense::bus_and_temperature();
-        let sample = Sample { currents, bus, temperature, count: ENCODER.count() };
+        let sample = Sample { currents, bus, temperature, position };
         if self.instant == self.due {
             self.reference = reference();
         }
@@ -61,7 +63,7 @@ impl CurrentIsr {
         }
         // Bookkeeping: the servo, below this.
         self.instant += 1;
-        if self.instant == self.current_loop.updates() {
+        if self.instant == self.updates {
             self.instant = 0;
         }
         if begins {
@@ -81,7 +83,11 @@ impl CurrentIsr {
         }
         if pwm::updated() {
             cold_path();
-            stop(self.controller.late());
+            let allowed = 2 * u32::from(self.current_loop.timer_counts());
+            stop(PowerFault::CurrentInterruptLate {
+                late: pwm::counts_since_update(allowed),
+                allowed,
+            });
         }
     }
 
@@ -89,15 +95,15 @@ impl CurrentIsr {
     #[cold]
     #[inline(never)]
     fn idle(&mut self, sample: &Sample) {
-        self.controller.idle(sample);
+        self.controller.measure_offset(sample);
         pwm::set(self.current_loop, self.current_loop.no_voltage());
         if STATE.load(Ordering::Relaxed) != State::Starting as u8 {
             return;
         }
-        match self.controller.start(sample) {
+        match self.controller.start() {
             Ok(()) => {
                 STATE.store(State::On as u8, Ordering::Relaxed);
-                pwm::on(self.current_loop);
+                pwm::on();
             }
             Err(fault) => stop(fault),
         }

@@ -25,8 +25,8 @@ mod sense;
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU8, AtomicU16, AtomicU32, Ordering};
 
+use embassy_stm32::interrupt as interrupts;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
-use embassy_stm32::{interrupt as interrupts, pac};
 
 pub use interrupt::CurrentIsr;
 pub use pace::Pace;
@@ -87,12 +87,12 @@ impl Output {
         let current_loop = setup.current_loop;
         pwm::prepare(current_loop);
         GATES.connect(current_loop.phases());
-        over_current::prepare(current_loop.over_current_code());
+        over_current::prepare(current_loop.over_current_counts());
         sense::prepare();
         // SAFETY: the interrupt that uses the place is not enabled yet.
         unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        Ok((Self(()), Pace::new(counts, current_loop.clock())))
+        Ok((Self(()), Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Lets the current interrupt begin, with the gates low.

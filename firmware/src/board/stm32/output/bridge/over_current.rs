@@ -7,6 +7,9 @@ use embassy_stm32::pac::dac::vals::Mode;
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
+use crate::board::stm32::wiring::POWER_STAGE;
+use crate::current::PowerStage;
+
 /// Gain of the shunts' amplifiers, whose inputs the comparators are at.
 const AMPLIFIER_GAIN: u16 = 16;
 
@@ -14,8 +17,12 @@ const AMPLIFIER_GAIN: u16 = 16;
 /// COMP3 have the first, COMP2 and COMP4 the second (RM0440, table of the inverting inputs).
 const COMPARATORS: [pac::comp::Comp; 3] = [pac::COMP1, pac::COMP2, pac::COMP4];
 
-/// Sets the comparators up for this many counts of the converters above no current.
-pub fn prepare(zero: u16, counts: u16) {
+/// How much above the current at which the current interrupt takes the gates away the comparators do: what
+/// is sampled in the middle of the low side has the ripple's mean, and a comparator sees its peak.
+const ABOVE: (u16, u16) = (6, 5);
+
+/// Sets the comparators up, for an over-current of this many counts of the converters.
+pub fn prepare(counts: u16) {
     rcc::enable_and_reset::<peripherals::DAC3>();
     let dac = pac::DAC3;
     dac.mcr().write(|w| {
@@ -27,7 +34,8 @@ pub fn prepare(zero: u16, counts: u16) {
     });
     // The shunts' voltages are those behind their amplifiers, by the gain. Rounded down: never later than
     // it says.
-    let threshold = (zero + counts) / AMPLIFIER_GAIN;
+    let counts = POWER_STAGE.no_current() + counts / ABOVE.1 * ABOVE.0;
+    let threshold = counts.min(PowerStage::LARGEST_COUNT) / AMPLIFIER_GAIN;
     for channel in 0..2 {
         dac.dhr12r(channel).write(|w| w.set_dhr(threshold));
     }

@@ -15,11 +15,14 @@
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::regs::BdtrAdv;
-use embassy_stm32::pac::timer::vals::{Bkinp, Bkp, Cms, FilterValue, Mms, Ocm, Ossi, Ossr, Urs};
+use embassy_stm32::pac::timer::vals::{
+    Bkinp, Bkp, Cms, Dir, FilterValue, Mms, Ocm, Ossi, Ossr, Urs,
+};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
-use crate::current::Duties;
+use crate::board::stm32::wiring::POWER_STAGE;
+use crate::current::{CurrentLoop, Duties};
 
 /// The timer.
 const TIMER: pac::timer::TimAdv = pac::TIM1;
@@ -28,10 +31,11 @@ const TIMER: pac::timer::TimAdv = pac::TIM1;
 const COMPARATORS: [usize; 3] = [0, 1, 3];
 
 /// Sets the timer up with all gates off, and leaves it standing.
-pub fn prepare(reload: u16, dead_time: u8, phases: usize) {
+pub fn prepare(current_loop: &CurrentLoop) {
+    let (reload, phases) = (current_loop.timer_counts(), current_loop.phases());
     rcc::enable_and_reset::<peripherals::TIM1>();
     // First of all: with the main output off, each gate that the timer is given is low.
-    TIMER.bdtr().write_value(gates(dead_time, false));
+    off();
     TIMER.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);
         // The update that is made below is none of the counter's.
@@ -60,7 +64,7 @@ pub fn prepare(reload: u16, dead_time: u8, phases: usize) {
         w.set_bkine(false);
         for comparator in COMPARATORS {
             w.set_bkcmpe(comparator, true);
-            w.set_bkcmpp(comparator.min(3), Bkinp::NOT_INVERTED);
+            w.set_bkcmpp(comparator, Bkinp::NOT_INVERTED);
         }
     });
     TIMER.egr().write(|w| w.set_ug(true));
@@ -74,9 +78,10 @@ pub fn start() {
 
 /// TIM1_BDTR with the gates on or off. Each write of it is a whole one, so that none of it can be lost
 /// between a read and a write.
-const fn gates(dead_time: u8, on: bool) -> BdtrAdv {
+#[inline(always)]
+fn gates(on: bool) -> BdtrAdv {
     let mut register = BdtrAdv(0);
-    register.set_dtg(dead_time);
+    register.set_dtg(POWER_STAGE.dead_time_counts());
     register.set_ossi(Ossi::IDLE_LEVEL);
     register.set_ossr(Ossr::IDLE_LEVEL);
     register.set_bke(0, true);
@@ -88,20 +93,18 @@ const fn gates(dead_time: u8, on: bool) -> BdtrAdv {
 
 /// Lets the timer drive the gates, from the next instant at which it switches one. A break that was before
 /// is forgotten; one that is takes them away again at once.
-pub fn on(dead_time: u8) {
+pub fn on() {
     TIMER.sr().write(|w| {
         w.0 = u32::MAX;
         w.set_bif(0, false);
     });
-    TIMER.bdtr().write_value(gates(dead_time, true));
+    TIMER.bdtr().write_value(gates(true));
 }
 
-/// All gates low, now: one write, which needs nothing but the timer's clock. The dead time that it writes is
-/// the longest, which nobody sees while the gates are low.
+/// All gates low, now: one write, which needs nothing but the timer's clock.
 #[inline(always)]
 pub fn off() {
-    const OFF: BdtrAdv = gates(u8::MAX, false);
-    TIMER.bdtr().write_value(OFF);
+    TIMER.bdtr().write_value(gates(false));
 }
 
 /// Whether a comparator has taken the gates away.
@@ -127,8 +130,15 @@ pub fn updated() -> bool {
 
 /// Duties for the next update.
 #[inline(always)]
-pub fn set<const PHASES: usize>(reload: u16, duties: Duties) {
-    for phase in 0..PHASES {
-        TIMER.ccr(phase).write(|w| w.set_ccr(reload - duties.0[phase]));
+pub fn set(current_loop: &CurrentLoop, duties: Duties) {
+    for (phase, duty) in duties.0.into_iter().enumerate() {
+        TIMER.ccr(phase).write(|w| w.set_ccr(current_loop.timer_counts().wrapping_sub(duty)));
     }
+}
+
+/// Counts of the timer since an update that has been missed, where a PWM period has so many.
+#[cold]
+pub fn counts_since_update(period: u32) -> u32 {
+    let (count, down) = (u32::from(TIMER.cnt().read().cnt()), TIMER.cr1().read().dir());
+    period + if down == Dir::DOWN { period - count } else { count }
 }
