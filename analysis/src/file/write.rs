@@ -248,6 +248,7 @@ mod tests {
             ("actuator_lag = [1e-5, 1.0000000000000002e-5]\n", "", ""),
             ("sensor_lag = 3e-5\n", "output_delay = [0, 5e-6]\n", "type = \"matched\"\n"),
             ("actuator_response = [1e-5, 3e-4]\n", "output_delay = 5e-6\n", ""),
+            ("actuator_lag = 3e-4\nactuator_updates = 5\n", "output_delay = 5e-4\n", ""),
             (
                 "",
                 "output_delay = 0.0081\noutput_jitter = 1e-6\n",

@@ -315,6 +315,48 @@ mod tests {
         }
     }
 
+    /// A delay of three updates of five in a period, against ticks of one between two updates, over which the
+    /// torque goes on from the middle of a straight line: the mean of both ends, in ever finer parts.
+    #[test]
+    fn the_torque_of_an_amplifier_in_updates_goes_in_straight_lines() {
+        const FINE: usize = 64;
+        let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
+        let (period, lag) = (1e-3, 3e-4);
+        let sampled = Latency::sampled(5, lag, period);
+        let output_delay = firmware::latency::TimeRange::exactly(6e-4);
+        let latency = Latency { output_delay, ..sampled };
+        let late = HeldDevice::lagging(DEVICE, &latency, hand, period).unwrap();
+        let short = HeldDevice::new(DEVICE, hand, period / (5 * FINE) as f64).unwrap();
+        let start = Motion { position: 0.02, velocity: -1.0 };
+        let (mut state, mut fine) = (late.at(start), short.at(start));
+        let left = (-period / 5.0 / lag).exp();
+        let (mut torque, mut commanded) = (0.0, 0.0);
+        for command in [0.3, -0.1, 0.2, 0.05, -0.4, 0.1] {
+            let setpoint = HandSetpoint { from: 0.05, to: 0.05 };
+            let work = late.step(&mut state, command, setpoint);
+            let mut parts = 0.0;
+            for update in 0..5 {
+                if update == 3 {
+                    commanded = command;
+                }
+                let end = commanded + (torque - commanded) * left;
+                for part in 0..FINE {
+                    let share = (part as f64 + 0.5) / FINE as f64;
+                    parts += short.step(&mut fine, torque + (end - torque) * share, setpoint);
+                }
+                torque = end;
+            }
+            let (end, same) = (state.motion(), fine.motion());
+            assert!((end.position - same.position).abs() < 1e-8, "{end:?} {same:?}");
+            assert!((end.velocity - same.velocity).abs() < 1e-4, "{end:?} {same:?}");
+            assert!((work - parts).abs() < 1e-6, "{work} {parts}");
+        }
+        let between = Latency::delayed(5e-4);
+        let between = Latency { output_delay: between.output_delay, ..latency };
+        let refused = HeldDevice::lagging(DEVICE, &between, hand, period).unwrap_err();
+        assert!(refused.to_string().contains("between two updates"), "{refused}");
+    }
+
     /// A free device behind an amplifier that lags, in closed form; and no hand does no work.
     #[test]
     fn an_amplifier_s_torque_follows_its_command() {

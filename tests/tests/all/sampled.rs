@@ -222,5 +222,5 @@ fn what_a_current_loop_in_updates_does_not_allow_is_refused_with_value_and_bound
     // Of a lag that lies in a range every value passes.
     let range = Latency { actuator_lag: between(7e-5, 8e-5), ..fine };
     let [one, other] = [range, fine].map(|it| assess(&spring(20.0, 1, it)).alpha_port.unwrap());
-    assert!(one.hi() >= other.hi() && one.hi() < 1.02 * other.hi(), "{one:?} {other:?}");
+    assert!(one.hi() >= other.hi() && one.hi() < 1.1 * other.hi(), "{one:?} {other:?}");
 }

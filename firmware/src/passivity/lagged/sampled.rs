@@ -1,5 +1,5 @@
 //! Current loops that are updated a whole number of times in a period, with straight lines between the
-//! updates (theory, section 13.8).
+//! updates (theory, section 13.8, equation 51).
 //!
 //! What is left of a step shrinks by `p = exp(-h / tau)` from update to update, which are `h` apart. Mean and
 //! mean square of a straight line from 1 to `p` are `(1 + p) / 2` and `(1 + p + p^2) / 3`, so that over all
