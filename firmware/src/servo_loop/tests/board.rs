@@ -27,6 +27,7 @@ pub struct Board {
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
+    pub output_fault: Option<Fault>,
     pub stored: [u32; FaultRecord::WORDS],
     pub reset: ResetCause,
 }
@@ -38,6 +39,7 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
+            output_fault: None,
             stored: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
         }
@@ -71,6 +73,9 @@ impl Hardware for Board {
     }
     fn amplifier(&mut self, on: bool) {
         self.events.push(Event::Amplifier(on));
+    }
+    fn output_fault(&mut self) -> Option<Fault> {
+        self.output_fault.take()
     }
     fn periods_since_last(&mut self) -> u32 {
         core::mem::replace(&mut self.passed, 1)
