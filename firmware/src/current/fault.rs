@@ -68,6 +68,8 @@ pub enum PowerFault {
         /// The most that is allowed.
         allowed: u32,
     },
+    /// A brushless motor has not been aligned.
+    NotAligned,
 }
 
 impl PowerFault {
@@ -83,6 +85,7 @@ impl PowerFault {
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
             Self::CurrentInterruptLate { .. } => "current-interrupt-late",
+            Self::NotAligned => "not-aligned",
         }
     }
 
@@ -100,6 +103,7 @@ impl PowerFault {
             Self::SaturatedDuty { instants, allowed } => (20, [instants, allowed]),
             Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
+            Self::NotAligned => (23, [0; 2]),
         }
     }
 
@@ -116,6 +120,7 @@ impl PowerFault {
             20 => Self::SaturatedDuty { instants: a, allowed: b },
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
+            23 => Self::NotAligned,
             _ => return None,
         })
     }
@@ -171,6 +176,9 @@ impl fmt::Display for PowerFault {
                 f,
                 "the currents' interrupt ended {late} timer counts after the start of its period, and \
                  {allowed} are allowed: shorten the critical sections that mask it, then arm again"
+            ),
+            Self::NotAligned => f.write_str(
+                "the motor has not been aligned with its encoder: align it, then arm again",
             ),
         }
     }

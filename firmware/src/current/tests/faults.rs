@@ -103,7 +103,9 @@ fn every_fault_comes_back_from_its_code() {
         assert_eq!(crate::fault::Fault::decode(code, [7, 9]), None);
     }
     assert_eq!(PowerFault::decode(13, [0; 2]), None);
-    assert_eq!(PowerFault::decode(23, [0; 2]), None);
+    assert_eq!(PowerFault::decode(23, [0; 2]), Some(PowerFault::NotAligned));
+    assert_eq!(PowerFault::NotAligned.encode(), (23, [0; 2]));
+    assert_eq!(PowerFault::decode(24, [0; 2]), None);
 }
 
 proptest! {
