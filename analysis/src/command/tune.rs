@@ -1,10 +1,13 @@
 //! `haptic tune`: the parameters of a running board.
 
 use std::io::{self, Write};
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::wire::message::{ActiveParameters, Changes, Status};
+use firmware::servo_loop::State;
+use firmware::wire::message::{ActiveParameters, Changes, FaultCode, Status};
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, json};
@@ -33,10 +36,17 @@ pub struct Arguments {
     /// Switch the amplifier off before the change
     #[arg(long)]
     pub disarm: bool,
+    /// Align the brushless motor of a motor board, after a change and before --arm: its field turns the handle
+    /// for some seconds. Keep the hand off. Needed once after each reset
+    #[arg(long)]
+    pub align: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
 }
+
+/// Time between two questions whether an alignment has ended.
+const POLL: Duration = Duration::from_millis(200);
 
 /// The answer as JSON.
 #[derive(Serialize)]
@@ -99,10 +109,29 @@ fn request(
     if outcome == link::RequestResult::Done && !changes.is_empty() {
         outcome = link.set(changes)?;
     }
+    if outcome == link::RequestResult::Done && arguments.align {
+        outcome = align(link)?;
+    }
     if outcome == link::RequestResult::Done && arguments.arm {
         outcome = link.arm()?;
     }
     Ok(outcome)
+}
+
+/// Aligns the motor, and waits for the end.
+fn align(link: &mut Link) -> Result<link::RequestResult, CommandError> {
+    let outcome = link.align()?;
+    if outcome != link::RequestResult::Done {
+        return Ok(outcome);
+    }
+    loop {
+        let status = link.status()?;
+        if status.state != State::Aligning {
+            let failed = |fault: FaultCode| link::RequestResult::Refused(fault.to_string());
+            return Ok(status.fault.map_or(link::RequestResult::Done, failed));
+        }
+        thread::sleep(POLL);
+    }
 }
 
 fn print(

@@ -58,8 +58,8 @@ pub enum AlignmentStep {
 /// Why a motor could not be aligned. Counts are those of an electrical turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AlignmentError {
-    /// The motor has no phase: it is brushed.
-    Brushed,
+    /// No motor whose field this board turns: a brushed one, or that of an amplifier outside.
+    NotNeeded,
     /// The handle did not move.
     Blocked {
         /// Counts that it moved.
@@ -90,10 +90,39 @@ pub enum AlignmentError {
     },
 }
 
+impl AlignmentError {
+    /// The error as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
+    pub(super) const fn encode(self) -> (u32, [u32; 2]) {
+        let (code, [a, b]) = match self {
+            Self::NotNeeded => (24, [0; 2]),
+            Self::Blocked { moved, expected } => (25, [moved, expected]),
+            Self::PolePairs { moved, expected } => (26, [moved, expected]),
+            Self::NotReturned { moved, returned } => (27, [moved, returned]),
+            Self::Uneven { degrees, largest } => (28, [degrees, largest]),
+        };
+        (code, [a.cast_unsigned(), b.cast_unsigned()])
+    }
+
+    /// The error of a code and its numbers; `None` if there is no such error.
+    pub(super) const fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
+        let (a, b) = (numbers[0].cast_signed(), numbers[1].cast_signed());
+        Some(match code {
+            24 => Self::NotNeeded,
+            25 => Self::Blocked { moved: a, expected: b },
+            26 => Self::PolePairs { moved: a, expected: b },
+            27 => Self::NotReturned { moved: a, returned: b },
+            28 => Self::Uneven { degrees: a, largest: b },
+            _ => return None,
+        })
+    }
+}
+
 impl fmt::Display for AlignmentError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Brushed => f.write_str("a brushed motor needs no alignment"),
+            Self::NotNeeded => f.write_str(
+                "this motor needs no alignment: it is brushed, or an amplifier outside turns its field",
+            ),
             Self::Blocked { moved, expected } => write!(
                 f,
                 "the handle moved by {moved} counts, and an electrical turn has {expected}: release it, check \
@@ -225,7 +254,7 @@ impl Alignment {
     /// Where the handle did not follow the field as the magnets of such a motor do.
     pub(super) fn result(&self) -> Result<PhaseAlignment, AlignmentError> {
         if self.is_brushed {
-            return Err(AlignmentError::Brushed);
+            return Err(AlignmentError::NotNeeded);
         }
         let turn = self.begin.counts_per_electrical_turn();
         let expected = turn as i32;

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use super::alignment::AlignmentError;
+
 /// What switched a power stage off, with the numbers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerFault {
@@ -70,6 +72,8 @@ pub enum PowerFault {
     },
     /// A brushless motor has not been aligned.
     NotAligned,
+    /// The motor could not be aligned.
+    Alignment(AlignmentError),
 }
 
 impl PowerFault {
@@ -86,6 +90,7 @@ impl PowerFault {
             Self::IndexMismatch { .. } => "index-mismatch",
             Self::CurrentInterruptLate { .. } => "current-interrupt-late",
             Self::NotAligned => "not-aligned",
+            Self::Alignment(_) => "alignment",
         }
     }
 
@@ -104,6 +109,7 @@ impl PowerFault {
             Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
             Self::NotAligned => (23, [0; 2]),
+            Self::Alignment(error) => error.encode(),
         }
     }
 
@@ -121,7 +127,10 @@ impl PowerFault {
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
             23 => Self::NotAligned,
-            _ => return None,
+            _ => match AlignmentError::decode(code, numbers) {
+                Some(error) => Self::Alignment(error),
+                None => return None,
+            },
         })
     }
 }
@@ -177,6 +186,7 @@ impl fmt::Display for PowerFault {
                 "the currents' interrupt ended {late} timer counts after the start of its period, and \
                  {allowed} are allowed: shorten the critical sections that mask it, then arm again"
             ),
+            Self::Alignment(error) => write!(f, "not aligned: {error}"),
             Self::NotAligned => f.write_str(
                 "the motor has not been aligned with its encoder: align it, then arm again",
             ),

@@ -64,6 +64,12 @@ pub enum ToBoard {
     Stream(Option<NonZeroU32>),
     /// What exactly is running? Answered by [`ToHost::Described`].
     Describe,
+    /// Align a brushless motor on the board's bridge, which moves the handle. Answered by
+    /// [`ToHost::Answer`] once it begins; the state is then [`State::Aligning`] until it has ended.
+    Align {
+        /// Comes back with the answer.
+        id: Id,
+    },
 }
 
 /// Replies and telemetry. `S` is text.
@@ -147,6 +153,8 @@ pub enum Refusal {
     Fault(FaultCode),
     /// This step failed; [`Description::explain`] has the reason.
     Set(Step),
+    /// No alignment begins: because of this fault, or because the servo is armed.
+    NotAligning(Option<FaultCode>),
 }
 
 impl fmt::Display for Refusal {
@@ -160,6 +168,10 @@ impl fmt::Display for Refusal {
                                             that",
             ),
             Self::Fault(fault) => write!(f, "not armed: {fault}"),
+            Self::NotAligning(Some(fault)) => write!(f, "no alignment begins: {fault}"),
+            Self::NotAligning(None) => f.write_str(
+                "no alignment begins: the servo is armed, and an alignment moves the handle; disarm it first",
+            ),
             Self::Set(step) => write!(
                 f,
                 "the board refused the set by its {}, and this program cannot reproduce the \

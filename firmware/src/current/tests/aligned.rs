@@ -148,6 +148,6 @@ fn a_brushed_motor_needs_none() {
         controller.measure_offset(&sample);
     }
     let mut alignment = controller.start_alignment().unwrap();
-    let ended = AlignmentStep::Ended(Err(AlignmentError::Brushed));
+    let ended = AlignmentStep::Ended(Err(AlignmentError::NotNeeded));
     assert_eq!(controller.align(&sample, &mut alignment), Ok(ended));
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
+use crate::current::{AlignmentError, PowerFault};
 use crate::encoder::RawCount;
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
@@ -21,6 +22,9 @@ pub enum Event {
     Feed,
 }
 
+/// What a board says that has no motor to be aligned.
+pub const NO_MOTOR: Fault = Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded));
+
 pub struct Board {
     pub events: Vec<Event>,
     pub count: i32,
@@ -28,6 +32,8 @@ pub struct Board {
     pub passed: u32,
     pub elapsed: u32,
     pub output_fault: Option<Fault>,
+    /// Ticks that an alignment still takes; `None`: there is no motor for one.
+    pub alignment: Option<u32>,
     pub stored: [u32; FaultRecord::WORDS],
     pub reset: ResetCause,
 }
@@ -40,6 +46,7 @@ impl Board {
             passed: 1,
             elapsed: 300,
             output_fault: None,
+            alignment: None,
             stored: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
         }
@@ -76,6 +83,13 @@ impl Hardware for Board {
     }
     fn output_fault(&mut self) -> Option<Fault> {
         self.output_fault.take()
+    }
+    fn align(&mut self) -> Result<(), Fault> {
+        self.alignment.map(|_| ()).ok_or(NO_MOTOR)
+    }
+    fn is_aligning(&mut self) -> bool {
+        self.alignment = self.alignment.map(|ticks| ticks.saturating_sub(1));
+        self.alignment != Some(0)
     }
     fn periods_since_last(&mut self) -> u32 {
         core::mem::replace(&mut self.passed, 1)

@@ -67,7 +67,7 @@ fn a_bridge_that_took_the_torque_away() {
 /// As a supply that is too low before the gates are ever on.
 #[test]
 fn a_bridge_that_cannot_start_is_not_armed_until_it_can() {
-    let mut bench = Bench::boot(&SPRING, Board::new()).unwrap();
+    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
     bench.board.output_fault = Some(OVER_CURRENT);
     bench.stand(0, 1);
     assert_eq!(bench.notices(), []);

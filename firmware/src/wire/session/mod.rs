@@ -171,6 +171,10 @@ where
                     self.requests.arm();
                 }
             }
+            ToBoard::Align { id } => {
+                self.replies.align(id);
+                self.requests.align();
+            }
             ToBoard::Disarm { id } => {
                 self.replies.disarm(id);
                 self.requests.disarm();
@@ -189,8 +193,17 @@ where
             Notice::Status(status) => self.replies.status = Some(status),
             Notice::Armed => self.replies.switched(true, Ok(())),
             Notice::NotArmed(fault) => self.replies.switched(true, Err(fault)),
+            Notice::Aligning => self.replies.aligning(Outcome::Done),
+            Notice::NotAligning(fault) => {
+                let refusal = Refusal::NotAligning(fault.map(FaultCode::from));
+                self.replies.aligning(Outcome::Refused(refusal));
+            }
             // A servo that has stopped is as disarmed as it was to be.
-            Notice::Disarmed | Notice::Stopped(_) => self.replies.switched(false, Ok(())),
+            Notice::Disarmed | Notice::Stopped(_) => {
+                self.replies.switched(false, Ok(()));
+                // Disarming went before it.
+                self.replies.aligning(Outcome::Refused(Refusal::Disarming));
+            }
             Notice::Applied => {
                 if let Some((id, set)) = self.submitted.take() {
                     self.active = set;

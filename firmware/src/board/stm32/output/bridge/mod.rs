@@ -34,7 +34,7 @@ pub use pace::Pace;
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{CurrentLoop, PowerFault};
+use crate::current::{AlignmentError, CurrentLoop, PowerFault, Winding};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
@@ -72,11 +72,17 @@ enum State {
     Starting,
     /// Driven.
     On,
+    /// The current interrupt is asked to begin an alignment.
+    StartingAlignment,
+    /// Driven by an alignment.
+    Aligning,
 }
 
 /// The bridge, for the servo's interrupt.
 #[derive(Debug)]
-pub struct Output(());
+pub struct Output {
+    is_brushed: bool,
+}
 
 impl Output {
     /// The bridge with its gates low, and what paces the servo; nothing runs yet.
@@ -92,7 +98,8 @@ impl Output {
         // SAFETY: the interrupt that uses the place is not enabled yet.
         unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        Ok((Self(()), Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        let is_brushed = matches!(current_loop.winding(), Winding::Brushed);
+        Ok((Self { is_brushed }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Lets the current interrupt begin, with the gates low.
@@ -120,6 +127,21 @@ impl TorqueOutput for Output {
         if STATE.load(Ordering::Relaxed) == State::Off as u8 {
             STATE.store(State::Starting as u8, Ordering::Relaxed);
         }
+    }
+
+    fn align(&mut self) -> Result<(), Fault> {
+        if self.is_brushed {
+            return Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)));
+        }
+        if STATE.load(Ordering::Relaxed) == State::Off as u8 {
+            STATE.store(State::StartingAlignment as u8, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+
+    fn is_aligning(&self) -> bool {
+        let state = STATE.load(Ordering::Relaxed);
+        state == State::StartingAlignment as u8 || state == State::Aligning as u8
     }
 
     #[inline(always)]
