@@ -21,6 +21,8 @@ pub struct CurrentController {
     follower: Follower,
     speed: Speed,
     supervision: Supervision,
+    /// In A, of the last sample; zero while the gates are off.
+    current: f32,
 }
 
 impl CurrentController {
@@ -34,6 +36,7 @@ impl CurrentController {
             follower: Follower::AT_REST,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
+            current: 0.0,
         }
     }
 
@@ -42,6 +45,12 @@ impl CurrentController {
         self.offsets.measure(sample);
         self.speed.restart(sample.position);
         self.last = Some(*sample);
+        self.current = 0.0;
+    }
+
+    /// Current in A of the last sample, with the sign of its torque; zero while the gates are off.
+    pub const fn current(&self) -> f32 {
+        self.current
     }
 
     /// Gets ready for gates that are switched on before the next instant: no current and no voltage. The code
@@ -87,6 +96,7 @@ impl CurrentController {
         let [u, v] = sample.currents.map(f32::from);
         // Both shunts see the current, with opposite signs; half the difference has half the step.
         let current = 0.5 * law.amps_per_count * ((u - v) - (self.offset[0] - self.offset[1]));
+        self.current = current;
         let back_emf = law.back_emf * self.speed.update(sample.position);
         let reference = law.amps_per_code * f32::from(code_offset);
         let wanted = self.follower.follow(law, reference, current);

@@ -25,6 +25,7 @@ mod offset;
 mod plant;
 mod power_stage;
 mod program;
+mod reading;
 mod resolution;
 mod sample;
 mod speed;

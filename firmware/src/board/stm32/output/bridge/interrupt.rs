@@ -6,7 +6,7 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, off, pace, pwm, sense, tell};
+use super::{STATE, State, WAITING, latest, off, pace, pwm, sense, tell};
 use crate::current::{CurrentController, CurrentLoop, PowerFault, Sample};
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
@@ -61,7 +61,10 @@ impl CurrentIsr {
             cold_path();
             self.idle(&sample);
         }
-        // Bookkeeping: the servo, below this.
+        // Bookkeeping: the host, and the servo, both below this.
+        if begins {
+            latest::keep(&sample, self.controller.current());
+        }
         self.instant += 1;
         if self.instant == self.updates {
             self.instant = 0;
