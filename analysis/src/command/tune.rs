@@ -14,7 +14,7 @@ use super::shared_arguments::{JsonOption, json};
 use super::status::{CommandError, CommandStatus};
 use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
-use crate::scope::formatting;
+use crate::scope::{Power, formatting};
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
@@ -72,6 +72,8 @@ struct Report<'a> {
     thinned: u32,
     discarded: u32,
     stack_left: Option<u32>,
+    /// What the power stage measures, where the board has one that drives the motor.
+    power: Option<Power>,
 }
 
 /// Sends the request and prints the active parameters. A refusal is a negative verdict.
@@ -158,6 +160,9 @@ fn print(
     }
     writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
     writeln!(out, "{}", formatting::energy(status, board))?;
+    if let Some(reading) = status.power {
+        writeln!(out, "{}", Power::from(reading))?;
+    }
     writeln!(out, "{}", formatting::losses(status, link.discarded()))?;
     Ok(())
 }
@@ -191,5 +196,6 @@ fn report<'a>(
         thinned: status.thinned,
         discarded: status.discarded.total(),
         stack_left: status.stack_left,
+        power: status.power.map(Power::from),
     }
 }

@@ -32,6 +32,8 @@ pub struct CurrentController {
     phase: Option<PhaseAlignment>,
     speed: Speed,
     supervision: Supervision,
+    /// In A, of the last sample; zero while the gates are off.
+    current: f32,
 }
 
 impl CurrentController {
@@ -48,6 +50,7 @@ impl CurrentController {
             phase: None,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
+            current: 0.0,
         }
     }
 
@@ -56,6 +59,12 @@ impl CurrentController {
         self.offsets.measure(sample);
         self.move_to(sample.position);
         self.last = Some(*sample);
+        self.current = 0.0;
+    }
+
+    /// Current in A of the last sample, with the sign of its torque; zero while the gates are off.
+    pub const fn current(&self) -> f32 {
+        self.current
     }
 
     /// The count of the handle in its turn, of a brushless motor: where an index is, for an
@@ -160,6 +169,7 @@ impl CurrentController {
         let [u, v] = sample.currents.map(f32::from);
         // Both shunts see the current, with opposite signs; half the difference has half the step.
         let current = 0.5 * law.amps_per_count * ((u - v) - (self.offset[0] - self.offset[1]));
+        self.current = current;
         let step = self.speed.step(sample.position);
         let back_emf = law.back_emf * self.speed.update(step);
         let reference = law.amps_per_code * f32::from(code_offset);
@@ -189,7 +199,9 @@ impl CurrentController {
         let speed = phase.sign() * self.speed.update(step);
         let reference = phase.sign() * self.design.law.amps_per_code * f32::from(code_offset);
         let wanted = Vector { along: 0.0, across: reference };
-        self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed)
+        let duties = self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed);
+        self.current *= phase.sign();
+        duties
     }
 
     /// The currents along and across an angle, which turns by so many counts in an instant.
@@ -208,6 +220,7 @@ impl CurrentController {
         let phases = Vector::of_two_phases(amps(u, self.offset[0]), amps(v, self.offset[1]));
         let rotation = Rotation::of(angle);
         let current = phases.seen_from(rotation);
+        self.current = current.across;
         let across = self.follower.follow(law, reference.across, current.across);
         let along = self.along.follow(law, reference.along, current.along);
         let turned = law.radians * speed;

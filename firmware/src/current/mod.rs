@@ -28,6 +28,7 @@ mod phase;
 mod plant;
 mod power_stage;
 mod program;
+mod reading;
 mod resolution;
 mod sample;
 mod speed;

@@ -15,6 +15,7 @@ use super::description::Description;
 use super::telemetry::Batch;
 use crate::certificate::Parameter;
 use crate::fault::{Fault, FaultRecord};
+use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::servo::Step;
 use crate::servo_loop::State;
@@ -215,6 +216,8 @@ pub struct Status {
     pub stack_left: Option<u32>,
     /// Why the board was last reset.
     pub reset: ResetCause,
+    /// What its power stage measures, where the torque is that of its own bridge.
+    pub power: Option<PowerReading>,
 }
 
 /// A [`Fault`] on the wire: a code and two numbers, so that a host that does not know the fault can

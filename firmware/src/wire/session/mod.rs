@@ -36,6 +36,7 @@ use crate::certificate::scene_data;
 use crate::environment::Discretize;
 use crate::fault::FaultRecord;
 use crate::number::Number;
+use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
@@ -55,6 +56,8 @@ pub struct BoardInfo {
     pub previous_fault: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
+    /// What the power stage measures; returns `None` where the torque is not that of a bridge on the board.
+    pub power: fn() -> Option<PowerReading>,
 }
 
 /// Most notices that one poll takes: more than the queue holds.
@@ -309,6 +312,7 @@ where
             discarded: self.decoder.discarded(),
             stack_left: (self.info.stack_left)(),
             reset: self.info.reset,
+            power: (self.info.power)(),
         }
     }
 }

@@ -6,7 +6,7 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, off, pace, pwm, sense, tell};
+use super::{STATE, State, WAITING, latest, off, pace, pwm, sense, tell};
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
 };
@@ -66,7 +66,10 @@ impl CurrentIsr {
             cold_path();
             self.otherwise(&sample);
         }
-        // Bookkeeping: the servo, below this.
+        // Bookkeeping: the host, and the servo, both below this.
+        if begins {
+            latest::keep(&sample, self.controller.current());
+        }
         self.instant += 1;
         if self.instant == self.updates {
             self.instant = 0;

@@ -17,6 +17,7 @@
 //! current by [hardware](over_current) alone.
 
 mod interrupt;
+mod latest;
 mod over_current;
 mod pace;
 mod pwm;
@@ -29,6 +30,7 @@ use embassy_stm32::interrupt as interrupts;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 
 pub use interrupt::CurrentIsr;
+pub use latest::power_reading;
 pub use pace::Pace;
 
 use crate::board::isr_cell::IsrCell;
@@ -95,6 +97,7 @@ impl Output {
         GATES.connect(current_loop.phases());
         over_current::prepare(current_loop.over_current_counts());
         sense::prepare();
+        latest::of(current_loop);
         // SAFETY: the interrupt that uses the place is not enabled yet.
         unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
