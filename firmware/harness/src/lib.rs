@@ -6,6 +6,7 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod bench_request;
+pub mod currents;
 pub mod loop_request;
 pub mod scene_codec;
 pub mod sines;

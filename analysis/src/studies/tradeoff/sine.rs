@@ -67,6 +67,7 @@ fn row(sine: Sine, outputs: &[Output]) -> Method {
     let family = match sine {
         Sine::Micromath => "micromath",
         Sine::Libm | Sine::LibmDouble => "libm",
+        Sine::Table => "table",
         _ => "polynomials of our own",
     };
     let error = error(outputs.iter().map(|output| output.value));
