@@ -140,6 +140,7 @@ impl Latency {
     /// The output delay in periods of a current loop that is updated in them, exactly a whole number of updates.
     ///
     /// `None` where it is not that to a part in a billion, or where a time is stated that such a loop has not.
+    #[inline(never)]
     pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
         let is_lag_alone = self.sensor_lag.is_zero() && self.actuator_response.is_zero();
         if !is_lag_alone || !self.output_delay.is_exact() || !(self.actuator_lag.least > 0.0) {

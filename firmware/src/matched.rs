@@ -194,15 +194,22 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 impl Taps {
     /// Of the times at one place in their ranges.
     const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        if latency.actuator_updates != 0 {
-            return Self::in_updates(t, latency, place);
-        }
-        let delay = place.of(latency.torque_delay()).div(t);
+        let updates = latency.actuator_updates;
+        let delay = match updates {
+            0 => place.of(latency.torque_delay()).div(t),
+            _ => match latency.delay_in_updates(t.midpoint()) {
+                Some(delay) => delay,
+                None => return None,
+            },
+        };
         let whole = delay.midpoint().max(0.0) as usize;
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);
         let lags = [place.of(latency.actuator_lag).div(t), place.of(latency.sensor_lag).div(t)];
-        let Some(weights) = weights(lags) else { return None };
+        let Some(mut weights) = weights(lags) else { return None };
+        if updates != 0 {
+            weights[0] = SampledLag::of(updates, lags[0]).held();
+        }
         let mut taps =
             Self { whole, arriving: part, trails: [(Interval::ZERO, Interval::ZERO); 2] };
         let mut i = 0;
@@ -218,25 +225,6 @@ impl Taps {
             i += 1;
         }
         if taps.arriving.is_finite() { Some(taps) } else { None }
-    }
-
-    /// The same of a current loop that is updated in the period; `None` where its delay is no whole number of
-    /// updates.
-    #[inline(never)]
-    const fn in_updates(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        let Some(delay) = latency.delay_in_updates(t.midpoint()) else { return None };
-        let whole = delay.midpoint() as usize;
-        let part = delay.sub(Interval::exact(whole as f64));
-        let lag = SampledLag::of(latency.actuator_updates, place.of(latency.actuator_lag).div(t));
-        let (held, decay) = (lag.held(), lag.after(Interval::ONE));
-        let left = lag.after(Interval::ONE.sub(part));
-        let arriving = part.add(held.mul(Interval::ONE.sub(left)));
-        let gain = held.mul(left).mul(Interval::ONE.sub(decay));
-        if !arriving.is_finite() {
-            return None;
-        }
-        let none = (Interval::ZERO, Interval::ZERO);
-        Some(Self { whole, arriving, trails: [(gain, decay), none] })
     }
 
     /// Sum of `(2 m + 1)` times each compliance but the first.

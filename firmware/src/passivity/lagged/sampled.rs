@@ -27,6 +27,7 @@ pub struct SampledLag {
 
 impl SampledLag {
     /// Of a time constant in periods, with so many updates in each.
+    #[inline(never)]
     pub const fn of(updates: u16, tau: Interval) -> Self {
         let updates = updates as f64;
         Self { updates, left: left(Interval::ONE.div(Interval::exact(updates)), tau) }
@@ -34,6 +35,7 @@ impl SampledLag {
 
     /// The integral of what is left of a step in periods, `(h / 2) (1 + p) / (1 - p)`. With `p` once, of which
     /// it is a rising function.
+    #[inline(never)]
     pub const fn held(&self) -> Interval {
         let sum = Interval::ONE.div(Interval::ONE.sub(self.left));
         sum.sub(Interval::ONE.half()).div(Interval::exact(self.updates))
@@ -48,6 +50,7 @@ impl SampledLag {
     }
 
     /// What is left of a step after a time in periods that is a whole number of updates.
+    #[inline(never)]
     pub const fn after(&self, time: Interval) -> Interval {
         let mut updates = (time.midpoint() * self.updates + 0.5) as u32;
         let (mut power, mut square) = (Interval::ONE, self.left);
