@@ -128,7 +128,7 @@ impl HeldDevice {
 }
 
 /// A part of a tick as often as it is repeated.
-fn each<'p>((part, command): (&'p Part, f64)) -> impl Iterator<Item = (&'p Part, f64)> {
+fn each((part, command): (&Part, f64)) -> impl Iterator<Item = (&Part, f64)> {
     std::iter::repeat_n((part, command), part.count as usize)
 }
 
