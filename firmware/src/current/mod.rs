@@ -29,6 +29,7 @@ mod plant;
 mod power_stage;
 mod resolution;
 mod sample;
+mod sine_table;
 mod speed;
 mod supervision;
 mod thermistor;
@@ -46,6 +47,7 @@ pub use phase::PhaseAlignment;
 pub use power_stage::PowerStage;
 pub use resolution::CurrentResolution;
 pub use sample::{Duties, Sample};
+pub use sine_table::sine_and_cosine;
 pub use thermistor::Thermistor;
 pub use timing::PwmTiming;
 
