@@ -9,6 +9,7 @@ use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
 use crate::currents::CurrentBench;
+use crate::rotations::Rotation;
 use crate::scene_codec::{self, SceneWords, encode};
 use crate::sines::Sine;
 use crate::transducer_codec::{self, TransducerWords};
@@ -28,6 +29,8 @@ pub enum BenchRequest {
     },
     /// The sine of each part of a turn, which is the bits of an `f32`.
     Sine(Sine),
+    /// Sine and cosine of each angle, [packed](crate::rotations::packed).
+    Rotation(Rotation),
     /// The compare values of a current loop at each instant, from rest: of
     /// [`Input`](crate::currents::Input)s.
     Current(CurrentBench),
@@ -91,6 +94,10 @@ impl BenchRequest {
                 words[1..HEAD].copy_from_slice(&transducer_codec::encode(transducers, *arithmetic));
                 words[HEAD..].copy_from_slice(&encode(scene));
             }
+            Self::Rotation(rotation) => {
+                words[0] = ROTATION;
+                words[1] = transducer_codec::index_of(&Rotation::ALL, rotation);
+            }
             Self::Current(bench) => {
                 words[0] = CURRENT;
                 words[1] = transducer_codec::index_of(&CurrentBench::ALL, bench);
@@ -103,6 +110,9 @@ impl BenchRequest {
     /// The request of the words; `None` if they are malformed.
     pub fn decode(words: &BenchRequestWords) -> Option<Self> {
         let (&[which, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
+        if which == ROTATION {
+            return transducer_codec::from_index(&Rotation::ALL, machine[0]).map(Self::Rotation);
+        }
         if which == CURRENT {
             return transducer_codec::from_index(&CurrentBench::ALL, machine[0]).map(Self::Current);
         }
@@ -118,3 +128,4 @@ impl BenchRequest {
 /// Stand where a sine would.
 const SERVO: u64 = u64::MAX;
 const CURRENT: u64 = u64::MAX - 1;
+const ROTATION: u64 = u64::MAX - 2;

@@ -8,6 +8,7 @@
 pub mod bench_request;
 pub mod currents;
 pub mod loop_request;
+pub mod rotations;
 pub mod scene_codec;
 pub mod sines;
 pub mod tables;

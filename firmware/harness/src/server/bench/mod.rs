@@ -22,6 +22,7 @@ use semihosting::io::{Read, Write};
 
 use crate::bench_request::{BLOCK, BenchRequest, Inputs, Output, Outputs, READY, REFUSED};
 use crate::currents::{CurrentBench, Input};
+use crate::rotations::{self, Rotation};
 use crate::sines::Sine;
 
 /// The types of environments of which a program has servos. A servo of data would have instructions
@@ -68,6 +69,7 @@ impl Host {
                     arithmetic.choose(ServoBench::<K> { job, scenes: PhantomData })?;
                 }
                 BenchRequest::Sine(sine) => self.sine(sine)?,
+                BenchRequest::Rotation(rotation) => self.rotation(rotation)?,
                 BenchRequest::Current(bench) => self.current(bench)?,
             }
         }
@@ -137,6 +139,21 @@ impl Host {
         Ok(())
     }
 
+    /// Sines and cosines, as long as there are angles.
+    fn rotation(&mut self, rotation: Rotation) -> Result<(), HostClosed> {
+        self.answer(&[READY])?;
+        while let Some(angles) = self.inputs()? {
+            let mut outputs = [Output::default(); BLOCK];
+            for (angle, output) in angles.into_iter().zip(&mut outputs) {
+                let (pair, time) = timed_rotation(rotation, angle);
+                let instructions = self.scale.measured(time);
+                *output = Output { value: rotations::packed(pair), code: 0, instructions };
+            }
+            self.outputs(&outputs)?;
+        }
+        Ok(())
+    }
+
     /// Instants of a current loop, as long as there are samples.
     fn current(&mut self, bench: CurrentBench) -> Result<(), HostClosed> {
         let (mut controller, mut instant) = (bench.started(), 0);
@@ -173,6 +190,26 @@ impl Host {
     }
 }
 
+/// Sine and cosine of an angle, and the time that they took.
+#[inline(never)]
+fn timed_rotation(rotation: Rotation, angle: u32) -> ([f32; 2], u32) {
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match rotation {
+                $(Rotation::$kind => {
+                    let mut bits = [0; 2];
+                    let time = meter::measure(angle, |angle| {
+                        bits = Rotation::$kind.of_angle(angle).map(f32::to_bits);
+                        (bits[0], bits[1])
+                    });
+                    (bits.map(f32::from_bits), time)
+                })*
+            }
+        };
+    }
+    each!(Micromath, Libm, Cubic, Quintic, Septic, Table)
+}
+
 /// An instant of a current loop, and the time that it took. A fault, after which the loop begins anew, has no
 /// compare values.
 #[inline(never)]
@@ -192,6 +229,7 @@ fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -
 
 /// The sine of the bits of a part of a turn, and the time that it took. The choice is outside of the
 /// measured stretch.
+#[inline(never)]
 fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     macro_rules! each {
         ($($kind:ident),*) => {
@@ -207,7 +245,7 @@ fn timed(sine: Sine, turn: u32) -> (f32, u32) {
             }
         };
     }
-    each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic, Table)
+    each!(Micromath, Libm, LibmDouble, Cubic, Quintic, Septic, Nonic)
 }
 
 /// Benchmark of a servo whose types are still to be chosen.
