@@ -92,7 +92,7 @@ fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
 #[test]
 fn an_amplifier_in_updates_keeps_a_delay_of_whole_updates() {
     let kept = Terms { coupling: Choice::Kept, ..Terms::default() };
-    let sampled = Scene { latency: Latency::sampled(3, 2e-4, 1e-3), ..delayed_spring(8.0) };
+    let sampled = Scene { latency: Latency::sampled(3, 2e-4, 1e-3), ..delayed_spring(7.5) };
     assert!(passes(&sampled));
     let (delay, found) = limit(largest(&sampled, Quantity::OutputDelay, &kept));
     assert!(passes(&found) && found.latency.output_delay.most == delay);
