@@ -120,8 +120,8 @@ proptest! {
     ) {
         let mut brushed = Rig::started(&BRUSHED).controller;
         let mut brushless = ThreePhases::started(&BRUSHLESS).controller;
-        // 1.7 microseconds of 25 are left, from both sides.
-        let longest = BRUSHED.timer_counts() - BRUSHED.timer_counts() / 15;
+        // Up to 1.7 microseconds before the end of the period, and from as long after its beginning.
+        let longest = (2125.0 - 1.7e-6 * 170e6 / 2.0) as u16;
         for (currents, bus, temperature, position, code) in samples {
             let mut sample = Sample { currents, bus, temperature, position: RawCount::from(position) };
             if near {
@@ -132,7 +132,7 @@ proptest! {
             for controller in [&mut brushed, &mut brushless] {
                 match controller.step(&sample, code) {
                     Ok(Duties(duties)) => {
-                        let is_in_range = |&duty| (1..=longest).contains(&duty);
+                        let is_in_range = |&duty| (2125 - longest..=longest).contains(&duty);
                         prop_assert!(duties.iter().all(is_in_range), "{duties:?}");
                     }
                     Err(fault) => prop_assert!(!fault.to_string().is_empty()),
