@@ -3,6 +3,7 @@
 //! in `tests`.
 
 use firmware::certificate::Certified;
+use firmware::current::{Drive, Motor, PowerStage, Supply, Thermistor, Winding};
 use firmware::encoder::CounterWidth;
 use firmware::environment::{DamperWall, DelayedSpring, Matched};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -44,4 +45,34 @@ pub const TRANSDUCERS: Transducers = Transducers {
     counter: CounterWidth::Bits16,
     full_scale_torque: 2.0,
     largest_speed: 100.0,
+};
+
+/// A brushed motor.
+pub const DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushed,
+        resistance: 0.6,
+        inductance: 0.3e-3,
+        torque_constant: 0.05,
+    },
+    supply: Supply { lowest: 22.0, highest: 26.0 },
+    bandwidth: 1000.0,
+    largest_temperature: 90.0,
+};
+
+/// Its sensor, and its torque.
+pub const SMALL_MOTOR: Transducers = Transducers { full_scale_torque: 0.2, ..TRANSDUCERS };
+
+/// A power stage.
+pub const STAGE: PowerStage = PowerStage {
+    clock: 170e6,
+    amps_per_count: 0.03,
+    current_lowers_count: true,
+    volts_per_count: 0.0084,
+    largest_current: 40.0,
+    offset_counts: (1900, 2300),
+    supply: Supply { lowest: 10.0, highest: 34.0 },
+    dead_time: 0.2e-6,
+    shortest_low: 1.5e-6,
+    thermistor: Thermistor { resistance: 10e3, beta: 3380.0, to_ground: 4.7e3 },
 };
