@@ -34,6 +34,9 @@ const LARGEST_COUNTS: f64 = (1 << 24) as f64;
 /// voltage, for which two terms of its sine and its cosine are enough.
 const INSTANTS_PER_TURN: f64 = 32.0;
 
+/// By how much sine and cosine of a phase may make a vector longer.
+const SINE_ERROR: f64 = 2e-4;
+
 const ROOT_3: f64 = 1.732_050_807_568_877_2;
 
 /// When a code's torque comes: what a certificate has to know of a current loop.
@@ -352,7 +355,7 @@ impl<'a> Design<'a> {
         let part = (self.span() as f64 / self.timing.counts as f64 - dead).max(0.0);
         match self.drive.motor.winding {
             Winding::Brushed => part,
-            Winding::Brushless { .. } => part / ROOT_3,
+            Winding::Brushless { .. } => part / ROOT_3 * (1.0 - SINE_ERROR),
         }
     }
 
@@ -424,7 +427,8 @@ impl<'a> Design<'a> {
     const fn output(&self) -> Output {
         let counts = self.timing.counts as f64 / self.stage.volts_per_count;
         let span = self.span();
-        Output { counts_per_volt: counts as f32, span, circle: (span as f64 / ROOT_3) as f32 }
+        let circle = span as f64 / ROOT_3 * (1.0 - SINE_ERROR);
+        Output { counts_per_volt: counts as f32, span, circle: circle as f32 }
     }
 
     const fn limits(&self) -> Limits {

@@ -32,10 +32,14 @@ impl Rotation {
         Self { cosine, sine }
     }
 
-    /// The same, further by a small angle in rad.
+    /// The same, further by a small angle in rad, of up to a half. The two terms of each series make no vector
+    /// longer.
     #[inline(always)]
     pub(super) const fn ahead(self, angle: f32) -> Self {
-        let (cosine, sine) = (1.0 - 0.5 * angle * angle, angle);
+        // More is no speed of a handle, but a jump of its count.
+        let angle = angle.clamp(-0.5, 0.5);
+        let square = angle * angle;
+        let (cosine, sine) = (1.0 - 0.5 * square, angle * (1.0 - square * (1.0 / 6.0)));
         Self {
             cosine: self.cosine * cosine - self.sine * sine,
             sine: self.sine * cosine + self.cosine * sine,

@@ -6,7 +6,7 @@
 //!
 //! The G4's CORDIC unit is not among the measured ones, since no emulator has it. A model of its arithmetic is
 //! in the tests: with 16 iterations its angle is off by up to 2^-15, which no torque shows. It would take a dozen
-//! instructions in place of the table's 31, and wait for as long as these take; but what runs would not be the
+//! instructions in place of the table's thirty, and wait for as long as these take; but what runs would not be the
 //! code that tests run, and on no board but those with the unit.
 
 use std::f64::consts::TAU;

@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::rig::Rig;
+use super::three_phases::ThreePhases;
 use super::*;
 use crate::encoder::RawCount;
 
@@ -118,8 +119,10 @@ proptest! {
         samples in proptest::collection::vec(any::<([u16; 2], u16, u16, u32, i16)>(), 1..20),
         near in any::<bool>(),
     ) {
-        let mut rig = Rig::started(&BRUSHED);
-        let longest = BRUSHED.timer_counts() - BRUSHED.timer_counts() / 20;
+        let mut brushed = Rig::started(&BRUSHED).controller;
+        let mut brushless = ThreePhases::started(&BRUSHLESS).controller;
+        // Up to 1.7 microseconds before the end of the period, and from as long after its beginning.
+        let longest = (2125.0 - 1.7e-6 * 170e6 / 2.0) as u16;
         for (currents, bus, temperature, position, code) in samples {
             let mut sample = Sample { currents, bus, temperature, position: RawCount::from(position) };
             if near {
@@ -127,9 +130,14 @@ proptest! {
                 sample.bus = 2700 + bus % 300;
                 sample.temperature = temperature % 3000;
             }
-            match rig.controller.step(&sample, code) {
-                Ok(duties) => prop_assert!(duties.0.iter().all(|&duty| duty <= longest), "{duties:?}"),
-                Err(fault) => prop_assert!(!fault.to_string().is_empty()),
+            for controller in [&mut brushed, &mut brushless] {
+                match controller.step(&sample, code) {
+                    Ok(Duties(duties)) => {
+                        let is_in_range = |&duty| (2125 - longest..=longest).contains(&duty);
+                        prop_assert!(duties.iter().all(is_in_range), "{duties:?}");
+                    }
+                    Err(fault) => prop_assert!(!fault.to_string().is_empty()),
+                }
             }
         }
     }

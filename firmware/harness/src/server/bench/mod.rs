@@ -140,6 +140,7 @@ impl Host {
     }
 
     /// Sines and cosines, as long as there are angles.
+    #[inline(never)]
     fn rotation(&mut self, rotation: Rotation) -> Result<(), HostClosed> {
         self.answer(&[READY])?;
         while let Some(angles) = self.inputs()? {
@@ -155,6 +156,7 @@ impl Host {
     }
 
     /// Instants of a current loop, as long as there are samples.
+    #[inline(never)]
     fn current(&mut self, bench: CurrentBench) -> Result<(), HostClosed> {
         let (mut controller, mut instant) = (bench.started(), 0);
         self.answer(&[READY])?;
@@ -191,7 +193,6 @@ impl Host {
 }
 
 /// Sine and cosine of an angle, and the time that they took.
-#[inline(never)]
 fn timed_rotation(rotation: Rotation, angle: u32) -> ([f32; 2], u32) {
     macro_rules! each {
         ($($kind:ident),*) => {
@@ -229,7 +230,6 @@ fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -
 
 /// The sine of the bits of a part of a turn, and the time that it took. The choice is outside of the
 /// measured stretch.
-#[inline(never)]
 fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     macro_rules! each {
         ($($kind:ident),*) => {
