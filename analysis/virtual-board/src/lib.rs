@@ -31,6 +31,7 @@ pub mod image;
 mod it_block;
 pub mod machine;
 pub mod meter;
+pub mod motor;
 mod names;
 pub mod peripheral;
 pub mod processor;
