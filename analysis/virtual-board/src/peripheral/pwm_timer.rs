@@ -34,8 +34,11 @@ const OFF_WHILE_IDLE: u32 = 1 << 10;
 const OFF_WHILE_RUNNING: u32 = 1 << 11;
 const BREAK_ENABLE: u32 = 1 << 12;
 const BREAK_HIGH: u32 = 1 << 13;
+/// BDTR: how long a break's input has to stay, of which only numbers of the core's clocks are modelled.
+const FILTER: u32 = 0b11 << 16;
 const MAIN_OUTPUT: u32 = 1 << 15;
-/// AF1: the break's pin, and the comparators 1, 2 and 4 with their polarities.
+/// AF1: the break's pin, to which nothing is wired, so that its level is low; and the comparators 1, 2 and 4
+/// with their polarities.
 const BREAK_PIN: u32 = 1;
 const COMPARATORS: [(usize, u32); 3] = [(0, 1), (1, 2), (3, 4)];
 const COMPARATOR_BITS: u32 = (1 << 1) | (1 << 2) | (1 << 4);
@@ -198,14 +201,25 @@ impl PwmTimer {
         self.break_control & MAIN_OUTPUT != 0
     }
 
-    /// Whether comparators' outputs of these levels are a break.
+    /// Whether comparators' outputs of these levels are a break, once they have lasted for
+    /// [`Self::filter`].
     pub fn is_broken_by(&self, levels: [bool; 4]) -> bool {
         let is_high = self.break_control & BREAK_HIGH != 0;
+        let pin_breaks = self.break_inputs & BREAK_PIN != 0 && !is_high;
         let breaks = |(comparator, bit): (usize, u32)| {
             let is_inverted = self.break_inputs & (1 << (bit + 9)) != 0;
             self.break_inputs & (1 << bit) != 0 && (levels[comparator] ^ is_inverted) == is_high
         };
-        self.break_control & BREAK_ENABLE != 0 && COMPARATORS.into_iter().any(breaks)
+        let is_asked = pin_breaks || COMPARATORS.into_iter().any(breaks);
+        self.break_control & BREAK_ENABLE != 0 && is_asked
+    }
+
+    /// Core clocks for which a break's input has to stay.
+    pub fn filter(&self) -> u64 {
+        match (self.break_control & FILTER) >> 16 {
+            0 => 0,
+            code => 1 << code,
+        }
     }
 
     /// A break: the outputs are off from here on.
@@ -408,19 +422,15 @@ impl PwmTimer {
     fn set_break_control(&mut self, value: u32, now: u64) -> Access<()> {
         let modes = OFF_WHILE_IDLE | OFF_WHILE_RUNNING;
         let breaks = BREAK_ENABLE | BREAK_HIGH;
-        only(value, DEAD_TIME | LOCK | modes | breaks | MAIN_OUTPUT)?;
+        only(value, DEAD_TIME | LOCK | modes | breaks | FILTER | MAIN_OUTPUT)?;
         let mut locked = 0;
         if self.is_locked(1) {
-            locked |= DEAD_TIME | LOCK | breaks;
+            locked |= DEAD_TIME | LOCK | breaks | FILTER;
         }
         if self.is_locked(2) {
             locked |= modes;
         }
         let value = self.break_control & locked | value & !locked;
-        // Nothing is wired to the pin, whose level would be the break's.
-        if value & BREAK_ENABLE != 0 && self.break_inputs & BREAK_PIN != 0 {
-            return Err(Unmodelled::Bits(BREAK_ENABLE));
-        }
         if value & MAIN_OUTPUT != 0 && !self.is_on() {
             // A dead time comes before the first switch, too.
             for reference in &mut self.references {
@@ -435,9 +445,6 @@ impl PwmTimer {
         only(value, BREAK_PIN | COMPARATOR_BITS | POLARITY_BITS)?;
         if self.is_locked(1) {
             return Ok(());
-        }
-        if self.break_control & BREAK_ENABLE != 0 && value & BREAK_PIN != 0 {
-            return Err(Unmodelled::Bits(BREAK_PIN));
         }
         self.break_inputs = value;
         Ok(())
@@ -701,6 +708,17 @@ mod tests {
         assert_eq!(timer.lines(), [false, false]);
     }
 
+    /// It is low, which is a break where the break is active low.
+    #[test]
+    fn the_break_s_pin_is_open() {
+        for (polarity, breaks) in [(BREAK_HIGH, false), (0, true)] {
+            let mut timer = PwmTimer::default();
+            write(&mut timer, 0, &[(BDTR, BREAK_ENABLE | polarity | 0b11 << 16)]);
+            assert_eq!(timer.is_broken_by([false; 4]), breaks);
+            assert_eq!(timer.filter(), 8);
+        }
+    }
+
     /// Both polarities of both places that have one.
     #[test]
     fn polarities_of_the_break_and_of_its_input_cancel() {
@@ -769,7 +787,7 @@ mod tests {
             (CCER, 1 << 12),
             (BDTR, 1 << 14),
             (AF1, 1 << 3),
-            (AF1, BREAK_PIN),
+            (BDTR, 1 << 18),
             (0x28, 1),
             (0x40, 1),
             (0x48, 1),
