@@ -465,7 +465,7 @@ fn a_turning_current_vector_takes_the_rotor_with_it() {
             for step in from..=to {
                 let angle = f64::from(step) * 2.5e-4 * std::f64::consts::TAU;
                 let duties = [0.0, 1.0, 2.0]
-                    .map(|phase| 0.5 + 0.08 * (angle - phase * std::f64::consts::TAU / 3.0).cos());
+                    .map(|phase| 0.5 + 0.2 * (angle - phase * std::f64::consts::TAU / 3.0).cos());
                 driver.set_duties(duties);
                 driver.next_currents();
             }
