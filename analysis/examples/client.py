@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 5
+PROTOCOL = 6
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -69,7 +69,7 @@ SCENE = [
                                             ("profile", PROFILE)])])),
     ("latency", [("output_delay", TIME_RANGE), ("output_jitter", "f64"),
                  ("actuator_lag", TIME_RANGE), ("sensor_lag", TIME_RANGE),
-                 ("actuator_response", TIME_RANGE)]),
+                 ("actuator_response", TIME_RANGE), ("actuator_updates", "u")]),
     ("torque_limit", ("option", "f64")),
 ]
 FIELDS = {

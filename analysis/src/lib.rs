@@ -62,6 +62,7 @@ pub mod file;
 pub mod hand;
 pub mod missed;
 pub mod nominal_latency;
+pub mod sampled_actuator;
 pub mod table;
 
 // Numbers and words.

@@ -5,8 +5,14 @@ use firmware::scene::Latency;
 
 /// What is left out of a latency, in a few words; `None` where nothing is.
 pub fn left_out(latency: &Latency) -> Option<&'static str> {
-    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, actuator_response } =
-        latency;
+    let Latency {
+        output_delay,
+        output_jitter,
+        actuator_lag,
+        sensor_lag,
+        actuator_response,
+        actuator_updates: _,
+    } = latency;
     let times = [output_delay, actuator_lag, sensor_lag, actuator_response];
     let exact = times.into_iter().all(|time| time.is_exact());
     match (exact, *output_jitter == 0.0) {

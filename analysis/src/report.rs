@@ -209,7 +209,12 @@ fn latency(latency: &Latency) -> Vec<(&'static str, String)> {
         if time.is_exact() { format!("{most} s") } else { format!("{least} to {most} s") }
     };
     let present = times.into_iter().filter(|(_, time)| !time.is_zero());
-    present.map(|(name, time)| (name, text(time))).collect()
+    let mut rows: Vec<_> = present.map(|(name, time)| (name, text(time))).collect();
+    if latency.actuator_updates > 0 {
+        let updates = latency.actuator_updates.to_string();
+        rows.push(("Updates of the amplifier in a period", updates));
+    }
+    rows
 }
 
 fn delayed(samples: usize) -> (&'static str, String) {

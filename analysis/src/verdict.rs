@@ -247,7 +247,7 @@ const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face
 
 /// When a board would put the scene's torques out.
 fn timing_on_a_board(scene: &Scene) -> OutputTiming {
-    OutputTiming::of_delay(scene.latency.output_delay.middle())
+    OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period))
 }
 
 /// Whether the index at the port is another one than that of `E'`.

@@ -1,15 +1,22 @@
 //! What lies between a count and its torque: delays of the output, and lags of amplifier and sensor.
 //!
-//! A lag is first order, with a gain of 1. Of an amplifier that is not known to be, the begin and the end of
-//! its step response may be stated in its place. All of it belongs to the controller's side of the device's
+//! A lag is first order, with a gain of 1. That of a current loop may be one at the instants at which the loop
+//! is updated, a whole number of times a period. Of an amplifier that is not known to be a lag, the begin and
+//! the end of its step response may be stated in its place. All of it belongs to the controller's side of the device's
 //! port: the device's passivity is that from the motor's torque to the velocity at the encoder
 //! (theory, section 13).
+
+use crate::passivity::interval::Interval;
+use crate::passivity::lagged::delay_of_updates;
 
 /// Longest delay of the output, in periods.
 pub const LONGEST_DELAY: f64 = 8.0;
 
 /// Longest lag, in periods: a slower loop filters whatever a servo at this rate could add.
 pub const LONGEST_LAG: f64 = 100.0;
+
+/// How far a delay may be from a whole number of updates, relative to it: decimals of a third have to be cut off.
+const NEARLY_WHOLE: f64 = 1e-9;
 
 /// A time in s that is constant, and known to lie in a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +86,10 @@ pub struct Latency {
     /// Where the amplifier is no lag: its step response rises or rests, begins after the least and has
     /// ended before the most of this, which is a period at the most. Zero where the torque follows at once.
     pub actuator_response: TimeRange,
+    /// How often in a period the amplifier's current loop is updated; 0: its lag is continuous. Between two
+    /// updates the torque goes in a straight line, at each it is what the lag has there. The output delay is a
+    /// whole number of the times between updates, and no sensor lags.
+    pub actuator_updates: u16,
 }
 
 impl Latency {
@@ -90,6 +101,7 @@ impl Latency {
         actuator_lag: TimeRange::ZERO,
         sensor_lag: TimeRange::ZERO,
         actuator_response: TimeRange::ZERO,
+        actuator_updates: 0,
     };
 
     /// A delay of the output in s that is known and constant.
@@ -105,6 +117,51 @@ impl Latency {
     /// The same in front of an amplifier whose step response rises from `begin` to `end`, in s.
     pub const fn with_actuator_response(self, begin: f64, end: f64) -> Self {
         Self { actuator_response: TimeRange::between(begin, end), ..self }
+    }
+
+    /// A current loop that is updated so many times, at least once, in each `period`, with the time constant
+    /// `lag`, both in s: its torque begins one update after that which takes the code over.
+    pub const fn sampled(updates: u16, lag: f64, period: f64) -> Self {
+        let output_delay = TimeRange::exactly(period / updates as f64);
+        let actuator_lag = TimeRange::exactly(lag);
+        Self { output_delay, actuator_lag, actuator_updates: updates, ..Self::NONE }
+    }
+
+    /// Time in s from a count to the instant at which its code is taken over, beside whole samples: what an
+    /// [`OutputTiming`](crate::output_timing::OutputTiming) is about. A current loop's torque begins an update
+    /// later.
+    pub const fn code_delay(&self, period: f64) -> f64 {
+        let delay = self.output_delay.middle();
+        match self.actuator_updates {
+            0 => delay,
+            _ => self.delay_at_update(self.nearest_update(period).saturating_sub(1), period),
+        }
+    }
+
+    /// The whole number of updates that is nearest to the output delay, at this period in s.
+    pub const fn nearest_update(&self, period: f64) -> u32 {
+        (self.output_delay.most / period * self.actuator_updates as f64 + 0.5) as u32
+    }
+
+    /// The output delay in s at so many updates.
+    pub const fn delay_at_update(&self, update: u32, period: f64) -> f64 {
+        update as f64 * period / self.actuator_updates as f64
+    }
+
+    /// The output delay in periods of a current loop that is updated in them, exactly a whole number of updates.
+    ///
+    /// `None` where it is not that to a part in a billion, or where a time is stated that such a loop has not.
+    pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
+        let is_lag_alone = self.sensor_lag.is_zero() && self.actuator_response.is_zero();
+        if !is_lag_alone || !self.output_delay.is_exact() || !(self.actuator_lag.least > 0.0) {
+            return None;
+        }
+        let update = self.nearest_update(period);
+        let whole = self.delay_at_update(update, period);
+        if !((self.output_delay.least - whole).abs() <= NEARLY_WHOLE * whole) {
+            return None;
+        }
+        Some(delay_of_updates(update, self.actuator_updates))
     }
 
     /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is

@@ -19,6 +19,10 @@ pub mod energy;
 pub mod torque;
 
 pub mod dac;
+pub mod torque_output;
+
+// The current of a motor on a board's own power stage.
+pub mod current;
 
 // Numbers of sensor and motor, for a servo.
 pub mod transducers;

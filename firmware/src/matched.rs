@@ -21,6 +21,7 @@ use crate::latency::{Latency, TimeRange};
 use crate::number::{Format, Rounding};
 use crate::parameter::MAX_DELAY;
 use crate::passivity::interval::Interval;
+use crate::passivity::lagged::held_back;
 use crate::passivity::polynomial::Polynomial;
 
 /// How much softer the first spring is than the other deviations need, which costs the least index:
@@ -193,12 +194,22 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 impl Taps {
     /// Of the times at one place in their ranges.
     const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        let delay = place.of(latency.torque_delay()).div(t);
+        let delay = match latency.actuator_updates {
+            0 => place.of(latency.torque_delay()).div(t),
+            _ => match latency.delay_in_updates(t.midpoint()) {
+                Some(delay) => delay,
+                None => return None,
+            },
+        };
         let whole = delay.midpoint().max(0.0) as usize;
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);
         let lags = [place.of(latency.actuator_lag).div(t), place.of(latency.sensor_lag).div(t)];
-        let Some(weights) = weights(lags) else { return None };
+        let weights = match latency.actuator_updates {
+            0 => weights(lags),
+            updates => Some([held_back(updates, lags[0]), Interval::ZERO]),
+        };
+        let Some(weights) = weights else { return None };
         let mut taps =
             Self { whole, arriving: part, trails: [(Interval::ZERO, Interval::ZERO); 2] };
         let mut i = 0;

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::status::{CommandError, CommandStatus};
 use crate::progress;
-use crate::toolchain::{self, Board, Memory, NumberFormat, Tools, probe};
+use crate::toolchain::{self, Board, Memory, NumberFormat, Tools, TorqueOutput, probe};
 
 /// Arguments of `haptic flash`.
 #[derive(Debug, Args)]
@@ -18,6 +18,10 @@ pub struct Arguments {
     /// Board to build for: nucleo-g474re, b-g431b-esc1 or stm32f405
     #[arg(long, value_parser = Board::find)]
     pub board: Board,
+    /// What makes the torque: the board's DAC, for an amplifier outside, or its own bridge; by default what
+    /// the program's scene is certified with
+    #[arg(long, value_enum)]
+    pub output: Option<TorqueOutput>,
     /// Number format of the servo
     #[arg(long, value_enum, default_value_t = NumberFormat::F32)]
     pub format: NumberFormat,
@@ -36,14 +40,18 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     let toolchain = toolchain::prepare(Tools::Compiler, |step| eprintln!("set-up: {step}"))?;
     let (board, name) = (arguments.board, arguments.program.as_str());
+    let output = arguments.output.map_or_else(|| toolchain.output_of(name), Ok)?;
     let spinner = progress::spinner(&format!("building {name} for {board}"));
-    let program = toolchain.build_for(board, &[name], arguments.format)?.swap_remove(0);
+    let program = toolchain.build_for(board, output, &[name], arguments.format)?.swap_remove(0);
     spinner.finish_and_clear();
     let chip = probe::chip(&read(&program.path)?)?;
     let (sizes, memory) = (program.sizes, toolchain.memory()?);
     let mut out = io::stdout();
     writeln!(out, "program: {}", program.path.display())?;
     writeln!(out, "chip: {chip}")?;
+    if output == TorqueOutput::Bridge {
+        writeln!(out, "torque: the board's bridge")?;
+    }
     writeln!(out, "flash: {} of {} bytes{}", sizes.flash(), board.flash(), spared(board, memory))?;
     writeln!(out, "variables: {} of {} bytes of RAM", sizes.ram(), memory.ram)?;
     writeln!(out, "stack: {} bytes of RAM", memory.stack)?;

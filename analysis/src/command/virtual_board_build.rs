@@ -21,7 +21,8 @@ impl VirtualBoardBuild {
         let tools = Tools::CompilerAndVirtualBoard;
         let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
         let spinner = progress::spinner(&format!("building {name} and the virtual board"));
-        let elf = toolchain.build_for(board, &[name], format)?.swap_remove(0).path;
+        let output = toolchain.output_of(name)?;
+        let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
         let program = toolchain.build_virtual_board()?;
         spinner.finish_and_clear();
         Ok(Self { program, board, elf })

@@ -33,6 +33,8 @@ pub struct DeviceTable {
     pub sensor_lag: Option<Found<TimeRange>>,
     /// Begin and end of the amplifier's step response.
     pub actuator_response: Option<Found<TimeRange>>,
+    /// Updates of the amplifier in a period.
+    pub actuator_updates: Option<Found<f64>>,
 }
 
 /// Reads `[device]`.
@@ -54,10 +56,11 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     let [actuator_lag, sensor_lag, actuator_response] =
         [&key::ACTUATOR_LAG, &key::SENSOR_LAG, &key::ACTUATOR_RESPONSE]
             .map(|key| section.time(key));
+    let actuator_updates = section.found(&key::ACTUATOR_UPDATES);
     section.finish();
     let (friction, chain, declared) = (friction?, chain?, declared?);
     let (encoder, actuator_lag, sensor_lag) = (encoder?, actuator_lag?, sensor_lag?);
-    let actuator_response = actuator_response?;
+    let (actuator_response, actuator_updates) = (actuator_response?, actuator_updates?);
     alone(&section, actuator_response.as_ref(), &[&actuator_lag, &sensor_lag])?;
     let chain = placed(&section, chain, encoder.as_ref())?;
     let place = match &encoder {
@@ -66,7 +69,15 @@ pub fn device(mut section: Section<'_>, purpose: Purpose) -> Read<DeviceTable> {
     };
     let passivity = passivity(&section, &chain, purpose, place, declared, is_rigid)?;
     let device = Device { inertia: chain.inertia(), damping: chain.damping(), passivity };
-    Ok(DeviceTable { chain, device, friction, actuator_lag, sensor_lag, actuator_response })
+    Ok(DeviceTable {
+        chain,
+        device,
+        friction,
+        actuator_lag,
+        sensor_lag,
+        actuator_response,
+        actuator_updates,
+    })
 }
 
 /// A step response of no known shape has no lag beside it: no bound is known for both.

@@ -234,6 +234,12 @@ keys! {
     ACTUATOR_RESPONSE = Key { bound: TIME, ..of(Parameter::ActuatorResponse) },
         Default(0.0), "[2.0e-5, 2.5e-4]";
 
+    /// How often in a period the amplifier's current loop is updated, a whole number of times: the torque is
+    /// what the lag makes of a step at each update, and goes in a straight line between two. The output delay is
+    /// then a whole number of the times between updates, mostly one; 0: the lag is continuous.
+    ACTUATOR_UPDATES = other("device.actuator_updates", "", whole(0, u16::MAX as u32)),
+        Default(0.0), "4";
+
     /// When the servo runs.
     SERVO = other("servo", "", TABLE),
         Needed, "";

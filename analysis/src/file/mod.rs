@@ -24,6 +24,7 @@ mod problem;
 mod section;
 mod toml;
 mod tree;
+mod updates;
 
 use std::path::Path;
 

@@ -13,6 +13,7 @@ use super::profile::{self, ProfileTable, Shapes};
 use super::section::{Found, Section};
 use super::simulation::{self, Simulation};
 use super::tree::{Node, Value};
+use super::updates::Places;
 use crate::chain::Chain;
 use crate::device::Hand;
 
@@ -104,6 +105,7 @@ struct Servo {
     timing: Timing,
     output_delay: Option<Found<TimeRange>>,
     output_jitter: Option<Found<f64>>,
+    worst_period: Option<Found<f64>>,
 }
 
 fn servo_of(mut section: Section<'_>) -> Read<Servo> {
@@ -120,8 +122,8 @@ fn servo_of(mut section: Section<'_>) -> Read<Servo> {
         let reason = format!("is shorter than `{}` = {period} s", key::PERIOD.path);
         return Err(section.conflict(&key::WORST_PERIOD, span.clone(), reason));
     }
-    let timing = Timing { period, worst_period: worst.map(|found| found.value) };
-    Ok(Servo { timing, output_delay, output_jitter })
+    let timing = Timing { period, worst_period: worst.as_ref().map(|found| found.value) };
+    Ok(Servo { timing, output_delay, output_jitter, worst_period: worst })
 }
 
 /// The times between count and torque, each of which has a bound that other keys give.
@@ -154,13 +156,19 @@ fn latency_of(
         _ => f64::INFINITY,
     };
     let output_jitter = jitter_of(top, servo, largest);
-    Ok(Latency {
+    let updates = &device.actuator_updates;
+    let latency = Latency {
         output_delay: output_delay?,
         output_jitter: output_jitter?,
         actuator_lag: actuator_lag?,
         sensor_lag: sensor_lag?,
         actuator_response: actuator_response?,
-    })
+        actuator_updates: updates.as_ref().map_or(0, |found| found.value as u16),
+    };
+    if let Some(places) = Places::of(updates, &servo.output_delay, &servo.worst_period) {
+        places.check(top, &latency, &servo.timing)?;
+    }
+    Ok(latency)
 }
 
 fn jitter_of(top: &Section<'_>, servo: &Servo, largest: f64) -> Read<f64> {

@@ -105,6 +105,9 @@ fn device(lines: &mut Vec<String>, chain: &Chain, scene: &Scene, friction: Optio
     time(lines, "actuator_lag", scene.latency.actuator_lag);
     time(lines, "sensor_lag", scene.latency.sensor_lag);
     time(lines, "actuator_response", scene.latency.actuator_response);
+    if scene.latency.actuator_updates > 0 {
+        lines.push(format!("actuator_updates = {}", scene.latency.actuator_updates));
+    }
     if chain.masses().len() > 1 {
         let damped = |table: &str, key: &str, value: f64, damping: f64| {
             format!("[[device.{table}]]\n{key} = {value:?}\ndamping = {damping:?}")
@@ -245,6 +248,7 @@ mod tests {
             ("actuator_lag = [1e-5, 1.0000000000000002e-5]\n", "", ""),
             ("sensor_lag = 3e-5\n", "output_delay = [0, 5e-6]\n", "type = \"matched\"\n"),
             ("actuator_response = [1e-5, 3e-4]\n", "output_delay = 5e-6\n", ""),
+            ("actuator_lag = 3e-4\nactuator_updates = 5\n", "output_delay = 5e-4\n", ""),
             (
                 "",
                 "output_delay = 0.0081\noutput_jitter = 1e-6\n",

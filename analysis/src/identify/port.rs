@@ -139,6 +139,11 @@ fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
         SweepEnd::Jump => "the encoder jumped by more than the device can move: check its cable, \
                            its supply and counts_per_turn"
             .to_owned(),
+        SweepEnd::OutputFault => {
+            "the board's bridge took the torque away by itself: a scene's program \
+                                  tells the fault (haptic scope), and boards.md what it means"
+                .to_owned()
+        }
     }
 }
 

@@ -38,11 +38,50 @@ impl Discretization {
         Self { whole: whole as usize, latency, ..self }
     }
 
-    /// The two parts of a tick, before and after the new torque: length in s and steps.
-    pub(super) fn parts(&self) -> [(f64, u32); 2] {
+    /// The two parts of a tick, before and after the new torque.
+    pub(super) fn pieces(&self, plant: &Plant) -> [Pieces; 2] {
         let share = self.latency / self.period;
         let steps = |share: f64| (f64::from(self.substeps) * share).ceil().max(1.0) as u32;
-        [(self.latency, steps(share)), (self.period - self.latency, steps(1.0 - share))]
+        let parts = [(self.latency, share), (self.period - self.latency, 1.0 - share)];
+        parts.map(|(length, share)| match plant.sampled() {
+            None => Pieces { count: 1, length, steps: steps(share) },
+            Some(actuator) => {
+                let length = actuator.between();
+                let count = actuator.in_time(share * self.period);
+                Pieces { count, length, steps: steps(length / self.period) }
+            }
+        })
+    }
+
+    /// Says where a torque begins between two updates of the amplifier.
+    pub(super) fn at_updates(&self, plant: &Plant) -> Result<(), SimulationError> {
+        match plant.sampled() {
+            Some(actuator) if !actuator.is_whole(self.latency) => {
+                let (delay, between) = (self.latency, actuator.between());
+                Err(SimulationError::BetweenUpdates { delay, between })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Pieces of equal length of a part of a tick, over each of which the motor's input is held: one, unless the
+/// amplifier is updated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pieces {
+    /// How many there are.
+    pub count: u32,
+    /// Length of each in s.
+    pub length: f64,
+    /// Steps of the method over each, at least one.
+    pub steps: u32,
+}
+
+impl Pieces {
+    /// All of them, of states and inputs, of which the motor's is the command.
+    fn through(&self, plant: &Plant, method: Method, omega: f64) -> DMatrix<f64> {
+        let step = step(plant, method, omega, self.length / f64::from(self.steps));
+        repeated(&plant.commanded(repeated(&step, self.steps)), self.count)
     }
 }
 
@@ -70,10 +109,9 @@ impl DiscretePlant {
     /// Takes the plant through a tick; `omega` in rad/s is that of the hand's sine torque.
     pub fn new(plant: &Plant, discretization: &Discretization, omega: f64) -> Self {
         let n = plant.order();
-        let [before, after] = discretization.parts().map(|(length, count)| {
-            let h = length / f64::from(count);
-            repeated(&step(plant, discretization.method, omega, h), count)
-        });
+        let [before, after] = discretization
+            .pieces(plant)
+            .map(|piece| piece.through(plant, discretization.method, omega));
         let part = |whole: &DMatrix<f64>| whole.view((0, 0), (n, n)).into_owned();
         let column = |whole: &DMatrix<f64>, index: usize| {
             whole.view((0, n + index), (n, 1)).column(0).into_owned()
@@ -107,6 +145,7 @@ impl DiscretePlant {
         discretization: &Discretization,
         omega: f64,
     ) -> Result<Self, SimulationError> {
+        discretization.at_updates(plant)?;
         let tick = Self::new(plant, discretization, omega);
         let inputs = [&tick.previous, &tick.motor, &tick.hand, &tick.sine[0], &tick.sine[1]];
         let mut entries = inputs.iter().flat_map(|input| input.iter()).chain(&tick.transition);

@@ -43,6 +43,17 @@ pub enum SimulationError {
         /// What stands there.
         value: String,
     },
+    /// The amplifier is updated at other instants than that at which a torque begins.
+    #[error(
+        "a torque begins {delay} s after its count or a later one, between two updates of the amplifier, which \
+         are {between} s apart"
+    )]
+    BetweenUpdates {
+        /// Time in s into the tick.
+        delay: f64,
+        /// Time in s between two updates.
+        between: f64,
+    },
     /// The motion over a period is out of range.
     #[error(
         "overflow: the motion over a period of {period:e} s, with rates of up to {rate:.1e} per \

@@ -108,7 +108,7 @@ impl Experiment {
 
     /// The machine with the scene's lags at its two ends.
     pub fn machine(&self) -> Plant {
-        self.plant.clone().with_lags(&self.scene.latency)
+        self.plant.clone().with_lags(&self.scene.latency, self.scene.timing.period)
     }
 
     /// The plant over a tick.

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::discrete_plant::Discretization;
+use super::discrete_plant::{Discretization, Pieces};
 use super::method::step;
 use super::plant::{INPUTS, Input, Plant};
 use super::torque_signal::TorqueSignal;
@@ -39,9 +39,12 @@ pub struct FrictionPlant {
     mode: Mode,
 }
 
-/// A part of the tick over which the motor torque is held.
+/// A part of the tick over which the commanded torque is held.
 #[derive(Clone, Debug)]
 struct Part {
+    /// Over each of which the motor's input is held.
+    pieces: u32,
+    /// In each of them.
     steps: u32,
     /// A step and its halves, for a motor's mass that slides.
     slides: Vec<DMatrix<f64>>,
@@ -66,13 +69,14 @@ impl FrictionPlant {
             let one = |halving| step(plant, discretization.method, omega, length(halving));
             (0..=HALVINGS).map(one).collect()
         };
-        let part = |(early, (length, steps)): (bool, (f64, u32))| {
+        let part = |(early, Pieces { count, length, steps }): (bool, Pieces)| {
             let steps = steps.max(LEAST_STEPS);
             let h = length / f64::from(steps);
-            Part { steps, slides: halves(plant, h), stuck: halves(&stuck, h), early }
+            Part { pieces: count, steps, slides: halves(plant, h), stuck: halves(&stuck, h), early }
         };
-        let parts = [true, false].into_iter().zip(discretization.parts());
-        let parts = parts.filter(|(_, (length, _))| *length > 0.0).map(part).collect();
+        let parts = [true, false].into_iter().zip(discretization.pieces(plant));
+        let is_some = |piece: &Pieces| piece.count > 0 && piece.length > 0.0;
+        let parts = parts.filter(|(_, pieces)| is_some(pieces)).map(part).collect();
         let n = plant.order();
         let mut all = DVector::zeros(n + INPUTS + 2);
         all.rows_mut(0, n).copy_from(state);
@@ -103,10 +107,14 @@ impl FrictionPlant {
         self.state[n + INPUTS] = sine;
         self.state[n + INPUTS + 1] = cosine;
         for part in std::mem::take(&mut self.parts) {
-            self.state[n + Input::Motor as usize] = if part.early { before } else { after };
-            self.settle();
-            for _ in 0..part.steps {
-                self.go(&part, 0, &mut 0);
+            let command = if part.early { before } else { after };
+            for _ in 0..part.pieces {
+                let input = self.plant.motor_input(command, &self.state);
+                self.state[n + Input::Motor as usize] = input;
+                self.settle();
+                for _ in 0..part.steps {
+                    self.go(&part, 0, &mut 0);
+                }
             }
             self.parts.push(part);
         }

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use firmware::scene::{Device, Latency, Scene};
 use nalgebra::{DMatrix, DVector};
 
-use super::discrete_plant::{DiscretePlant, Discretization};
+use super::discrete_plant::{DiscretePlant, Discretization, Pieces};
 use super::error::SimulationError;
 use super::method::{Method, step};
 use super::plant::{Input, POSITION, Plant, VELOCITY};
@@ -83,12 +83,14 @@ impl HeldDevice {
         hand: Hand,
         period: f64,
     ) -> Result<Self, SimulationError> {
-        let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency);
+        let plant = Plant::rigid(device).with_moving_hand(hand).with_lags(latency, period);
         let delayed = Discretization::exact(period).delayed(latency.torque_delay().middle());
+        delayed.at_updates(&plant)?;
         let lags = !latency.actuator_lag.is_zero();
-        let part = |length: f64| Part::new(&plant, length, lags);
-        let before = (delayed.latency > 0.0).then(|| part(delayed.latency)).transpose()?;
-        let after = part(period - delayed.latency)?;
+        let part = |pieces: Pieces| Part::new(&plant, pieces, lags);
+        let [before, after] = delayed.pieces(&plant);
+        let before = (delayed.latency > 0.0).then(|| part(before)).transpose()?;
+        let after = part(after)?;
         Ok(Self { device, period, plant, whole: delayed.whole, before, after })
     }
 
@@ -111,7 +113,8 @@ impl HeldDevice {
         state.states[GRIP] = setpoint.from;
         let before = self.before.as_ref().map(|part| (part, old));
         let mut work = 0.0;
-        for (part, motor) in before.into_iter().chain([(&self.after, new)]) {
+        for (part, command) in before.into_iter().chain([(&self.after, new)]).flat_map(each) {
+            let motor = self.plant.motor_input(command, &state.states);
             let start = state.motion();
             let spent = part.spent(&self.device, &mut state.states, motor, speed);
             work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
@@ -124,9 +127,16 @@ impl HeldDevice {
     }
 }
 
-/// A part of a tick over which the commanded torque is held.
+/// A part of a tick as often as it is repeated.
+fn each<'p>((part, command): (&'p Part, f64)) -> impl Iterator<Item = (&'p Part, f64)> {
+    std::iter::repeat_n((part, command), part.count as usize)
+}
+
+/// A part of a tick over which the motor's input is held.
 #[derive(Clone, Debug)]
 struct Part {
+    /// How often it is repeated: once, unless the amplifier is updated.
+    count: u32,
     tick: DiscretePlant,
     /// `int x'^2 dt` over it as a quadratic form of [`at`] its start.
     velocity_energy: DMatrix<f64>,
@@ -135,11 +145,12 @@ struct Part {
 }
 
 impl Part {
-    fn new(plant: &Plant, length: f64, lags: bool) -> Result<Self, SimulationError> {
+    fn new(plant: &Plant, pieces: Pieces, lags: bool) -> Result<Self, SimulationError> {
+        let Pieces { count, length, .. } = pieces;
         let tick = DiscretePlant::checked(plant, &Discretization::exact(length), 0.0)?;
         let velocity_energy = integral(plant, length, [VELOCITY; 2]);
         let motor_work = lags.then(|| integral(plant, length, [VELOCITY, TORQUE]));
-        Ok(Self { tick, velocity_energy, motor_work })
+        Ok(Self { count, tick, velocity_energy, motor_work })
     }
 
     /// Takes the states to its end; gives the energy in J that the device's damping took less that which
@@ -302,6 +313,48 @@ mod tests {
             assert!((end.velocity - same.velocity).abs() < 1e-11, "tick {tick}");
             assert!((work - parts).abs() < 1e-14, "tick {tick}: {work} {parts}");
         }
+    }
+
+    /// A delay of three updates of five in a period, against ticks of one between two updates, over which the
+    /// torque goes on from the middle of a straight line: the mean of both ends, in ever finer parts.
+    #[test]
+    fn the_torque_of_an_amplifier_in_updates_goes_in_straight_lines() {
+        const FINE: usize = 64;
+        let hand = Hand { inertia: 1e-4, damping: 0.02, stiffness: 5.0 };
+        let (period, lag) = (1e-3, 3e-4);
+        let sampled = Latency::sampled(5, lag, period);
+        let output_delay = firmware::latency::TimeRange::exactly(6e-4);
+        let latency = Latency { output_delay, ..sampled };
+        let late = HeldDevice::lagging(DEVICE, &latency, hand, period).unwrap();
+        let short = HeldDevice::new(DEVICE, hand, period / (5 * FINE) as f64).unwrap();
+        let start = Motion { position: 0.02, velocity: -1.0 };
+        let (mut state, mut fine) = (late.at(start), short.at(start));
+        let left = (-period / 5.0 / lag).exp();
+        let (mut torque, mut commanded) = (0.0, 0.0);
+        for command in [0.3, -0.1, 0.2, 0.05, -0.4, 0.1] {
+            let setpoint = HandSetpoint { from: 0.05, to: 0.05 };
+            let work = late.step(&mut state, command, setpoint);
+            let mut parts = 0.0;
+            for update in 0..5 {
+                if update == 3 {
+                    commanded = command;
+                }
+                let end = commanded + (torque - commanded) * left;
+                for part in 0..FINE {
+                    let share = (part as f64 + 0.5) / FINE as f64;
+                    parts += short.step(&mut fine, torque + (end - torque) * share, setpoint);
+                }
+                torque = end;
+            }
+            let (end, same) = (state.motion(), fine.motion());
+            assert!((end.position - same.position).abs() < 1e-8, "{end:?} {same:?}");
+            assert!((end.velocity - same.velocity).abs() < 1e-4, "{end:?} {same:?}");
+            assert!((work - parts).abs() < 1e-6, "{work} {parts}");
+        }
+        let between = Latency::delayed(5e-4);
+        let between = Latency { output_delay: between.output_delay, ..latency };
+        let refused = HeldDevice::lagging(DEVICE, &between, hand, period).unwrap_err();
+        assert!(refused.to_string().contains("between two updates"), "{refused}");
     }
 
     /// A free device behind an amplifier that lags, in closed form; and no hand does no work.

@@ -15,6 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::chain::{Chain, EncoderPlace, Link, Mass};
 use crate::device::Hand;
+use crate::sampled_actuator::SampledActuator;
 
 /// Inputs of the plant: the columns of [`Plant::inputs`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,8 @@ pub struct Plant {
     motor: usize,
     hand: usize,
     measured: usize,
+    /// The amplifier and the state of its torque, where it is updated some times in a tick.
+    sampled: Option<(SampledActuator, usize)>,
     rates: DMatrix<f64>,
     inputs: DMatrix<f64>,
 }
@@ -99,7 +102,8 @@ impl Plant {
         for (input, at) in [(Input::Motor, motor), (Input::Friction, motor), (Input::Hand, hand)] {
             inputs[(2 * at + 1, input as usize)] = 1.0 / placed[at].inertia;
         }
-        let mut plant = Self { masses: placed, motor, hand, measured: POSITION, rates, inputs };
+        let mut plant =
+            Self { masses: placed, motor, hand, measured: POSITION, sampled: None, rates, inputs };
         for (i, link) in links.iter().enumerate().take(masses.len() - 1) {
             for (here, there) in [(i, i + 1), (i + 1, i)] {
                 plant.pull(place(here), place(there), masses[here].inertia, *link);
@@ -174,6 +178,16 @@ impl Plant {
         Self { rates, inputs, ..self }
     }
 
+    /// The same with an amplifier that is updated some times in a tick: the motor's input is then the
+    /// [slope](Plant::motor_input) of its torque.
+    pub fn with_sampled_actuator(self, actuator: SampledActuator) -> Self {
+        let torque = self.order();
+        let lagging = self.with_actuator_lag(1.0);
+        let mut rates = lagging.rates;
+        rates[(torque, torque)] = 0.0;
+        Self { rates, sampled: Some((actuator, torque)), ..lagging }
+    }
+
     /// The same with a filter between encoder and servo, which lags by a time in s.
     pub fn with_sensor_lag(self, lag: f64) -> Self {
         let n = self.order();
@@ -184,10 +198,13 @@ impl Plant {
         Self { rates, inputs, measured: n, ..self }
     }
 
-    /// The same with the lags of a scene at its two ends, of those that lie in a range the middle.
-    pub fn with_lags(mut self, latency: &Latency) -> Self {
+    /// The same with the lags of a scene of this period in s at its two ends, of those that lie in a range
+    /// the middle.
+    pub fn with_lags(mut self, latency: &Latency, period: f64) -> Self {
         let Latency { actuator_lag, sensor_lag, .. } = *latency;
-        if !actuator_lag.is_zero() {
+        if let Some(actuator) = SampledActuator::of(latency, period) {
+            self = self.with_sampled_actuator(actuator);
+        } else if !actuator_lag.is_zero() {
             self = self.with_actuator_lag(actuator_lag.middle());
         }
         if !sensor_lag.is_zero() {
@@ -203,6 +220,32 @@ impl Plant {
             self.inputs.row_mut(row).fill(0.0);
         }
         self
+    }
+
+    /// The amplifier that is updated some times in a tick, if it is.
+    pub fn sampled(&self) -> Option<SampledActuator> {
+        self.sampled.map(|(actuator, _)| actuator)
+    }
+
+    /// The motor's input from an update on, for a commanded torque in N m: that torque, or the slope of the
+    /// amplifier's in N m/s.
+    pub fn motor_input(&self, command: f64, states: &DVector<f64>) -> f64 {
+        self.sampled
+            .map_or(command, |(actuator, torque)| actuator.slope() * (command - states[torque]))
+    }
+
+    /// A matrix of states and inputs from one update to the next, whose motor input is that of
+    /// [`Plant::motor_input`], as one whose motor input is the command.
+    pub fn commanded(&self, mut through: DMatrix<f64>) -> DMatrix<f64> {
+        let Some((actuator, torque)) = self.sampled else { return through };
+        let (n, slope) = (self.order(), actuator.slope());
+        let motor = n + Input::Motor as usize;
+        for row in 0..n {
+            let driven = slope * through[(row, motor)];
+            through[(row, motor)] = driven;
+            through[(row, torque)] -= driven;
+        }
+        through
     }
 
     /// Number of states.

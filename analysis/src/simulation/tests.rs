@@ -323,17 +323,26 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     let [delay, lag, filter] = [output_delay, actuator_lag, sensor_lag].map(|time| time.middle());
     let (whole, part) = ((delay / period) as usize, delay / period - (delay / period).floor());
     let h = period / FINE as f64;
-    // Position, velocity, torque of the amplifier, angle behind the filter.
+    let updates = case.latency.actuator_updates as usize;
+    // What an amplifier that is updated makes up for until the next update.
+    let caught_up = 1.0 - (-period / (updates as f64 * lag)).exp();
+    // Position, velocity, torque of the amplifier or what is commanded until it is updated, angle behind the
+    // filter.
     let rate = |s: [f64; 4], command: f64| {
         let torque = if lag > 0.0 { s[2] } else { command };
-        let amplifier = if lag > 0.0 { (command - s[2]) / lag } else { 0.0 };
+        let amplifier = match updates {
+            0 if lag > 0.0 => (command - s[2]) / lag,
+            0 => 0.0,
+            // A slope.
+            _ => command,
+        };
         let sensor = if filter > 0.0 { (s[0] - s[3]) / filter } else { 0.0 };
         [s[1], (-b * s[1] - torque) / m, amplifier, sensor]
     };
     let plus = |s: [f64; 4], k: [f64; 4], by: f64| std::array::from_fn(|i| s[i] + by * k[i]);
     let mut state = [start.position, start.velocity, 0.0, start.position];
     let late = whole + 2;
-    let (mut torques, mut positions) = (vec![0.0; late], Vec::new());
+    let (mut torques, mut positions, mut slope) = (vec![0.0; late], Vec::new(), 0.0);
     for _ in 0..samples {
         positions.push(state[0]);
         let read = if filter > 0.0 { state[3] } else { state[0] };
@@ -344,7 +353,13 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
         torques.push(stiffness * (read - deflection) / (1.0 + stiffness * tap));
         for step in 0..FINE {
             let age = if step as f64 + 0.5 < part * FINE as f64 { whole + 1 } else { whole };
-            let command = torques[torques.len() - 1 - age];
+            let mut command = torques[torques.len() - 1 - age];
+            if updates > 0 {
+                if step % (FINE / updates) == 0 {
+                    slope = caught_up * (command - state[2]) * updates as f64 / period;
+                }
+                command = slope;
+            }
             let k1 = rate(state, command);
             let k2 = rate(plus(state, k1, 0.5 * h), command);
             let k3 = rate(plus(state, k2, 0.5 * h), command);
@@ -357,7 +372,14 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
     positions
 }
 
-fn late_loops() -> [LateLoop; 5] {
+/// An amplifier that is updated so often, some updates after the count.
+fn updated(updates: u16, late: f64) -> Latency {
+    let latency = Latency::sampled(updates, 2e-4, 1e-3);
+    let delay = late * 1e-3 / f64::from(updates);
+    Latency { output_delay: TimeRange::exactly(delay), ..latency }
+}
+
+fn late_loops() -> [LateLoop; 8] {
     let lag = TimeRange::exactly;
     [
         LateLoop { latency: Latency::delayed(2.5e-4), matched: false },
@@ -372,6 +394,9 @@ fn late_loops() -> [LateLoop; 5] {
             matched: false,
         },
         LateLoop { latency: Latency::delayed(1.3e-3), matched: true },
+        LateLoop { latency: Latency::sampled(4, 3e-4, 1e-3), matched: false },
+        LateLoop { latency: updated(8, 12.0), matched: false },
+        LateLoop { latency: updated(5, 0.0), matched: false },
     ]
 }
 
@@ -405,6 +430,15 @@ fn delays_lags_and_a_matched_coupling_move_as_many_small_steps_have_it() {
     }
 }
 
+/// Laplace's transform of an amplifier whose step response goes in straight lines from update to update: each
+/// of its parts comes evenly over the time to the next update.
+fn in_updates(s: nalgebra::Complex<f64>, between: f64, lag: f64) -> nalgebra::Complex<f64> {
+    let left = (-between / lag).exp();
+    let even = (1.0 - (-s * between).exp()) / (s * between);
+    let part = |n: i32| (-s * between * f64::from(n)).exp() * left.powi(n) * (1.0 - left);
+    (0..100).map(part).sum::<nalgebra::Complex<f64>>() * even
+}
+
 /// `(1 / T) sum hold(j w_k) Ga Gs / (j w_k (m j w_k + b))`, over the aliases.
 #[test]
 fn the_sampled_plant_is_the_sum_over_the_aliases() {
@@ -424,7 +458,12 @@ fn the_sampled_plant_is_the_sum_over_the_aliases() {
                 let s = Complex::new(0.0, w);
                 let lag = |tau: f64| 1.0 / (1.0 + s * tau);
                 let held = (1.0 - 1.0 / z) / s * (-s * output_delay.middle()).exp();
-                held * lag(actuator_lag.middle()) * lag(sensor_lag.middle()) / (s * (s * m + b))
+                let updates = case.latency.actuator_updates;
+                let amplifier = match updates {
+                    0 => lag(actuator_lag.middle()),
+                    _ => in_updates(s, period / f64::from(updates), actuator_lag.middle()),
+                };
+                held * amplifier * lag(sensor_lag.middle()) / (s * (s * m + b))
             };
             let sum: Complex<f64> = (-20_000..=20_000).map(alias).sum::<Complex<f64>>() / period;
             let is = plant.at(z);

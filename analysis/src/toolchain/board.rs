@@ -13,6 +13,42 @@ pub enum Board {
     Stm32f405,
 }
 
+/// What makes a board's torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum TorqueOutput {
+    /// Its DAC, with a current amplifier outside.
+    Dac,
+    /// Its own bridge.
+    Bridge,
+}
+
+impl TorqueOutput {
+    /// The features of the firmware's package that it takes beside the board's.
+    pub(super) const fn features(self) -> &'static str {
+        match self {
+            Self::Dac => "",
+            Self::Bridge => ",bridge",
+        }
+    }
+
+    /// What is added to the name of a program's file.
+    pub(super) const fn suffix(self) -> &'static str {
+        match self {
+            Self::Dac => "",
+            Self::Bridge => "-bridge",
+        }
+    }
+}
+
+impl fmt::Display for TorqueOutput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Dac => "dac",
+            Self::Bridge => "bridge",
+        })
+    }
+}
+
 /// There is no such board.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no board {name}; there are {}", Board::ALL.map(Board::name).join(", "))]
@@ -32,6 +68,11 @@ impl Board {
             Self::BG431bEsc1 => "b-g431b-esc1",
             Self::Stm32f405 => "stm32f405",
         }
+    }
+
+    /// Whether it has a bridge that this firmware drives.
+    pub const fn has_bridge(self) -> bool {
+        matches!(self, Self::BG431bEsc1)
     }
 
     /// Bytes of its chip's flash, by the chip's data sheet.

@@ -11,7 +11,7 @@ use super::memory::{Memory, NoLength};
 use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{Sources, SourcesError, workspace_root};
-use super::{Board, TARGET};
+use super::{Board, TARGET, TorqueOutput};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -54,6 +54,12 @@ pub enum BuildError {
         path: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// The board cannot make torque like that.
+    #[error("the board {board} has no bridge that this firmware drives; {} has", Board::BG431bEsc1)]
+    NoBridge {
+        /// The board.
+        board: Board,
     },
     /// Cargo could not be started.
     #[error("cargo could not be started: {0}")]
@@ -148,6 +154,16 @@ impl Toolchain {
         Ok(Sources::of(&self.workspace.root).programs()?)
     }
 
+    /// What a program's torque is made by, where nothing else is said: the board's bridge, if its scene is
+    /// certified with the bridge's latency.
+    ///
+    /// # Errors
+    /// Where its source cannot be read.
+    pub fn output_of(&self, name: &str) -> Result<TorqueOutput, BuildError> {
+        let bridge = Sources::of(&self.workspace.root).is_for_bridge(name)?;
+        Ok(if bridge { TorqueOutput::Bridge } else { TorqueOutput::Dac })
+    }
+
     /// Builds a scene's program for the emulated board, with its log, and gives its file.
     ///
     /// # Errors
@@ -178,17 +194,23 @@ impl Toolchain {
         self.scenes_programs(names, &bare)?.into_iter().map(Program::at).collect()
     }
 
-    /// Builds programs for a board that can be flashed.
+    /// Builds programs for a board that can be flashed, and for what makes its torque.
     ///
     /// # Errors
-    /// Where one of them does not exist, does not compile or does not fit.
+    /// Where one of them does not exist, does not compile or does not fit, and where the board has no such
+    /// output.
     pub fn build_for(
         &self,
         board: Board,
+        output: TorqueOutput,
         names: &[&str],
         format: NumberFormat,
     ) -> Result<Vec<Program>, BuildError> {
-        let variant = Variant::scene(board.name(), format, &format!("-{board}"));
+        if output == TorqueOutput::Bridge && !board.has_bridge() {
+            return Err(BuildError::NoBridge { board });
+        }
+        let features = format!("{board}{}", output.features());
+        let variant = Variant::scene(&features, format, &format!("-{board}{}", output.suffix()));
         self.scenes_programs(names, &variant)?.into_iter().map(Program::at).collect()
     }
 

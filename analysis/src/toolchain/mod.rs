@@ -18,7 +18,7 @@ mod sources;
 mod version;
 
 pub use apt::AptError;
-pub use board::{Board, UnknownBoard};
+pub use board::{Board, TorqueOutput, UnknownBoard};
 pub use build::{BuildError, NumberFormat, Program, Toolchain, build_haptic_with};
 pub use memory::Memory;
 pub use plan::Tools;

@@ -178,6 +178,22 @@ impl Sources {
         self.folder.join(format!("{name}.rs"))
     }
 
+    /// Whether the program of that name renders a scene with the latency of a board's bridge: the call that
+    /// makes it a program then has a line for its current loop. No program of that name has none.
+    ///
+    /// # Errors
+    /// Where its file cannot be read.
+    pub fn is_for_bridge(&self, name: &str) -> Result<bool, SourcesError> {
+        let path = self.file(name);
+        match fs::read_to_string(&path) {
+            Ok(text) => Ok(text.split_once(SCENE).is_some_and(|(_, call)| {
+                call.lines().any(|line| line.trim_start().starts_with("bridge:"))
+            })),
+            Err(source) if source.kind() == io::ErrorKind::NotFound => Ok(false),
+            Err(source) => Err(SourcesError::File { path, source }),
+        }
+    }
+
     /// Names of all programs, in the alphabet's order.
     ///
     /// # Errors

@@ -18,6 +18,7 @@ use super::nnls::nnls;
 use crate::chain::Chain;
 use crate::line_search::minimizing_angle;
 use crate::response::Response;
+use crate::sampled_actuator::SampledActuator;
 use crate::simulation::closed_loop::transfers;
 
 /// Aliases to either side whose reactances are met, in the order in which these numbers are tried.
@@ -37,6 +38,7 @@ pub(super) struct LaggingLoop {
     inertia: f64,
     delay: f64,
     lags: [f64; 3],
+    sampled: Option<SampledActuator>,
     controller: Response,
 }
 
@@ -56,8 +58,9 @@ impl LaggingLoop {
     pub(super) fn new(scene: &Scene, device: &Chain) -> Option<Self> {
         let controller = Response::new(transfers(scene).ok()?.controller);
         let latency = &scene.latency;
-        let lags =
-            [latency.actuator_lag.middle(), latency.sensor_lag.middle(), device.actuator_lag()];
+        let sampled = SampledActuator::of(latency, scene.timing.period);
+        let amplifier = if sampled.is_none() { latency.actuator_lag.middle() } else { 0.0 };
+        let lags = [amplifier, latency.sensor_lag.middle(), device.actuator_lag()];
         let (inertia, damping) = (device.inertia(), device.damping());
         let is_rigid = device.masses().len() == 1 && damping > 0.0;
         is_rigid.then_some(Self {
@@ -66,6 +69,7 @@ impl LaggingLoop {
             inertia,
             delay: latency.torque_delay().middle(),
             lags,
+            sampled,
             controller,
         })
     }
@@ -77,7 +81,8 @@ impl LaggingLoop {
             let late = Complex::from_polar(1.0, -rate * self.delay);
             let lags = self.lags.iter().map(|lag| Complex::new(1.0, rate * lag));
             let lagging: Complex<f64> = lags.product();
-            (rate, -held * late / (lagging * (rate * rate * self.period)))
+            let sampled = self.sampled.map_or(Complex::new(1.0, 0.0), |it| it.response(rate));
+            (rate, -held * late * sampled / (lagging * (rate * rate * self.period)))
         };
         let aliases: Vec<_> = (-reach..=reach).map(alias).collect();
         Disk {

@@ -55,6 +55,7 @@ fn hands_find_the_limits_of_scenes_with_latency() {
             Coupling::Spring { stiffness: 44.0 },
         ),
         (Latency::delayed(3e-4).with_actuator_lag(2e-4), Coupling::Spring { stiffness: 30.0 }),
+        (Latency::sampled(3, 2e-4, 1e-3), Coupling::Rigid),
     ] {
         let with = |stiffness: f64| Scene { latency, ..scene(stiffness, 0.0, 1, coupling) };
         let (mut low, mut high) = (0.0, 100.0);

@@ -160,6 +160,56 @@ fn a_bad_time_is_named_with_its_line_value_and_bound() {
 }
 
 #[test]
+fn an_amplifier_in_updates_has_a_lag_and_a_delay_of_whole_updates() {
+    let text = |device: &str, servo: &str| {
+        WALL.replacen("damping = 0.022", &format!("damping = 0.022\n{device}"), 1).replacen(
+            "period = 0.001",
+            &format!("period = 0.001\n{servo}"),
+            1,
+        )
+    };
+    let updates = "actuator_lag = 8e-5\nactuator_updates = 3";
+    let read = toml(&text(updates, "output_delay = 3.33333333333e-4")).unwrap();
+    let exactly = TimeRange::exactly;
+    let expected = Latency {
+        output_delay: exactly(3.333_333_333_33e-4),
+        actuator_lag: exactly(8e-5),
+        actuator_updates: 3,
+        ..Latency::NONE
+    };
+    assert_eq!(read.scene.latency, expected);
+    assert_eq!(read.scene.latency.output_delay.middle() as f32, (1e-3 / 3.0) as f32);
+    let refused = |device: &str, servo: &str, place: &str, words: &[&str]| {
+        let message = toml(&text(device, servo)).expect_err(device).to_string();
+        assert!(message.contains(&format!("scene.toml:{place}: ")), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    };
+    let whole = "a whole number from 0 to 65535";
+    for bad in ["-1", "0.5", "65536", "1e9"] {
+        let words = ["`device.actuator_updates`", bad, whole];
+        refused(&format!("actuator_updates = {bad}"), "", "5:20", &words);
+    }
+    refused(
+        updates,
+        "output_delay = 3.4e-4",
+        "9:16",
+        &[
+            "`servo.output_delay` = 3.4e-4 is no whole number of updates",
+            "`device.actuator_updates` = 3 in a period",
+            "the nearest is 1: 0.0003333",
+        ],
+    );
+    refused(updates, "output_delay = [3e-4, 4e-4]", "9:16", &["has to be known exactly"]);
+    refused(updates, "worst_period = 0.002", "9:16", &["0.002 s, which may not be missed"]);
+    let lag = "needs a `device.actuator_lag` that is greater than 0";
+    refused("actuator_updates = 3", "", "5:20", &[lag]);
+    refused("actuator_lag = [0, 1e-5]\nactuator_updates = 3", "", "6:20", &[lag]);
+    let sensor = format!("sensor_lag = 1e-5\n{updates}");
+    refused(&sensor, "", "7:20", &["stands beside `device.sensor_lag`"]);
+    assert!(toml(&text("actuator_updates = 0", "worst_period = 0.002")).is_ok());
+}
+
+#[test]
 fn a_matched_coupling_takes_no_stiffness_and_a_spring_needs_one() {
     let refused = |keys: &str, words: &[&str]| {
         let text = WALL.replacen("stiffness = 44.0", keys, 1);

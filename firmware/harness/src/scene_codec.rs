@@ -16,9 +16,9 @@ const TERMS: usize = MAX_DEGREE + 1;
 /// A scene as 64-bit words; an `f64` is its bits.
 pub type SceneWords = [u64; WORDS];
 
-/// Words of a scene: the type of its environment, whether its coupling is matched, each number with whether it is there, the side of a
-/// wall, and two polynomials.
-const WORDS: usize = 2 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
+/// Words of a scene: the type of its environment, whether its coupling is matched, the updates of its amplifier,
+/// each number with whether it is there, the side of a wall, and two polynomials.
+const WORDS: usize = 3 + 2 * Parameter::ALL.len() + 1 + 2 * (1 + TERMS);
 
 /// An enclosure's ends as bits; `None` where the index does not exist.
 pub type IntervalBits = Option<(u64, u64)>;
@@ -67,6 +67,7 @@ pub fn encode(scene: &Scene) -> SceneWords {
         }
     });
     words.push(matches!(scene.coupling, Coupling::Matched).into());
+    words.push(scene.latency.actuator_updates.into());
     for parameter in Parameter::ALL {
         words.optional(scene.get(*parameter));
     }
@@ -116,6 +117,7 @@ pub fn decode(words: &SceneWords) -> Option<Scene> {
     if words.take() != 0 {
         scene.coupling = Coupling::Matched;
     }
+    scene.latency.actuator_updates = words.take() as u16;
     for parameter in Parameter::ALL {
         if let Some(value) = words.take_optional() {
             scene = scene.with(*parameter, value)?;
@@ -259,7 +261,7 @@ mod tests {
             timing: Timing { period: 0.4, worst_period: None },
             coupling: Coupling::Spring { stiffness: f64::MIN_POSITIVE },
             environment,
-            latency: Latency::NONE,
+            latency: Latency::sampled(3, 0.25, 1.5),
             torque_limit: Some(f64::INFINITY),
         }
     }

@@ -3,9 +3,9 @@
 //! Facts of the chip are from its datasheet (DS12589) and reference manual (RM0440), facts of the
 //! board from its user manual (UM2516, table 4) and the schematic of MB1419.
 //!
-//! The board's own power stage stays off: all six inputs of its gate drivers are driven low. It is
-//! a speed controller and has no input for an analogue current amplifier; what this firmware needs of it
-//! is reachable, but both pins of the DAC have other purposes (see [`DAC`]).
+//! With the feature `bridge` the board's own power stage drives the motor. Without it that stays off, with
+//! all six inputs of its gate drivers driven low, and the torque is the DAC's, for a current amplifier
+//! outside, although both pins of the DAC have other purposes on this board (see [`DAC`]).
 
 use embassy_stm32::gpio::{Level, Output, Pull, Speed};
 use embassy_stm32::peripherals::USART2;
@@ -16,8 +16,10 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::dac::DacChannel;
-use super::stm32::output_pin::OutputPin;
+use super::stm32::output::dac::DacChannel;
+#[cfg(feature = "bridge")]
+use super::stm32::output::gates::{Gate, Gates};
+use super::stm32::output::pin::OutputPin;
 use super::stm32::{BoardPeripherals, clock_170, quadrature, serial};
 use crate::dac::OutputRange;
 
@@ -50,6 +52,19 @@ pub const TIMER_TRIGGER: u8 = 7;
 /// the resistor to ground at the amplifier's input has to be 2.2 kΩ, which leaves 0.3 V at most.
 pub const AMPLIFIER: OutputPin = OutputPin { port: pac::GPIOA, pin: 15 };
 
+/// The power stage.
+#[cfg(feature = "bridge")]
+pub use crate::current::B_G431B_ESC1 as POWER_STAGE;
+
+/// The gates of the bridge: TIM1's channels and complementary channels, which are the high sides and the low
+/// sides of the phases U, V and W (UM2516, table 4; alternate functions by DS12589).
+#[cfg(feature = "bridge")]
+pub const GATES: Gates = Gates([
+    [Gate::new(pac::GPIOA, 8, 6), Gate::new(pac::GPIOC, 13, 4)],
+    [Gate::new(pac::GPIOA, 9, 6), Gate::new(pac::GPIOA, 12, 6)],
+    [Gate::new(pac::GPIOA, 10, 6), Gate::new(pac::GPIOB, 15, 4)],
+]);
+
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;
 });
@@ -80,6 +95,7 @@ pub fn connect_pins(chip: Peripherals) -> BoardPeripherals {
         Timer::new(chip.TIM6),
         Timer::new(chip.TIM7),
     ));
+    #[cfg(not(feature = "bridge"))]
     DAC.connect(chip.DAC1, chip.PA4);
     BoardPeripherals {
         // The virtual serial port of the debug probe that the board comes with; without the probe,

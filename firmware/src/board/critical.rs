@@ -2,26 +2,29 @@
 //!
 //! The usual critical section switches all interrupts off, and a log line written in one has been
 //! measured at 5 us and more: at 20 kHz a tenth of a period. Here it raises the base priority, which
-//! holds off everything but priority 0. Priority 0 belongs to the servo's interrupt alone, and that
-//! never enters a critical section: what it shares with the rest goes through atomics and lock-free
-//! queues.
+//! holds off everything but the servo's interrupt, and where a bridge drives the motor, the current
+//! loop's above it. Neither ever enters a critical section: what they share with the rest goes through
+//! atomics and lock-free queues.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use cortex_m::register::basepri;
 use critical_section::{Impl, RawRestoreState};
 
-/// Holds off priorities 1 to 15; the chips have four bits of priority, at the top of the byte.
-pub const BELOW_SERVO: u8 = 1 << 4;
+/// Priority of the servo's interrupt: the highest but for the current loop's.
+pub const SERVO: u8 = if cfg!(feature = "bridge") { 1 } else { 0 };
+
+/// Holds off all priorities below the servo's; the chips have four bits of priority, at the top of the byte.
+pub const BELOW_SERVO: u8 = (SERVO + 1) << 4;
 
 /// Masks interrupts below the servo.
 struct AllButServo;
 
 critical_section::set_impl!(AllButServo);
 
-// SAFETY: with one core, what runs at the raised base priority is interrupted by priority 0 only.
-// The boards give that priority to the servo's interrupt and to no other (`lower_all`), and nothing
-// that this interrupt calls uses a critical section or what one guards.
+// SAFETY: with one core, what runs at the raised base priority is interrupted by higher priorities only.
+// The boards give those to the servo's interrupt, to the current loop's above it, and to no other
+// (`lower_all`), and nothing that these interrupts call uses a critical section or what one guards.
 unsafe impl Impl for AllButServo {
     unsafe fn acquire() -> RawRestoreState {
         let before = basepri::read();

@@ -61,6 +61,9 @@ pub const BAUD: u32 = 460_800;
 /// - `output`: when the board puts a code out, such as `AtPhase<10_000>`, 10 microseconds after the
 ///   beginning of the period of its count ([`AtPhase`](crate::servo::AtPhase)); by default at the next
 ///   count ([`Latched`](crate::servo::Latched)), and on the emulated board at once;
+/// - `bridge`: the [`CurrentLoop`](crate::current::CurrentLoop) of a motor that the board's own bridge
+///   drives. Its response is the scene's latency, or this does not compile, and such a program is for
+///   boards with a bridge only;
 /// - `friction`: the dry friction of the device in N m, if it is known, by which the certificate says
 ///   whether it comes to rest;
 /// - `rendering`: [`RenderingOptions`](crate::servo::RenderingOptions), such as damping that is
@@ -82,6 +85,7 @@ macro_rules! scene_program {
         float: $float:ty,
         fixed: $fixed:ty
         $(, output: $mode:ty)?
+        $(, bridge: $current_loop:ident)?
         $(, friction: $friction:expr)?
         $(, rendering: $rendering:expr)?
         $(, options: $options:expr)?
@@ -116,6 +120,8 @@ macro_rules! scene_program {
         $(const _: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             CERTIFIED_AS_IT_RUNS.timing_checked::<$mode>();)?
 
+        $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $transducers);
+
         // On the host both formats are judged, whichever a board will be built for.
         #[cfg(not(target_os = "none"))]
         const _: () = {
@@ -149,8 +155,27 @@ macro_rules! scene_program {
             $environment,
             PROGRAM,
             CERTIFIED_AS_IT_RUNS,
-            $crate::chosen_number!($float, $fixed)
-            $(, $mode)?
+            $crate::chosen_number!($float, $fixed),
+            [$($mode)?],
+            [$($current_loop)?]
+        );
+    };
+}
+
+/// The current loop of a program, where it has one, is that of its scene, its transducers and its output.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! bridge_checked {
+    ([] $mode:tt $scene:ident, $transducers:ident) => {};
+    ([$current_loop:ident] [] $scene:ident, $transducers:ident) => {
+        $crate::bridge_checked!([$current_loop] [$crate::servo::Latched] $scene, $transducers);
+    };
+    ([$current_loop:ident] [$mode:ty] $scene:ident, $transducers:ident) => {
+        const _: () = $current_loop.check_serves(
+            &$scene.latency,
+            $scene.timing.period,
+            &$transducers,
+            <$mode as $crate::servo::OutputMode>::TIMING,
         );
     };
 }
@@ -168,10 +193,11 @@ macro_rules! or_default {
 }
 
 /// Makes a program of a sweep, of the transducers that it was planned for, and of the motion's
-/// limits: on a board it plays the sweep within them, on the host it prints the plan.
+/// limits: on a board it plays the sweep within them, on the host it prints the plan. With the
+/// [`CurrentLoop`](crate::current::CurrentLoop) of a motor it serves boards with a bridge, too.
 #[macro_export]
 macro_rules! sweep_program {
-    ($sweep:ident, $transducers:ident, $limits:ident) => {
+    ($sweep:ident, $transducers:ident, $limits:ident $(, bridge: $current_loop:ident)?) => {
         /// The limits in counts: those that stop nothing do not compile.
         pub const GUARD: $crate::excitation::Guard =
             $crate::excitation::Guard::planned(&$limits, &$transducers, $sweep.period());
@@ -189,7 +215,7 @@ macro_rules! sweep_program {
         }
 
         #[cfg(target_os = "none")]
-        $crate::board_sweep!($sweep, $transducers, $limits);
+        $crate::board_sweep!($sweep, $transducers, $limits, [$($current_loop)?]);
     };
 }
 

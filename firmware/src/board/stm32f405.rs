@@ -19,8 +19,8 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
-use super::stm32::dac::DacChannel;
-use super::stm32::output_pin::OutputPin;
+use super::stm32::output::dac::DacChannel;
+use super::stm32::output::pin::OutputPin;
 use super::stm32::{BoardPeripherals, quadrature, serial};
 use crate::dac::OutputRange;
 

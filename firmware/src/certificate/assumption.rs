@@ -265,8 +265,14 @@ fn write_rest(f: &mut fmt::Formatter<'_>, rest: &QuantizationBound) -> fmt::Resu
 
 /// Each time that the scene has.
 fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
-    let Latency { output_delay, output_jitter, actuator_lag, sensor_lag, actuator_response } =
-        latency;
+    let Latency {
+        output_delay,
+        output_jitter,
+        actuator_lag,
+        sensor_lag,
+        actuator_response,
+        actuator_updates,
+    } = latency;
     f.write_str("a torque begins ")?;
     if output_delay.is_zero() {
         f.write_str("with its count")?;
@@ -282,6 +288,13 @@ fn write_latency(f: &mut fmt::Formatter<'_>, latency: &Latency) -> fmt::Result {
             write!(f, "; the {what} is a first-order lag of ")?;
             write_time(f, *lag)?;
         }
+    }
+    if *actuator_updates > 0 {
+        write!(
+            f,
+            " where it is updated, {actuator_updates} times a period, and a straight line between two \
+             updates"
+        )?;
     }
     if !actuator_response.is_zero() {
         let TimeRange { least, most } = *actuator_response;

@@ -20,16 +20,29 @@ struct Cells {
     delay: TimeRange,
     actuator: TimeRange,
     sensor: TimeRange,
+    /// Updates of the current loop in a period, and the delay that they give; 0 where it is continuous.
+    updates: u16,
+    delay_in_updates: Interval,
 }
 
 impl Cells {
-    const fn of(lagging: &Lagging) -> Self {
+    /// `None` where a current loop is updated and its delay is no whole number of updates.
+    const fn of(lagging: &Lagging, period: Interval) -> Option<Self> {
         let latency = &lagging.latency;
-        Self {
+        let mut delay_in_updates = Interval::ZERO;
+        if latency.actuator_updates != 0 {
+            match latency.delay_in_updates(period.midpoint()) {
+                Some(delay) => delay_in_updates = delay,
+                None => return None,
+            }
+        }
+        Some(Self {
             delay: latency.output_delay,
             actuator: latency.actuator_lag,
             sensor: latency.sensor_lag,
-        }
+            updates: latency.actuator_updates,
+            delay_in_updates,
+        })
     }
 
     const fn count(&self) -> usize {
@@ -40,11 +53,15 @@ impl Cells {
     const fn cell(&self, index: usize, period: Interval) -> LagIntervals {
         let (delays, actuators) = (parts(self.delay), parts(self.actuator));
         LagIntervals {
-            delay: part(self.delay, index % delays).div(period),
+            delay: match self.updates {
+                0 => part(self.delay, index % delays).div(period),
+                _ => self.delay_in_updates,
+            },
             lags: [
                 part(self.actuator, index / delays % actuators).div(period),
                 part(self.sensor, index / delays / actuators).div(period),
             ],
+            updates: self.updates,
         }
     }
 }
@@ -92,7 +109,7 @@ impl Corners {
             let whole = self.first_whole + (index - self.ends.len()) as i32;
             Interval::exact(whole as f64)
         };
-        LagIntervals { delay, lags: [Interval::ZERO, Interval::ZERO] }
+        LagIntervals { delay, lags: [Interval::ZERO, Interval::ZERO], updates: 0 }
     }
 }
 
@@ -199,7 +216,7 @@ impl PassivityProblem {
             Ok(found) => found,
             Err(error) => return Err(error),
         };
-        let cells = Cells::of(&lagging);
+        let Some(cells) = Cells::of(&lagging, self.numbers.period) else { return Err(UNKNOWN) };
         let corners = Corners::of(&lagging, self.numbers.period);
         let count = match corners {
             Some(corners) => corners.count(),

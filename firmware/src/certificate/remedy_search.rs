@@ -60,6 +60,10 @@ const fn search(scene: &Scene, format: Format) -> Remedies {
         };
         let varied = Varied { scene, format, parameter };
         let remedy = match ORDER[i] {
+            // With another one alone, the delay is no whole number of updates.
+            Parameter::Period | Parameter::OutputDelay if scene.latency.actuator_updates != 0 => {
+                None
+            }
             Parameter::Count => varied.fewer_repetitions(),
             Parameter::CouplingStiffness => standard_coupling(&varied),
             Parameter::Passivity => more_damping(scene, format),

@@ -67,15 +67,21 @@ const fn requirement(range: Range) -> &'static str {
 
 /// The first number of the scene that is out of its range.
 pub(super) const fn first_invalid(scene: &Scene) -> Option<InvalidParameter> {
-    match (first_invalid_number(scene, ProfileUse::ANY), scene.environment.rational()) {
-        (None, Some(rational)) => match first_not_finite(rational.numerator.as_slice()) {
-            Some(value) => Some(not_finite(Parameter::Numerator, value)),
-            None => match first_not_finite(rational.denominator.as_slice()) {
-                Some(value) => Some(not_finite(Parameter::Denominator, value)),
-                None => None,
-            },
+    if let Some(invalid) = first_invalid_number(scene, ProfileUse::ANY) {
+        return Some(invalid);
+    }
+    if scene.latency.actuator_updates != 0
+        && let Some(conflict) = updates_conflict(scene)
+    {
+        return Some(conflict);
+    }
+    let Some(rational) = scene.environment.rational() else { return None };
+    match first_not_finite(rational.numerator.as_slice()) {
+        Some(value) => Some(not_finite(Parameter::Numerator, value)),
+        None => match first_not_finite(rational.denominator.as_slice()) {
+            Some(value) => Some(not_finite(Parameter::Denominator, value)),
+            None => None,
         },
-        (invalid, _) => invalid,
     }
 }
 
@@ -349,6 +355,45 @@ const fn latency_conflict(
     };
     Some(InvalidParameter { parameter, value, bound, limit: Some(limit) })
 }
+
+/// A number of the scene that an amplifier whose current loop is updated in every period does not allow. A
+/// board does not ask: where one of them is out of place, its coupling has no coefficients.
+const fn updates_conflict(scene: &Scene) -> Option<InvalidParameter> {
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    let worst = scene.timing.worst_period;
+    let (parameter, value, bound, limit) = match worst {
+        Some(worst) if worst != period => {
+            (Parameter::WorstPeriod, worst, BESIDE_UPDATES[0], Some(period))
+        }
+        _ if !(latency.actuator_lag.least > 0.0) => {
+            (Parameter::ActuatorLag, latency.actuator_lag.least, BESIDE_UPDATES[1], None)
+        }
+        _ if !latency.sensor_lag.is_zero() => {
+            (Parameter::SensorLag, latency.sensor_lag.most, BESIDE_UPDATES[2], None)
+        }
+        _ if !latency.actuator_response.is_zero() => {
+            (Parameter::ActuatorResponse, latency.actuator_response.most, BESIDE_UPDATES[2], None)
+        }
+        _ if !latency.output_delay.is_exact() => {
+            (Parameter::OutputDelay, latency.output_delay.most, BESIDE_UPDATES[3], None)
+        }
+        _ if latency.delay_in_updates(period).is_none() => {
+            let nearest = latency.delay_at_update(latency.nearest_update(period), period);
+            (Parameter::OutputDelay, latency.output_delay.most, NO_WHOLE_UPDATES, Some(nearest))
+        }
+        _ => return None,
+    };
+    Some(InvalidParameter { parameter, value, bound, limit })
+}
+
+const BESIDE_UPDATES: [&str; 4] = [
+    "that of the servo where the amplifier is updated in each period:",
+    "greater than 0 where the amplifier is updated in each period",
+    "0 where the amplifier is updated in each period",
+    "known exactly where the amplifier is updated in each period",
+];
+const NO_WHOLE_UPDATES: &str =
+    "a whole number of the amplifier's updates, of which the nearest is at";
 
 const fn not_finite(parameter: Parameter, value: f64) -> InvalidParameter {
     InvalidParameter { parameter, value, bound: requirement(parameter.range()), limit: None }

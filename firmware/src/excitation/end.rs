@@ -37,11 +37,13 @@ pub enum SweepEnd {
     Speed,
     /// The encoder moved as no device can.
     Jump,
+    /// The board's bridge took the torque away.
+    OutputFault,
 }
 
 impl SweepEnd {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Done,
         Self::Stopped,
         Self::Silent,
@@ -50,6 +52,7 @@ impl SweepEnd {
         Self::Travel,
         Self::Speed,
         Self::Jump,
+        Self::OutputFault,
     ];
 
     /// The word on the wire.
@@ -70,6 +73,7 @@ impl SweepEnd {
             Self::Travel => "travel",
             Self::Speed => "speed",
             Self::Jump => "jump",
+            Self::OutputFault => "output-fault",
         }
     }
 

@@ -9,6 +9,8 @@ pub use record::FaultRecord;
 
 use core::fmt;
 
+use crate::current::PowerFault;
+
 /// What stopped the servo, with the numbers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
@@ -71,6 +73,8 @@ pub enum Fault {
     RamParity,
     /// A non-maskable interrupt of which the chip does not say the cause.
     NonMaskable,
+    /// The board's bridge, or the motor on it.
+    Power(PowerFault),
 }
 
 impl Fault {
@@ -89,6 +93,7 @@ impl Fault {
             Self::FlashEcc { .. } => "flash-ecc",
             Self::RamParity => "ram-parity",
             Self::NonMaskable => "non-maskable",
+            Self::Power(fault) => fault.as_str(),
         }
     }
 
@@ -108,6 +113,7 @@ impl Fault {
             Self::FlashEcc { address, status } => (11, [address, status]),
             Self::RamParity => (12, [0; 2]),
             Self::NonMaskable => (13, [0; 2]),
+            Self::Power(fault) => fault.encode(),
         }
     }
 
@@ -127,7 +133,10 @@ impl Fault {
             11 => Self::FlashEcc { address: a, status: b },
             12 => Self::RamParity,
             13 => Self::NonMaskable,
-            _ => return None,
+            _ => match PowerFault::decode(code, numbers) {
+                Some(fault) => Self::Power(fault),
+                None => return None,
+            },
         })
     }
 }
@@ -186,6 +195,7 @@ impl fmt::Display for Fault {
             Self::NonMaskable => f.write_str(
                 "a non-maskable interrupt came, and the chip does not report its cause: arm again",
             ),
+            Self::Power(fault) => write!(f, "{fault}"),
         }
     }
 }

@@ -113,6 +113,18 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         self.fail(Fault::NotANumber, hardware, inbox);
     }
 
+    /// What makes the torque has taken it away.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn stop_by_output(
+        &mut self,
+        fault: Fault,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) {
+        self.fail(fault, hardware, inbox);
+    }
+
     /// A tick that took longer than any before; gives its slack. Without any the code was late
     /// for the update that it was for, and the motor has a torque that the environment does not know
     /// of: no worst period covers that.

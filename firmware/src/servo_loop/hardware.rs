@@ -2,7 +2,7 @@
 
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::FaultRecord;
+use crate::fault::{Fault, FaultRecord};
 #[cfg(doc)]
 use crate::output_timing::READ_WITHIN;
 
@@ -13,10 +13,15 @@ pub const BEGAN_LATE: u32 = 0;
 pub trait Hardware {
     /// The encoder's counter.
     fn count(&mut self) -> RawCount;
-    /// Gives a code to the DAC; when it reaches the motor is the mode's matter.
+    /// Gives a code to the DAC, or to the board's own current loop; when it reaches the motor is the mode's matter.
     fn write(&mut self, code: DacCode);
-    /// Switches the motor's amplifier.
+    /// Switches the motor's amplifier, or the board's bridge.
     fn amplifier(&mut self, on: bool);
+    /// A fault of what makes the torque, since this was last asked; the torque is already gone. A DAC has
+    /// none.
+    fn output_fault(&mut self) -> Option<Fault> {
+        None
+    }
     /// Whole periods that began since the last call: 1 in time, more where ticks were missed, and
     /// [`BEGAN_LATE`] for one whose tick is late. A simulated board whose count is the one at its
     /// period's beginning however late the tick is has no such thing.

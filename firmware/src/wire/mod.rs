@@ -18,7 +18,7 @@ pub use session::{BoardInfo, Session};
 
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
 /// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
-pub const PROTOCOL: u16 = 5;
+pub const PROTOCOL: u16 = 6;
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,9 @@
 use std::io::{self, Write};
 
 use analysis::studies::tick_parts::{Part, Share, TickParts};
-use analysis::toolchain::{Board, NumberFormat, Program, Toolchain, Tools, prepare, probe};
+use analysis::toolchain::{
+    Board, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
+};
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
 fn chip(board: Board) -> &'static str {
@@ -113,11 +115,13 @@ fn where_no_board_is_named_the_compiler_names_all_of_them() {
 fn every_program_builds_for_every_board_and_fits() {
     let toolchain = toolchain();
     let programs = toolchain.scenes().unwrap();
-    let programs: Vec<_> = programs.iter().map(String::as_str).collect();
+    let is_for = |name: &&str, output| toolchain.output_of(name).unwrap() == output;
+    let (bridged, programs): (Vec<_>, Vec<_>) =
+        programs.iter().map(String::as_str).partition(|name| is_for(name, TorqueOutput::Bridge));
     let ours = ["damper_wall", "delayed_spring", "free_mode", "identify", "supervised_spring"];
     assert!(ours.iter().all(|name| programs.contains(name)), "{programs:?}");
     for board in Board::ALL {
-        let built = toolchain.build_for(board, &programs, NumberFormat::F32);
+        let built = toolchain.build_for(board, TorqueOutput::Dac, &programs, NumberFormat::F32);
         let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
         for (name, program) in programs.iter().zip(&built) {
             check(&toolchain, board, name, program);
@@ -126,5 +130,11 @@ fn every_program_builds_for_every_board_and_fits() {
                 check_parts(board, name, program);
             }
         }
+    }
+    let (board, output) = (Board::BG431bEsc1, TorqueOutput::Bridge);
+    let built = toolchain.build_for(board, output, &bridged, NumberFormat::F32);
+    let built = built.unwrap_or_else(|error| panic!("{board}: {error}"));
+    for (name, program) in bridged.iter().zip(&built) {
+        check(&toolchain, board, name, program);
     }
 }

@@ -226,6 +226,7 @@ const SPRING: Loop = Loop {
     output_delay: 0.0,
     actuator_lag: 0.0,
     sensor_lag: 0.0,
+    updates: 0,
     section: None,
 };
 

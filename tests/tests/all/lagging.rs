@@ -7,9 +7,11 @@ use firmware::certificate::{PassivityProblem, assess};
 use firmware::environment::{Coefficients, Environment, Rational, Wall};
 use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
 use nalgebra::DMatrix;
+use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::hands::Hand;
+use tests::scenes::log_uniform;
 
 /// Squarings of a loop's matrix: powers up to a thousand million ticks.
 const SQUARINGS: u32 = 30;
@@ -25,6 +27,8 @@ pub struct Loop {
     pub output_delay: f64,
     pub actuator_lag: f64,
     pub sensor_lag: f64,
+    /// Updates of the amplifier in a period; 0 where its lag is continuous.
+    pub updates: u16,
     /// What multiplies the wall: `(z^2 + b z + c) / (z^2 + d z + e)`.
     pub section: Option<[f64; 4]>,
 }
@@ -52,7 +56,21 @@ impl Loop {
             output_delay: some(rng, 0.6, 1.9),
             actuator_lag: some(rng, 0.6, 2.0),
             sensor_lag: some(rng, 0.3, 1.0),
+            updates: 0,
             section: None,
+        }
+    }
+
+    /// With an amplifier that is updated some times a period.
+    pub fn draw_sampled(rng: &mut ChaCha8Rng) -> Self {
+        let updates = *[1, 2, 3, 4, 7, 16].choose(rng).expect("some");
+        let delay = rng.random_range(0..=2 * updates);
+        Self {
+            output_delay: f64::from(delay) / f64::from(updates),
+            actuator_lag: log_uniform(rng, 0.05, 2.0),
+            sensor_lag: 0.0,
+            updates,
+            ..Self::draw(rng)
         }
     }
 
@@ -75,6 +93,7 @@ impl Loop {
                 output_jitter: 0.0,
                 actuator_lag: exactly(self.actuator_lag),
                 sensor_lag: exactly(self.sensor_lag),
+                actuator_updates: self.updates,
                 ..Latency::NONE
             },
             torque_limit: None,
@@ -160,7 +179,10 @@ impl Loop {
         absorb(&mut rates, hand, absorbers);
         let felt = if self.actuator_lag > 0.0 { amplifier } else { torque };
         rates[(1, felt)] -= 1.0 / hand.inertia;
-        if self.actuator_lag > 0.0 {
+        if self.updates > 0 {
+            // The input is the slope of its torque.
+            rates[(amplifier, torque)] = 1.0;
+        } else if self.actuator_lag > 0.0 {
             rates[(amplifier, amplifier)] = -1.0 / self.actuator_lag;
             rates[(amplifier, torque)] = 1.0 / self.actuator_lag;
         }
@@ -171,6 +193,11 @@ impl Loop {
         let whole = parts.iter().map(|part| part.delay as usize).max().expect("a part");
         let mut times: Vec<f64> = parts.iter().map(|part| part.delay.fract()).collect();
         times.extend([0.0, 1.0]);
+        let updates = f64::from(self.updates);
+        if self.updates > 0 {
+            assert!(parts.iter().all(|part| (part.delay * updates).fract() == 0.0));
+            times = (0..=self.updates).map(|update| f64::from(update) / updates).collect();
+        }
         times.sort_by(f64::total_cmp);
         let plant = bodies + 2;
         let (numerator, denominator) = self.controller();
@@ -205,7 +232,13 @@ impl Loop {
             let step = (&rates * (ends[1] - ends[0])).exp();
             let middle = 0.5 * (ends[0] + ends[1]);
             let late = |part: &Part| held((part.delay - middle).ceil() as usize) * part.weight;
-            let torque = parts.iter().fold(DMatrix::zeros(1, size), |sum, part| sum + late(part));
+            let mut torque =
+                parts.iter().fold(DMatrix::zeros(1, size), |sum, part| sum + late(part));
+            if self.updates > 0 {
+                // What is left shrinks by so much until the next update, in a straight line.
+                let left = (-1.0 / (updates * self.actuator_lag)).exp();
+                torque = (torque - through.rows(amplifier, 1)) * ((1.0 - left) * updates);
+            }
             through = square(&step) * through + driven(&step) * torque;
         }
         closed.view_mut((0, 0), (plant, size)).copy_from(&through);
@@ -306,11 +339,11 @@ struct Found {
     shown: usize,
 }
 
-fn search(seed: u64, loops: usize, hands: usize) -> Found {
+fn search(seed: u64, loops: usize, hands: usize, draw: impl Fn(&mut ChaCha8Rng) -> Loop) -> Found {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut found = Found::default();
     while found.loops < loops {
-        let drawn = Loop::draw(&mut rng);
+        let drawn = draw(&mut rng);
         let Some(limit) = drawn.limit() else { continue };
         let (certified, refused) = (drawn.scaled(0.995 * limit), drawn.scaled(1.1 * limit));
         let theta = assess(&certified.scene()).cos_theta.map_or(PI, |c| c.midpoint().acos());
@@ -338,16 +371,25 @@ fn search(seed: u64, loops: usize, hands: usize) -> Found {
 
 #[test]
 fn no_hand_destabilises_a_certified_loop_whose_torque_lags() {
-    let found = search(1, 40, 150);
+    let found = search(1, 40, 150, Loop::draw);
     assert_eq!(found.unstable, 0, "{found:?}");
     // A test that no hand could fail would be none: ten per cent above the limit hands like these do.
     assert!(found.shown * 2 > found.loops, "{found:?}");
 }
 
 #[test]
+fn no_hand_destabilises_a_certified_loop_whose_amplifier_is_updated_in_the_period() {
+    let found = search(3, 40, 100, Loop::draw_sampled);
+    assert_eq!(found.unstable, 0, "{found:?}");
+    assert!(found.shown * 2 > found.loops, "{found:?}");
+}
+
+#[test]
 #[ignore = "takes minutes: a long search by hand"]
 fn no_hand_of_a_hundred_thousand_destabilises_a_certified_loop() {
-    let found = search(2, 500, 220);
-    println!("{found:?}");
-    assert_eq!(found.unstable, 0, "{found:?}");
+    for draw in [Loop::draw, Loop::draw_sampled] {
+        let found = search(2, 500, 220, draw);
+        println!("{found:?}");
+        assert_eq!(found.unstable, 0, "{found:?}");
+    }
 }

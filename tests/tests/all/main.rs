@@ -29,6 +29,7 @@ mod profiles;
 mod random;
 mod reference;
 mod remedies;
+mod sampled;
 mod simulated;
 mod snaps;
 mod soundness;

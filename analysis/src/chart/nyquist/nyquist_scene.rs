@@ -319,11 +319,15 @@ struct PortCurve {
 impl PortCurve {
     /// `None` where two lags are too much alike for their difference.
     fn of(scene: &Scene, controller: Transfer) -> Option<Self> {
-        let Latency { actuator_lag, sensor_lag, .. } = scene.latency;
+        let Latency { actuator_lag, sensor_lag, actuator_updates: updates, .. } = scene.latency;
         let period = Interval::decimal(scene.timing.period);
-        let [delay, actuator, sensor] = [scene.latency.torque_delay(), actuator_lag, sensor_lag]
-            .map(|time| Interval::decimal(time.middle()).div(period));
-        let response = LagIntervals { delay, lags: [actuator, sensor] }.response(0)?;
+        let [mut delay, actuator, sensor] =
+            [scene.latency.torque_delay(), actuator_lag, sensor_lag]
+                .map(|time| Interval::decimal(time.middle()).div(period));
+        if updates > 0 {
+            delay = scene.latency.delay_in_updates(scene.timing.period)?;
+        }
+        let response = LagIntervals { delay, lags: [actuator, sensor], updates }.response(0)?;
         Some(Self {
             controller: Response::new(controller),
             path: Response::new(response.transfer(period)),

@@ -67,6 +67,7 @@ impl Model {
         let mut scene = file.scene;
         if !self.lag {
             scene.latency.actuator_lag = TimeRange::ZERO;
+            scene.latency.actuator_updates = 0;
         }
         scene
     }

@@ -8,7 +8,7 @@ use std::thread;
 use analysis::emulator::log::LogDecoder;
 use analysis::link::Message;
 use analysis::program::Program;
-use analysis::toolchain::{Board as BoardName, NumberFormat, Tools, prepare};
+use analysis::toolchain::{Board as BoardName, NumberFormat, Tools, TorqueOutput, prepare};
 use firmware::dac::DacCode;
 use firmware::wire::message::{
     LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome, PreviousFault, Status, ToBoard,
@@ -56,7 +56,8 @@ pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
     let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
     let board = BoardName::find(chip.name).unwrap();
-    let built = toolchain.build_for(board, names, NumberFormat::F32);
+    let output = TorqueOutput::Dac;
+    let built = toolchain.build_for(board, output, names, NumberFormat::F32);
     built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }
 

@@ -44,16 +44,18 @@ unsafe fn DefaultHandler(number: i16) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [], $bridge:tt) => {
         $crate::board_program!(
             $environment,
             $program,
             $certified,
             $number,
-            $crate::board::qemu::Mode
+            [$crate::board::qemu::Mode],
+            $bridge
         );
     };
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, $mode:ty) => {
+    // What drives the motor is outside of the emulator.
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$mode:ty], $bridge:tt) => {
         /// The scene, with its delay checked.
         const TIMED: $crate::certificate::TimingChecked<$crate::scene::Scene<$environment>, $mode> =
             $certified.timing_checked::<$mode>();
@@ -95,7 +97,7 @@ macro_rules! board_program {
 #[macro_export]
 macro_rules! board_sweep {
     // A simulated device keeps within all limits.
-    ($sweep:ident, $transducers:ident, $limits:ident) => {
+    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt) => {
         static ISR_STATE: $crate::board::qemu::SweepCell =
             $crate::board::isr_cell::IsrCell::empty();
 

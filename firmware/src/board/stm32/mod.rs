@@ -1,18 +1,19 @@
 //! What the boards with an STM32 chip have in common: the registers that a tick touches, the way
 //! from reset to a running servo, and the end by a panic or a fault.
 //!
+//! What drives the motor is in [`output`].
+//!
 //! A board's own file ([`wiring`]) has no more than its pins, clocks, timers and scales.
 
 #[cfg(feature = "fast-memory")]
 mod ccm_sram;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 pub mod clock_170;
-pub mod dac;
 #[cfg(feature = "stm32f405")]
 mod f4;
 #[cfg(any(feature = "nucleo-g474re", feature = "b-g431b-esc1"))]
 mod g4;
-pub mod output_pin;
+pub mod output;
 pub mod quadrature;
 pub mod registers;
 mod reset;
@@ -20,7 +21,6 @@ pub mod serial;
 mod start;
 pub(super) mod stop;
 mod sweep;
-pub mod tick_timer;
 
 #[cfg(feature = "stm32f405")]
 use f4 as family;
@@ -34,11 +34,13 @@ pub use super::nucleo_g474re as wiring;
 #[cfg(feature = "stm32f405")]
 pub use super::stm32f405 as wiring;
 
+#[cfg(all(feature = "bridge", not(feature = "b-g431b-esc1")))]
+compile_error!("this board has no bridge: --output bridge is for the b-g431b-esc1");
+
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
-    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, period, run, start_timer, width,
-    with_board_counter,
+    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, run, width, with_board_counter,
 };
 pub use sweep::{Setup, SweepCell, measure};
 

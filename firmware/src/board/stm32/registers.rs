@@ -3,52 +3,63 @@
 use embassy_stm32::pac;
 use embassy_stm32::pac::iwdg::vals::Key;
 
+use super::output::{Output, Pace, Setup};
 use super::quadrature::Counter;
-use super::tick_timer::{Period, TickTimer};
-use super::wiring::{AMPLIFIER, DAC, ENCODER};
+use super::wiring::ENCODER;
 use super::{family, reset};
 use crate::board::fault_memory;
 use crate::boot::Startup;
+use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
-use crate::fault::FaultRecord;
+use crate::fault::{Fault, FaultRecord};
 use crate::output_timing::OutputTiming;
 use crate::period::{PATIENCE, WATCHDOG_CLOCK};
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
+use crate::torque_output::TorqueOutput;
 
 /// The registers that belong to the servo's interrupt.
 pub struct Registers {
-    pace: TickTimer,
-    period: Period,
+    pace: Pace,
+    output: Output,
 }
 
 impl Registers {
-    /// Prepares the pacing timer, and what latches the DAC; neither runs yet.
-    pub fn new(period: Period, timing: OutputTiming) -> Self {
-        Self { pace: TickTimer::prepare(period, timing), period }
+    /// Prepares what paces the servo, and what puts its torque out; neither runs yet.
+    ///
+    /// # Errors
+    /// Where the board cannot pace the period in s.
+    pub fn new(setup: Setup, period: f64, timing: OutputTiming) -> Result<Self, BuildError> {
+        let (output, pace) = Output::new(setup, period, timing)?;
+        Ok(Self { pace, output })
     }
 
-    /// Begins to pace. The interrupt's handler must find its place filled from here on.
-    pub fn start(&mut self) {
-        self.pace.start();
+    /// Begins to pace. The servo's interrupt is to be enabled within a period.
+    pub fn start(&mut self, timing: OutputTiming) {
+        self.output.start(&mut self.pace, timing);
     }
 }
 
 impl Hardware for Registers {
     #[inline(always)]
     fn count(&mut self) -> RawCount {
-        ENCODER.count()
+        self.pace.count()
     }
 
     #[inline(always)]
     fn write(&mut self, code: DacCode) {
-        DAC.write(code);
+        self.output.set(code);
     }
 
     #[inline(always)]
     fn amplifier(&mut self, on: bool) {
-        AMPLIFIER.set(on);
+        self.output.switch(on);
+    }
+
+    #[inline(always)]
+    fn output_fault(&mut self) -> Option<Fault> {
+        self.output.fault()
     }
 
     #[inline(always)]
@@ -81,7 +92,7 @@ impl Startup for Registers {
         // be halted with it.
         family::keep_watchdog_running();
         // A count more covers the cast's rounding.
-        let counts = PATIENCE * self.period.seconds() * WATCHDOG_CLOCK + 1.0;
+        let counts = PATIENCE * self.pace.seconds() * WATCHDOG_CLOCK + 1.0;
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
         pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         pac::IWDG.rlr().write(|w| w.set_rl(counts as u16));
@@ -96,6 +107,6 @@ impl Startup for Registers {
     }
 
     fn period(&self) -> u32 {
-        self.period.clock_counts().get()
+        self.pace.period()
     }
 }

@@ -12,9 +12,8 @@ use super::quadrature::Counter;
 use super::registers::Registers;
 use super::serial::Serial;
 use super::stop::stop;
-use super::tick_timer::Period;
-use super::wiring::{self, DAC, ENCODER};
-use super::{BoardPeripherals, family};
+use super::wiring::{self, ENCODER};
+use super::{BoardPeripherals, family, output};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
 use crate::board::link::Link;
@@ -54,6 +53,8 @@ pub struct Statics<E: Discretize<N> + 'static, N: Number, M: 'static> {
     pub link: &'static LinkCell<E, N, M>,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
+    /// What the output has to know of the program.
+    pub output: output::Setup,
 }
 
 /// Runs a scene: its servo in the pacing timer's interrupt, and the host's `task` below it.
@@ -105,13 +106,12 @@ where
     M: OutputMode,
 {
     let port = init_chip(statics.filter).serial;
-    let period = period(program.scene.timing.period);
-    let mut hardware = Registers::new(period, M::TIMING);
+    let mut hardware = registers(statics.output, program.scene.timing.period, M::TIMING);
     let timer_counts = hardware.period();
     let Endpoints { requests, inbox, frames, frame_reader } = endpoints(statics.mailbox);
     let Booted { servo_loop, margin, reset, previous_fault, arms_because } =
         boot(&program, &mut hardware, &requests).unwrap_or_else(|step| halt_with(step.as_str()));
-    start_timer(&mut hardware, M::TIMING);
+    hardware.start(M::TIMING);
     // SAFETY: the interrupt that uses the place is not enabled yet.
     unsafe { statics.servo.init(ServoIsr { servo_loop, hardware, inbox, frames }) };
     // SAFETY: its handler finds its place filled.
@@ -141,20 +141,13 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N,
     }
 }
 
-/// A period, or an end.
-pub fn period(seconds: f64) -> Period {
-    Period::of(seconds).unwrap_or_else(|_| {
+/// The registers of the servo's interrupt for a period in s, or an end.
+pub(super) fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Registers {
+    Registers::new(setup, seconds, timing).unwrap_or_else(|_| {
         let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
         defmt::error!("the period of {} s is not between {} and {} s", seconds, shortest, longest);
         halt_with("its period")
     })
-}
-
-/// Has a timer latch the DAC, which holds mid-scale, and begins to pace. The servo's interrupt is to be
-/// enabled within a period.
-pub fn start_timer(hardware: &mut Registers, timing: OutputTiming) {
-    DAC.latch(timing);
-    hardware.start();
 }
 
 /// The first words to a debug probe.
@@ -176,7 +169,7 @@ fn log_reset(reset: ResetCause, previous_fault: Option<FaultRecord>, arms_becaus
     }
 }
 
-/// Clocks, interrupts and pins. The amplifier is off and the DAC at mid-scale.
+/// Clocks, interrupts and pins. The motor is off, and the next torque is none.
 pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     let chip = embassy_stm32::init(wiring::clocks());
     family::cache();
@@ -186,9 +179,9 @@ pub fn init_chip(filter: InputFilter) -> BoardPeripherals {
     super::ccm_sram::load();
     let mut core = cortex_m::Peripherals::take().expect("the core is taken once");
     critical::lower_all(&mut core.NVIC);
-    interrupt::TIM6_DAC.set_priority(Priority::P0);
+    interrupt::TIM6_DAC.set_priority(Priority::from(critical::SERVO << 4));
     let connected = wiring::connect_pins(chip);
-    DAC.stop();
+    output::stop();
     ENCODER.complete(filter);
     connected
 }
@@ -226,17 +219,20 @@ async fn yield_now() {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_program {
-    ($environment:ty, $program:ident, $certified:ident, $number:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [], $bridge:tt) => {
         $crate::board_program!(
             $environment,
             $program,
             $certified,
             $number,
-            $crate::board::stm32::Mode
+            [$crate::board::stm32::Mode],
+            $bridge
         );
     };
-    ($environment:ty, $program:ident, $certified:ident, $number:ty, $mode:ty) => {
+    ($environment:ty, $program:ident, $certified:ident, $number:ty, [$mode:ty], $bridge:tt) => {
         $crate::board_chip!();
+
+        $crate::board_output!($bridge);
 
         $crate::board_filter!($program.transducers);
 
@@ -275,6 +271,7 @@ macro_rules! board_program {
                 mailbox: &MAILBOX,
                 link: &LINK,
                 filter: FILTER,
+                output: OUTPUT,
             };
             $crate::board::stm32::run(name, program, statics, serve)
         }

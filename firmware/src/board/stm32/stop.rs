@@ -1,22 +1,21 @@
 //! What a fault leaves behind: no torque, amplifier off, a record for the next boot, and a wait for
 //! the watchdog, which resets the board.
 
-use super::family;
-use super::wiring::{AMPLIFIER, DAC};
+use super::{family, output};
 use crate::board::fault_memory;
 use crate::fault::Fault;
 
 /// Removes the torque by registers alone: it works in any state of the program.
 pub fn stop() {
-    AMPLIFIER.set(false);
-    DAC.stop();
+    output::off();
+    output::stop();
 }
 
 /// Ends the program because of a non-maskable interrupt: an error of the flash memory, of RAM, or of the
 /// crystal, without which the core runs on by its internal oscillator.
 pub fn end_non_maskable() -> ! {
     // First, as reading the cause may fault as well.
-    AMPLIFIER.set(false);
+    output::off();
     end(family::non_maskable())
 }
 
@@ -25,10 +24,10 @@ pub fn end_non_maskable() -> ! {
 /// is, for a person to look at.
 pub fn end(fault: Fault) -> ! {
     cortex_m::interrupt::disable();
-    // The record before the DAC: a register that does not answer ends all that is behind it.
-    AMPLIFIER.set(false);
+    // The record before the rest: a register that does not answer ends all that is behind it.
+    output::off();
     fault_memory::store_fault(fault);
-    DAC.stop();
+    output::stop();
     loop {
         cortex_m::asm::nop();
     }

@@ -13,9 +13,10 @@ use heapless::String;
 use static_cell::StaticCell;
 
 use super::Mode;
+use super::output;
 use super::registers::Registers;
 use super::serial::Serial;
-use super::start::{init_chip, period, start_timer, width};
+use super::start::{init_chip, registers, width};
 use super::wiring::ENCODER;
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
@@ -45,6 +46,8 @@ pub struct Setup {
     pub guard: Guard,
     /// The filter of the encoder's inputs.
     pub filter: InputFilter,
+    /// What the output has to know of the program.
+    pub output: output::Setup,
 }
 
 /// Rows that may wait to be sent: 64 ms at 1 kHz.
@@ -114,11 +117,13 @@ impl SweepIsr {
     }
 
     /// Why the sweep ends in this tick, if it does.
-    fn end(&self, passed: u32, count: i32, step: i32) -> Option<SweepEnd> {
+    fn end(&mut self, passed: u32, count: i32, step: i32) -> Option<SweepEnd> {
         let listening = LISTENING.load(Ordering::Relaxed);
         // The task below cannot write between the two.
         LISTENING.store(listening.saturating_sub(1), Ordering::Relaxed);
-        if STOP.load(Ordering::Relaxed) {
+        if self.hardware.output_fault().is_some() {
+            Some(SweepEnd::OutputFault)
+        } else if STOP.load(Ordering::Relaxed) {
             Some(SweepEnd::Stopped)
         } else if listening == 0 {
             Some(SweepEnd::Silent)
@@ -151,14 +156,14 @@ pub fn measure<const N: usize>(
     cell: &'static SweepCell,
 ) -> ! {
     let mut serial = init_chip(setup.filter).serial;
-    let mut hardware = Registers::new(period(sweep.period()), Mode::TIMING);
+    let mut hardware = registers(setup.output, sweep.period(), Mode::TIMING);
     hardware.zero_encoder();
     defmt::info!("last reset: {=str}", hardware.reset_cause().as_str());
     static QUEUE: StaticCell<FrameQueue<ROWS>> = StaticCell::new();
     let (rows, mut told) = QUEUE.init_with(FrameQueue::new).split();
     let exciter = Exciter::new(sweep);
     hardware.start_watchdog();
-    start_timer(&mut hardware, Mode::TIMING);
+    hardware.start(Mode::TIMING);
     let player = SweepIsr {
         beginning: exciter.clone(),
         exciter,
@@ -278,8 +283,9 @@ impl Writer {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! board_sweep {
-    ($sweep:ident, $transducers:ident, $limits:ident) => {
+    ($sweep:ident, $transducers:ident, $limits:ident, $bridge:tt) => {
         $crate::board_chip!();
+        $crate::sweep_output!($bridge);
         $crate::board_filter!($transducers);
 
         static SETUP: $crate::board::stm32::Setup = $crate::board::stm32::Setup {
@@ -287,6 +293,7 @@ macro_rules! board_sweep {
             limits: $limits,
             guard: GUARD,
             filter: FILTER,
+            output: OUTPUT,
         };
 
         static ISR_STATE: $crate::board::stm32::SweepCell =

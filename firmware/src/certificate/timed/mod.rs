@@ -342,7 +342,7 @@ pub(super) const fn agree(
         return Err(TimingError::PhaseRange { phase, shortest: SHORTEST_PHASE, longest });
     }
     if !is_at_its_phase(timing, scene) {
-        let board = board_delay(timing);
+        let board = board_delay(timing, scene);
         if let TimeRange { least, most } = scene.latency.output_delay
             && least != most
         {
@@ -354,8 +354,8 @@ pub(super) const fn agree(
         return Err(TimingError::Unmatched);
     }
     let is_on_a_board = !matches!(timing, OutputTiming::Simultaneous);
-    let jitter = scene.latency.output_jitter;
-    if is_on_a_board && !scene.latency.is_none() && jitter < READ_WITHIN {
+    if is_on_a_board && !scene.latency.is_none() && !has_enough_jitter(scene) {
+        let jitter = scene.latency.output_jitter;
         return Err(TimingError::Jitter { jitter });
     }
     let n = &LoopIntervals::of(scene, assessment.format);
@@ -390,20 +390,25 @@ pub(super) const fn agree(
 /// a board needs is far above. A simulation puts them out as the scene says.
 const fn is_at_its_phase(timing: OutputTiming, scene: &Scene) -> bool {
     let delay = scene.latency.output_delay;
-    let board = board_delay(timing);
+    let board = board_delay(timing, scene);
     match timing {
         OutputTiming::Simultaneous => true,
-        OutputTiming::Latched => delay.is_zero(),
-        OutputTiming::AtPhase(_) => delay.is_exact() && (delay.least - board).abs() <= 1e-9 * board,
+        OutputTiming::Latched | OutputTiming::AtPhase(_) => {
+            delay.is_exact() && (delay.least - board).abs() <= 1e-9 * board
+        }
     }
 }
 
 /// Time in s from a count to the torque that the servo computes from it, beside an environment's whole
-/// samples.
-const fn board_delay(timing: OutputTiming) -> f64 {
-    match timing.phase() {
+/// samples: until the code is put out, and an update more where a current loop takes it over.
+const fn board_delay(timing: OutputTiming, scene: &Scene) -> f64 {
+    let phase = match timing.phase() {
         Some(phase) => phase,
         None => 0.0,
+    };
+    match scene.latency.actuator_updates {
+        0 => phase,
+        updates => phase + scene.timing.period / updates as f64,
     }
 }
 
@@ -416,7 +421,7 @@ const fn stands_counts_read_late(
     n: &LoopIntervals,
 ) -> bool {
     if !matches!(timing, OutputTiming::Simultaneous) && n.latency.is_some() {
-        return scene.latency.output_jitter >= READ_WITHIN;
+        return has_enough_jitter(scene);
     }
     match timing {
         // Only behind the coupling that was made for it.
@@ -426,6 +431,12 @@ const fn stands_counts_read_late(
         }
         OutputTiming::Simultaneous => true,
     }
+}
+
+/// Whether a scene with a latency allows for the time in which a board reads a count. Where a current loop is
+/// updated, its timer captures the count at the very update that begins the period.
+const fn has_enough_jitter(scene: &Scene) -> bool {
+    scene.latency.actuator_updates > 0 || scene.latency.output_jitter >= READ_WITHIN
 }
 
 /// Upper limit of the bound for that.

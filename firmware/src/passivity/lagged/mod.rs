@@ -18,6 +18,11 @@ use super::poles::{
 use super::polynomial::{Polynomial, UnitRoot};
 use super::transfer::Transfer;
 
+mod sampled;
+
+use sampled::unspread;
+pub use sampled::{delay_of_updates, held_back};
+
 /// Delay and lags in periods, as far as they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagIntervals {
@@ -25,6 +30,9 @@ pub struct LagIntervals {
     pub delay: Interval,
     /// Time constants of amplifier and sensor; exactly 0 where there is none.
     pub lags: [Interval; 2],
+    /// Updates of the amplifier's current loop in a period, 0 where it is continuous. With any, the delay is
+    /// [that of a whole number](delay_of_updates) of them, and there is no second lag.
+    pub updates: u16,
 }
 
 /// What a device with ideal sampling feels of a held torque, `z^-whole g`, and what of it no sample shows.
@@ -45,6 +53,10 @@ pub struct SampledResponse {
 #[derive(Clone, Copy)]
 struct Decay {
     tau: Interval,
+    /// The integral of what is left of a step: the time constant, unless straight lines join the updates.
+    held: Interval,
+    /// The same less that of its square: half the time constant, unless straight lines do.
+    unspread: Interval,
     tick: Interval,
     rest: Interval,
     /// The rest of the tick.
@@ -54,6 +66,8 @@ struct Decay {
 impl Decay {
     const NONE: Self = Self {
         tau: Interval::ZERO,
+        held: Interval::ZERO,
+        unspread: Interval::ZERO,
         tick: Interval::ZERO,
         rest: Interval::ZERO,
         over: Interval::ZERO,
@@ -64,7 +78,16 @@ impl Decay {
             return Self::NONE;
         }
         let over = Interval::ONE.sub(part);
-        Self { tau, tick: left(Interval::ONE, tau), rest: left(over, tau), over }
+        let (tick, rest) = (left(Interval::ONE, tau), left(over, tau));
+        Self { tau, held: tau, unspread: tau.half(), tick, rest, over }
+    }
+
+    /// Of a current loop that is updated so many times in a period.
+    // In a frame of its own, which no continuous lag needs.
+    #[inline(never)]
+    const fn sampled(tau: Interval, part: Interval, updates: u16) -> Self {
+        let (held, unspread) = (held_back(updates, tau), unspread(updates, tau));
+        Self { held, unspread, ..Self::of(tau, part) }
     }
 
     /// `(1 - rest) z + (rest - tick)`
@@ -79,7 +102,7 @@ impl Decay {
 
     /// `(tau / 2) (1 - tick^2)`
     const fn spread(&self) -> Interval {
-        self.tau.half().mul(Interval::ONE.sub(self.tick.mul(self.tick)))
+        self.unspread.mul(Interval::ONE.sub(self.tick.mul(self.tick)))
     }
 }
 
@@ -114,7 +137,10 @@ impl LagIntervals {
         let whole = self.first_whole() + piece as i32;
         let part = self.delay.sub(Interval::exact(whole as f64));
         let part = part.and(Interval::new(0.0, 1.0));
-        let first = Decay::of(self.lags[0], part);
+        let first = match self.updates {
+            0 => Decay::of(self.lags[0], part),
+            updates => Decay::sampled(self.lags[0], part, updates),
+        };
         let second = Decay::of(self.lags[1], part);
         match (first.tau.is_zero(), second.tau.is_zero()) {
             (true, true) => SampledResponse::of(whole, part, None, None),
@@ -205,7 +231,7 @@ impl SampledResponse {
 /// `(z - a)` of each lag, and the numerator over `z` times that of what the lags hold back.
 const fn lost(first: Decay, second: Option<Decay>) -> Option<(Polynomial, Polynomial)> {
     let Some(second) = second else {
-        return Some((first.pole(), first.passed().scaled(first.tau)));
+        return Some((first.pole(), first.passed().scaled(first.held)));
     };
     let apart = first.tau.sub(second.tau);
     if apart.contains(0.0) {

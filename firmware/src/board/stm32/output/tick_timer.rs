@@ -24,8 +24,10 @@ use embassy_stm32::pac::timer::vals::{Mms, Urs};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
-use super::wiring::CLOCK;
+use crate::board::stm32::quadrature::Counter;
+use crate::board::stm32::wiring::{CLOCK, ENCODER};
 use crate::build_error::BuildError;
+use crate::encoder::RawCount;
 use crate::output_timing::OutputTiming;
 use crate::period;
 use crate::servo_loop::{BEGAN_LATE, READ_WITHIN};
@@ -39,7 +41,7 @@ const PHASE_TIMER: pac::timer::TimBasic = pac::TIM7;
 
 /// A period as the timer counts it.
 #[derive(Clone, Copy, Debug)]
-pub struct Period {
+struct Period {
     /// Clock counts for one count of the timer.
     prescale: u32,
     /// Counts of the timer for one period.
@@ -54,7 +56,7 @@ impl Period {
     ///
     /// # Errors
     /// Where the board cannot pace it: see [`period`](period::check).
-    pub fn of(seconds: f64) -> Result<Self, BuildError> {
+    fn of(seconds: f64) -> Result<Self, BuildError> {
         period::check(seconds)?;
         let clock = f64::from(rcc::frequency::<peripherals::TIM6>().0);
         let wanted = seconds * clock;
@@ -83,7 +85,7 @@ impl Period {
     }
 
     /// Clock counts in a period.
-    pub fn clock_counts(&self) -> NonZeroU32 {
+    fn clock_counts(&self) -> NonZeroU32 {
         // Neither factor is below one.
         NonZeroU32::new(self.prescale * self.counts).unwrap_or(NonZeroU32::MIN)
     }
@@ -97,7 +99,7 @@ impl Period {
     }
 
     /// Seconds in a period, as it is paced.
-    pub fn seconds(&self) -> f64 {
+    fn seconds(&self) -> f64 {
         f64::from(self.clock_counts().get()) / self.clock
     }
 }
@@ -112,6 +114,8 @@ const MOST: f64 = 65_536.0;
 pub struct TickTimer {
     /// Clock counts in a period.
     period: NonZeroU32,
+    /// Seconds in a period, as it is paced.
+    seconds: f64,
     /// Clock counts after its beginning in which a tick has to begin.
     in_time: u32,
     /// The clock when the present period began.
@@ -121,8 +125,13 @@ pub struct TickTimer {
 }
 
 impl TickTimer {
-    /// Sets the timers up and leaves them standing. The servo's interrupt must still be disabled.
-    pub fn prepare(period: Period, timing: OutputTiming) -> Self {
+    /// Sets the timers up for a period in s and leaves them standing. The servo's interrupt must still be
+    /// disabled.
+    ///
+    /// # Errors
+    /// Where the board cannot pace it: see [`period`](period::check).
+    pub fn prepare(seconds: f64, timing: OutputTiming) -> Result<Self, BuildError> {
+        let period = Period::of(seconds)?;
         rcc::enable_and_reset::<peripherals::TIM6>();
         set_up(TIMER, period);
         TIMER.dier().write(|w| w.set_uie(true));
@@ -139,7 +148,8 @@ impl TickTimer {
         // The cast gives the nearest of what does not fit.
         let in_time = (period.clock * READ_WITHIN) as u32;
         let has_phase = timing.phase().is_some();
-        Self { period: period.clock_counts(), in_time, began: 0, has_phase }
+        let (counts, seconds) = (period.clock_counts(), period.seconds());
+        Ok(Self { period: counts, seconds, in_time, began: 0, has_phase })
     }
 
     /// Starts the clock and then the timer, so that no period begins before the clock's, and last that of
@@ -154,6 +164,12 @@ impl TickTimer {
                 PHASE_TIMER.cr1().modify(|w| w.set_cen(true));
             }
         });
+    }
+
+    /// The encoder's count.
+    #[inline(always)]
+    pub fn count(&self) -> RawCount {
+        ENCODER.count()
     }
 
     /// Acknowledges the tick; gives the periods that have begun since the last time: see
@@ -171,6 +187,16 @@ impl TickTimer {
         let missed = late / self.period;
         self.began = next.wrapping_add(missed * self.period.get());
         if missed == 0 { BEGAN_LATE } else { missed + 1 }
+    }
+
+    /// Clock counts in a period.
+    pub fn period(&self) -> u32 {
+        self.period.get()
+    }
+
+    /// Seconds in a period, as it is paced.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
     }
 
     /// Clock counts since the present period began.

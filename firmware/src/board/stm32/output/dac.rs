@@ -7,7 +7,7 @@ use embassy_stm32::pac;
 use embassy_stm32::peripherals::DAC1;
 use embassy_stm32::rcc;
 
-use super::wiring::{DAC_RANGE, TIMER_TRIGGER};
+use crate::board::stm32::wiring::{DAC_RANGE, TIMER_TRIGGER};
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
 

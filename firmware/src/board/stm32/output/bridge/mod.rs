@@ -1,0 +1,202 @@
+//! The board's own bridge: a current loop in an interrupt of its own, above the servo's.
+//!
+//! ```text
+//! TIM1 update   |           |           |           |           |     each PWM period h, n in a servo period
+//!  (pwm)        v           v           v           v           v
+//! currents      i(0)        i(1)        i(2)                    i(n)  sampled in the middle of the low sides
+//!  (sense)
+//! interrupt     [I][servo ] [I]         [I]                     [I][servo]
+//!  (interrupt)   |   count read at 0, code for the next period   |
+//!  (pace)        the code of the period before is the reference from here on ...
+//! voltage                   v(0)        v(1)                          duties act one update after they
+//!                                                                     were computed
+//! current                               moves                         and so the torque after one h
+//! ```
+//!
+//! The gates are off from reset until the servo arms; each fault takes them away by one write, and too much
+//! current by [hardware](over_current) alone.
+
+mod interrupt;
+mod over_current;
+mod pace;
+mod pwm;
+mod sense;
+
+use core::num::NonZeroU32;
+use core::sync::atomic::{AtomicU8, AtomicU16, AtomicU32, Ordering};
+
+use embassy_stm32::interrupt as interrupts;
+use embassy_stm32::interrupt::{InterruptExt, Priority};
+
+pub use interrupt::CurrentIsr;
+pub use pace::Pace;
+
+use crate::board::isr_cell::IsrCell;
+use crate::board::stm32::wiring::GATES;
+use crate::build_error::BuildError;
+use crate::current::{CurrentLoop, PowerFault};
+use crate::dac::DacCode;
+use crate::fault::Fault;
+use crate::output_timing::OutputTiming;
+use crate::torque_output::TorqueOutput;
+
+/// Where the current interrupt finds its state.
+pub type CurrentCell = IsrCell<CurrentIsr>;
+
+/// What this output has to know of a program.
+#[derive(Clone, Copy)]
+pub struct Setup {
+    /// The current loop of the program's motor.
+    pub current_loop: &'static CurrentLoop,
+    /// The place of its interrupt's state.
+    pub cell: &'static CurrentCell,
+}
+
+/// The code that the servo gave last.
+static WAITING: AtomicU16 = AtomicU16::new(DacCode::MID_SCALE.get());
+
+/// Whether the gates are driven: see [`State`].
+static STATE: AtomicU8 = AtomicU8::new(State::Off as u8);
+
+/// The code and the numbers of a fault that the servo has not seen yet; a code of 0 is none.
+static FAULT: AtomicU32 = AtomicU32::new(0);
+static FAULT_NUMBERS: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
+
+/// What the gates do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum State {
+    /// All low.
+    Off,
+    /// The current interrupt is asked to drive them from its next instant on.
+    Starting,
+    /// Driven.
+    On,
+}
+
+/// The bridge, for the servo's interrupt.
+#[derive(Debug)]
+pub struct Output(());
+
+impl Output {
+    /// The bridge with its gates low, and what paces the servo; nothing runs yet.
+    ///
+    /// # Errors
+    /// None: the period was checked with the current loop, when the program was compiled.
+    pub fn new(setup: Setup, _: f64, timing: OutputTiming) -> Result<(Self, Pace), BuildError> {
+        let current_loop = setup.current_loop;
+        pwm::prepare(current_loop);
+        GATES.connect(current_loop.phases());
+        over_current::prepare(current_loop.over_current_counts());
+        sense::prepare();
+        // SAFETY: the interrupt that uses the place is not enabled yet.
+        unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
+        let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
+        Ok((Self(()), Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+    }
+
+    /// Lets the current interrupt begin, with the gates low.
+    pub fn start(&mut self, pace: &mut Pace, _: OutputTiming) {
+        interrupts::ADC1_2.set_priority(Priority::P0);
+        // SAFETY: its handler finds its place filled.
+        unsafe { interrupts::ADC1_2.enable() };
+        pace.start();
+    }
+}
+
+impl TorqueOutput for Output {
+    #[inline(always)]
+    fn set(&mut self, code: DacCode) {
+        WAITING.store(code.get(), Ordering::Relaxed);
+    }
+
+    /// Off at once; on with the next update, where the power stage finds everything in order. The current
+    /// interrupt comes above this one: it turns the gates on only where it finds them asked for.
+    #[inline(always)]
+    fn switch(&mut self, on: bool) {
+        if !on {
+            return off();
+        }
+        if STATE.load(Ordering::Relaxed) == State::Off as u8 {
+            STATE.store(State::Starting as u8, Ordering::Relaxed);
+        }
+    }
+
+    #[inline(always)]
+    fn fault(&mut self) -> Option<Fault> {
+        if FAULT.load(Ordering::Acquire) == 0 { None } else { take_fault() }
+    }
+}
+
+/// The fault that waits.
+#[cold]
+#[inline(never)]
+fn take_fault() -> Option<Fault> {
+    let numbers = [0, 1].map(|i| FAULT_NUMBERS[i].load(Ordering::Relaxed));
+    Fault::decode(FAULT.swap(0, Ordering::Relaxed), numbers)
+}
+
+/// Tells the servo of a fault. The gates are off.
+#[cold]
+#[inline(never)]
+fn tell(fault: PowerFault) {
+    let (code, numbers) = Fault::Power(fault).encode();
+    for (place, number) in FAULT_NUMBERS.iter().zip(numbers) {
+        place.store(number, Ordering::Relaxed);
+    }
+    FAULT.store(code, Ordering::Release);
+}
+
+/// All gates low, in any state of the program: first the state, so that the current interrupt does not turn
+/// on again what this turns off.
+#[inline(always)]
+pub fn off() {
+    STATE.store(State::Off as u8, Ordering::Relaxed);
+    pwm::off();
+}
+
+/// No torque is due.
+pub fn stop() {
+    WAITING.store(DacCode::MID_SCALE.get(), Ordering::Relaxed);
+}
+
+/// The bridge that a program's motor is wired to, and the handler of its current interrupt.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! board_output {
+    ([]) => {
+        compile_error!(
+            "the bridge drives a motor that this program does not state: write `bridge: CURRENT_LOOP` in \
+             scene_program! or sweep_program!, or build it with --output dac"
+        );
+    };
+    ([$current_loop:ident]) => {
+        static CURRENT: $crate::board::stm32::output::bridge::CurrentCell =
+            $crate::board::isr_cell::IsrCell::empty();
+
+        /// What the bridge has to know of this program.
+        const OUTPUT: $crate::board::stm32::output::Setup = $crate::board::stm32::output::Setup {
+            current_loop: &$current_loop,
+            cell: &CURRENT,
+        };
+
+        $crate::in_fast_memory! {
+            /// An instant of the current loop.
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn ADC1_2() {
+                // SAFETY: this is the handler of the interrupt that is enabled once the place is
+                // filled, and no interrupt interrupts itself.
+                unsafe { CURRENT.borrow_mut() }.run();
+            }
+        }
+    };
+}
+
+/// A sweep drives the same bridge.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! sweep_output {
+    ($bridge:tt) => {
+        $crate::board_output!($bridge);
+    };
+}

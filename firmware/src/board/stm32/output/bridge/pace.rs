@@ -1,0 +1,119 @@
+//! When a tick is due with the bridge: its current interrupt pends the servo's at every so many updates
+//! of TIM1.
+//!
+//! The count is not read late, whenever that interrupt comes: each update of TIM1 has the encoder's timer
+//! capture it (RM0440, general-purpose timers: channel 3 of TIM4 captures on TRC, which is TIM1's trigger
+//! output by the timers' interconnection, and encoder mode leaves that input free).
+
+use core::hint::cold_path;
+use core::num::NonZeroU32;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ts};
+use embassy_stm32::{peripherals, rcc};
+
+use super::pwm;
+use crate::board::stm32::wiring::{CLOCK, ENCODER};
+use crate::encoder::RawCount;
+use crate::servo_loop::BEGAN_LATE;
+
+/// The clock when the count of the present period was read, and that count.
+static TIME: AtomicU32 = AtomicU32::new(0);
+static COUNT: AtomicU32 = AtomicU32::new(0);
+
+/// TIM1's trigger output among the triggers of TIM4 (RM0440, table of their interconnection).
+const TIM1_TRGO: Ts = Ts::ITR0;
+
+/// Has each update of TIM1 capture the encoder's count.
+pub fn capture_counts() {
+    ENCODER.smcr().modify(|w| w.set_ts(TIM1_TRGO));
+    ENCODER.ccmr_input(1).modify(|w| w.set_ccs(0, CcmrInputCcs::TRC));
+    ENCODER.ccer().modify(|w| w.set_cce(2, true));
+}
+
+/// The count at the last update.
+#[inline(always)]
+pub fn captured() -> RawCount {
+    RawCount::from(ENCODER.ccr(2).read().ccr())
+}
+
+/// Takes the count of a period down.
+#[inline(always)]
+pub fn begin_period(count: RawCount) {
+    COUNT.store(count.bits(), Ordering::Relaxed);
+    TIME.store(CLOCK.cnt().read(), Ordering::Relaxed);
+}
+
+/// Keeps count of the periods. Belongs to the servo's interrupt.
+#[derive(Debug)]
+pub struct Pace {
+    /// Clock counts in a period.
+    period: NonZeroU32,
+    /// Seconds in a period.
+    seconds: f64,
+    /// Clock counts of a PWM period, after which the next count is captured over this one.
+    in_time: u32,
+    /// The clock when the present period began.
+    began: u32,
+}
+
+impl Pace {
+    /// A period of this many clock counts, with so many in each PWM period.
+    pub fn new(period: NonZeroU32, in_time: u32) -> Self {
+        capture_counts();
+        CLOCK.psc().write_value(0);
+        CLOCK.arr().write_value(u32::MAX);
+        CLOCK.egr().write(|w| w.set_ug(true));
+        let clock = f64::from(rcc::frequency::<peripherals::TIM2>().0);
+        let seconds = f64::from(period.get()) / clock;
+        Self { period, seconds, in_time, began: 0 }
+    }
+
+    /// Starts the clock and then TIM1, so that no period begins before the clock's.
+    pub fn start(&mut self) {
+        cortex_m::interrupt::free(|_| {
+            CLOCK.cnt().write_value(0);
+            CLOCK.cr1().modify(|w| w.set_cen(true));
+            pwm::start();
+        });
+    }
+
+    /// The encoder's count at the beginning of the period.
+    #[inline(always)]
+    pub fn count(&self) -> RawCount {
+        RawCount::from(COUNT.load(Ordering::Relaxed) as u16)
+    }
+
+    /// The periods that have begun since the last time: see
+    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last). Late is an
+    /// interrupt of the current loop that missed its update.
+    #[inline(always)]
+    pub fn periods_since_last(&mut self) -> u32 {
+        let next = self.began.wrapping_add(self.period.get());
+        let late = TIME.load(Ordering::Relaxed).wrapping_sub(next);
+        if late < self.in_time {
+            self.began = next;
+            return 1;
+        }
+        cold_path();
+        let missed = late / self.period;
+        self.began = next.wrapping_add(missed * self.period.get());
+        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+    }
+
+    /// Clock counts in a period.
+    pub fn period(&self) -> u32 {
+        self.period.get()
+    }
+
+    /// Seconds in a period, as it is paced.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Clock counts since the present period began.
+    #[inline(always)]
+    pub fn time_in_period(&self) -> u32 {
+        CLOCK.cnt().read().wrapping_sub(self.began)
+    }
+}

@@ -1,0 +1,40 @@
+//! The pins of a bridge's gates.
+
+use embassy_stm32::pac;
+use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
+
+/// One gate: its pin, and the alternate function by which a timer drives it.
+#[derive(Clone, Copy)]
+pub struct Gate {
+    port: pac::gpio::Gpio,
+    pin: usize,
+    function: u8,
+}
+
+/// The high side and the low side of each phase, U, V and W.
+#[derive(Clone, Copy)]
+pub struct Gates(pub [[Gate; 2]; 3]);
+
+impl Gate {
+    /// A gate at a pin.
+    pub const fn new(port: pac::gpio::Gpio, pin: usize, function: u8) -> Self {
+        Self { port, pin, function }
+    }
+
+    /// Gives the pin to the timer. It was an output, and low.
+    fn connect(self) {
+        self.port.afr(self.pin / 8).modify(|w| w.set_afr(self.pin % 8, self.function));
+        self.port.ospeedr().modify(|w| w.set_ospeedr(self.pin, Ospeedr::MEDIUM_SPEED));
+        self.port.moder().modify(|w| w.set_moder(self.pin, Moder::ALTERNATE));
+    }
+}
+
+impl Gates {
+    /// Gives the first phases to the timer, which has its main output off; those of a phase that no motor
+    /// is wired to stay outputs that are low.
+    pub fn connect(self, phases: usize) {
+        for gate in self.0.into_iter().take(phases).flatten() {
+            gate.connect();
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What this program drives the motor with: the DAC and an amplifier outside, or the board's own bridge,
+//! by the feature `bridge`.
+//!
+//! Each of the two has the same names for the rest of the board: [`Output`] and its [`Setup`], the [`Pace`]
+//! of the servo's interrupt, and [`off`] and [`stop`] for a program that has come to its end.
+
+#[cfg(not(feature = "bridge"))]
+mod analog;
+#[cfg(feature = "bridge")]
+pub mod bridge;
+pub mod dac;
+#[cfg(feature = "bridge")]
+pub mod gates;
+pub mod pin;
+#[cfg(not(feature = "bridge"))]
+mod tick_timer;
+
+#[cfg(not(feature = "bridge"))]
+pub use analog::{Output, Setup, off, stop};
+#[cfg(feature = "bridge")]
+pub use bridge::{Output, Pace, Setup, off, stop};
+#[cfg(not(feature = "bridge"))]
+pub use tick_timer::TickTimer as Pace;

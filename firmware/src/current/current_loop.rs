@@ -1,0 +1,457 @@
+//! The design of a current loop, at compile time: every coefficient that an instant needs, rounded once.
+
+use super::error::DriveError;
+use super::motor::{Drive, Winding};
+use super::plant::{Plant, lag_of};
+use super::power_stage::PowerStage;
+use super::resolution::{CurrentResolution, Quanta};
+use super::sample::Duties;
+use super::thermistor::{Thermistor, ThermistorTable};
+use super::timing::PwmTiming;
+use crate::dac::DacCode;
+use crate::encoder::CounterWidth;
+use crate::passivity::interval::Interval;
+use crate::transducers::Transducers;
+
+/// Over-current, as a multiple of the current of full-scale torque: what a step in a motor overshoots whose
+/// resistance and inductance are off by a third stays below.
+pub const OVER_CURRENT: f64 = 1.25;
+
+/// Deviation from the model that is a fault when it lasts, as a part of the current of full-scale torque.
+const LARGEST_DEVIATION: f64 = 0.25;
+
+/// Time constants of the feedback in which a deviation has to end, and a voltage to be enough again.
+const SETTLING: f64 = 8.0;
+
+/// Encoder counts in an electrical turn: half of one of 64 is 0.05 rad, which takes 0.1 per cent of the torque.
+const LEAST_ELECTRICAL_COUNTS: f64 = 64.0;
+
+/// Counts a turn of a brushless motor's encoder, so that those of a turn fit 24 bits.
+const LARGEST_COUNTS: f64 = (1 << 24) as f64;
+
+/// Instants in an electrical turn, at the least: the phase moves by 0.3 rad from a sample to the middle of its
+/// voltage, for which two terms of its sine and its cosine are enough.
+const INSTANTS_PER_TURN: f64 = 32.0;
+
+const ROOT_3: f64 = 1.732_050_807_568_877_2;
+
+/// When a code's torque comes: what a certificate has to know of a current loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Time in s from the code to the begin of its torque: `Latency::output_delay`.
+    pub delay: f64,
+    /// Time constant in s of the lag behind it: `Latency::actuator_lag`.
+    pub lag: f64,
+    /// Updates in a period of the servo, at which the torque is that of the lag.
+    pub updates: u16,
+}
+
+/// A current loop, designed for a drive on a power stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurrentLoop {
+    pub(super) winding: Winding,
+    pub(super) timing: PwmTiming,
+    pub(super) counter: CounterWidth,
+    pub(super) law: Law,
+    pub(super) output: Output,
+    pub(super) limits: Limits,
+    amps_per_code: f64,
+    torque_constant: f64,
+    response: Response,
+    resolution: CurrentResolution,
+}
+
+/// Coefficients of the model, of its feed-forward, and of the feedback.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Law {
+    /// Current in A of a code.
+    pub amps_per_code: f32,
+    /// Current in A of a count, with its sign.
+    pub amps_per_count: f32,
+    /// `1 - p`.
+    pub model_gain: f32,
+    /// `a`.
+    pub decay: f32,
+    /// `1/b` in V/A.
+    pub volts: f32,
+    /// `K a/b` in V/A.
+    pub proportional: f32,
+    /// `K (1 - a)/b` in V/A.
+    pub integral: f32,
+    /// Back-EMF in V of a count of the encoder in an instant.
+    pub back_emf: f32,
+}
+
+/// From a voltage to compare values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Output {
+    /// Compare value in counts of a volt, of a supply that reads 1.
+    pub counts_per_volt: f32,
+    /// Largest difference of two compare values.
+    pub span: u16,
+    /// Largest amplitude of a phase in counts: that of the circle in the hexagon of that difference.
+    pub circle: f32,
+}
+
+/// Bounds in counts, and what makes numbers for people of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limits {
+    pub over_current: u16,
+    pub bus: (u16, u16),
+    pub temperature: u16,
+    pub offsets: (u16, u16),
+    /// Largest deviation in A that may last.
+    pub deviation: f32,
+    /// Instants that it, or a voltage that is not enough, may last.
+    pub instants: u16,
+    pub milliamps_per_count: f32,
+    pub millivolts_per_count: f32,
+    pub thermistor: ThermistorTable,
+}
+
+impl CurrentLoop {
+    /// Designs the loop of a drive on a power stage, for a servo with these transducers and this period in s.
+    ///
+    /// # Errors
+    /// Where the drive cannot run there: the value and its bound.
+    pub const fn design(
+        drive: &Drive,
+        stage: &PowerStage,
+        transducers: &Transducers,
+        period: f64,
+    ) -> Result<Self, DriveError> {
+        match Design::of(drive, stage, transducers, period) {
+            Ok(design) => Ok(design.current_loop()),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// For constants: a compile error where the drive cannot run.
+    ///
+    /// # Panics
+    /// If it cannot; in a constant that is the compile error.
+    #[track_caller]
+    pub const fn checked(
+        drive: &Drive,
+        stage: &PowerStage,
+        transducers: &Transducers,
+        period: f64,
+    ) -> Self {
+        match Self::design(drive, stage, transducers, period) {
+            Ok(designed) => designed,
+            Err(error) => error.refuse(),
+        }
+    }
+
+    /// How many phases the motor has.
+    pub const fn winding(&self) -> Winding {
+        self.winding
+    }
+
+    /// Reload value of the modulation's timer, which counts up and down.
+    pub const fn timer_counts(&self) -> u16 {
+        self.timing.counts
+    }
+
+    /// Instants in a period of the servo.
+    pub const fn updates(&self) -> u16 {
+        self.timing.updates
+    }
+
+    /// When a code's torque comes.
+    pub const fn response(&self) -> Response {
+        self.response
+    }
+
+    /// How fine the torque is.
+    pub const fn resolution(&self) -> CurrentResolution {
+        self.resolution
+    }
+
+    /// Torque in N m of an ampere.
+    pub const fn torque_per_amp(&self) -> f64 {
+        self.torque_constant
+    }
+
+    /// Current in A of full-scale torque.
+    pub const fn full_scale_current(&self) -> f64 {
+        self.amps_per_code * DacCode::CODES_TO_FULL_SCALE as f64
+    }
+
+    /// Counts from its offset at which a phase's current is a fault, to either side.
+    pub const fn over_current_counts(&self) -> u16 {
+        self.limits.over_current
+    }
+
+    /// Lowest and highest count of the supply.
+    pub const fn bus_counts(&self) -> (u16, u16) {
+        self.limits.bus
+    }
+
+    /// Compare values that are no voltage: all phases at half.
+    pub const fn no_voltage(&self) -> Duties {
+        self.timing.no_voltage()
+    }
+
+    /// Largest count of the temperature.
+    pub const fn temperature_count(&self) -> u16 {
+        self.limits.temperature
+    }
+}
+
+/// What has been checked, in SI units.
+struct Design<'a> {
+    drive: &'a Drive,
+    stage: &'a PowerStage,
+    transducers: &'a Transducers,
+    timing: PwmTiming,
+    /// Period of the modulation in s.
+    instant: f64,
+    lag: f64,
+    /// Current in A of full-scale torque.
+    current: f64,
+    plant: Plant,
+}
+
+impl<'a> Design<'a> {
+    const fn of(
+        drive: &'a Drive,
+        stage: &'a PowerStage,
+        transducers: &'a Transducers,
+        period: f64,
+    ) -> Result<Self, DriveError> {
+        if let Err(error) = check_positive(drive, transducers) {
+            return Err(error);
+        }
+        let timing = match PwmTiming::of(period, stage.clock) {
+            Ok(timing) => timing,
+            Err(error) => return Err(error),
+        };
+        let (instant, lag) = (timing.instant(period), lag_of(drive.bandwidth));
+        let current = transducers.full_scale_torque / drive.motor.torque_constant;
+        let plant = Plant::of(&drive.motor, lag, instant);
+        let design = Self { drive, stage, transducers, timing, instant, lag, current, plant };
+        match design.check() {
+            Ok(()) => Ok(design),
+            Err(error) => Err(error),
+        }
+    }
+
+    const fn check(&self) -> Result<(), DriveError> {
+        if let Err(error) = self.check_winding() {
+            return Err(error);
+        }
+        let largest = 1.0 / (2.0 * core::f64::consts::TAU * self.instant);
+        if self.drive.bandwidth > largest {
+            return Err(DriveError::Bandwidth { bandwidth: self.drive.bandwidth, largest });
+        }
+        if let Err(error) = self.check_current() {
+            return Err(error);
+        }
+        if let Err(error) = self.check_supply() {
+            return Err(error);
+        }
+        let (lowest, highest) = (Thermistor::LOWEST as f64, Thermistor::HIGHEST as f64);
+        let temperature = self.drive.largest_temperature;
+        // Written so that NaN is refused.
+        if temperature >= lowest && temperature <= highest {
+            Ok(())
+        } else {
+            Err(DriveError::Temperature { temperature, lowest, highest })
+        }
+    }
+
+    /// Whether the encoder is fine enough for the motor's phase, and its phase slow enough for the modulation.
+    const fn check_winding(&self) -> Result<(), DriveError> {
+        let Winding::Brushless { pole_pairs } = self.drive.motor.winding else {
+            return Ok(());
+        };
+        let counts = self.transducers.counts_per_turn;
+        if counts > LARGEST_COUNTS || (counts as u32) as f64 != counts {
+            return Err(DriveError::Counts { counts, largest: LARGEST_COUNTS });
+        }
+        let largest = (counts / LEAST_ELECTRICAL_COUNTS).min(u16::MAX as f64) as u16;
+        if pole_pairs == 0 || pole_pairs > largest {
+            return Err(DriveError::PolePairs { pole_pairs, largest });
+        }
+        let turns = self.electrical_speed() / core::f64::consts::TAU;
+        let largest = 1.0 / (INSTANTS_PER_TURN * self.instant);
+        if turns > largest {
+            return Err(DriveError::ElectricalSpeed { turns, largest });
+        }
+        Ok(())
+    }
+
+    /// Electrical rad/s at the largest speed; none of a brushed motor.
+    const fn electrical_speed(&self) -> f64 {
+        match self.drive.motor.winding {
+            Winding::Brushed => 0.0,
+            Winding::Brushless { pole_pairs } => pole_pairs as f64 * self.transducers.largest_speed,
+        }
+    }
+
+    /// Whether the current can be measured, and the board bears it.
+    const fn check_current(&self) -> Result<(), DriveError> {
+        let (lowest, highest) = self.stage.offset_counts;
+        let above = PowerStage::LARGEST_COUNT.saturating_sub(highest);
+        let room = if lowest < above { lowest } else { above };
+        let (current, largest) =
+            (self.stage.largest_current, room as f64 * self.stage.amps_per_count);
+        if current > largest {
+            return Err(DriveError::CurrentRange { current, largest });
+        }
+        let (current, largest) = (self.current * OVER_CURRENT, self.stage.largest_current);
+        if current > largest {
+            let torque = self.transducers.full_scale_torque;
+            return Err(DriveError::Current { torque, current, largest });
+        }
+        Ok(())
+    }
+
+    /// Whether the board bears the supply, and its voltage is enough.
+    const fn check_supply(&self) -> Result<(), DriveError> {
+        let (supply, board) = (self.drive.supply, self.stage.supply);
+        let is_ordered = supply.lowest <= supply.highest;
+        if !is_ordered || supply.lowest < board.lowest || supply.highest > board.highest {
+            return Err(DriveError::Supply { supply, board });
+        }
+        let (needed, part) = (self.needed_voltage(), self.part_of_supply());
+        let available = supply.lowest * part;
+        if needed <= available {
+            Ok(())
+        } else {
+            Err(DriveError::Voltage { needed, available, enough: needed / part })
+        }
+    }
+
+    /// Largest voltage in V that the motor takes: the model's step from one end of the torque to the other, at
+    /// the largest speed, which none of them has to have at once.
+    const fn needed_voltage(&self) -> f64 {
+        let motor = &self.drive.motor;
+        let along = self.plant.largest_voltage(self.current)
+            + motor.back_emf() * self.transducers.largest_speed;
+        let across = self.electrical_speed() * motor.inductance * self.current;
+        Interval::exact(along * along + across * across).sqrt().hi()
+    }
+
+    /// Largest voltage at the motor as a part of the supply.
+    const fn part_of_supply(&self) -> f64 {
+        let dead = 2.0 * self.stage.dead_time / self.instant;
+        let part = (self.span() as f64 / self.timing.counts as f64 - dead).max(0.0);
+        match self.drive.motor.winding {
+            Winding::Brushed => part,
+            Winding::Brushless { .. } => part / ROOT_3,
+        }
+    }
+
+    /// Largest difference of two compare values, which are the same way from half: above, the low side of the
+    /// one would not conduct for long enough.
+    const fn span(&self) -> u16 {
+        let low = (self.stage.shortest_low + self.stage.dead_time) * self.stage.clock / 2.0;
+        let low = rounded_up(low.min(self.timing.counts as f64 / 2.0 - 1.0));
+        self.timing.counts - 2 * low
+    }
+
+    const fn current_loop(&self) -> CurrentLoop {
+        let Self { drive, stage, transducers, timing, .. } = *self;
+        CurrentLoop {
+            winding: drive.motor.winding,
+            timing,
+            counter: transducers.counter,
+            law: self.law(),
+            output: self.output(),
+            limits: self.limits(),
+            amps_per_code: self.amps_per_code(),
+            torque_constant: drive.motor.torque_constant,
+            response: Response { delay: self.instant, lag: self.lag, updates: timing.updates },
+            resolution: Quanta {
+                plant: self.plant,
+                resistance: drive.motor.resistance,
+                inductance: drive.motor.inductance,
+                torque_constant: drive.motor.torque_constant,
+                amps_per_count: stage.amps_per_count,
+                supply: drive.supply.highest,
+                counts: timing.counts,
+                instant: self.instant,
+                dead_time: stage.dead_time,
+            }
+            .resolution(drive.motor.winding),
+        }
+    }
+
+    const fn amps_per_code(&self) -> f64 {
+        self.current / DacCode::CODES_TO_FULL_SCALE as f64
+    }
+
+    const fn law(&self) -> Law {
+        let Plant { decay, gain, model_gain, feedback } = self.plant;
+        let amps = self.stage.amps_per_count;
+        let radians_per_count = core::f64::consts::TAU / self.transducers.counts_per_turn;
+        Law {
+            amps_per_code: self.amps_per_code() as f32,
+            amps_per_count: if self.stage.current_lowers_count { -amps } else { amps } as f32,
+            model_gain: model_gain as f32,
+            decay: decay as f32,
+            volts: (1.0 / gain) as f32,
+            proportional: (feedback * decay / gain) as f32,
+            integral: (feedback * (1.0 - decay) / gain) as f32,
+            back_emf: (self.drive.motor.back_emf() * radians_per_count / self.instant) as f32,
+        }
+    }
+
+    const fn output(&self) -> Output {
+        let counts = self.timing.counts as f64 / self.stage.volts_per_count;
+        let span = self.span();
+        Output { counts_per_volt: counts as f32, span, circle: (span as f64 / ROOT_3) as f32 }
+    }
+
+    const fn limits(&self) -> Limits {
+        let Self { drive, stage, .. } = *self;
+        // All casts round positive numbers down; of the lowest supply up.
+        let lowest = rounded_up(drive.supply.lowest / stage.volts_per_count);
+        Limits {
+            over_current: (self.current * OVER_CURRENT / stage.amps_per_count) as u16,
+            // A supply that reads 0 is below every range: there is a division by it.
+            bus: (
+                if lowest == 0 { 1 } else { lowest },
+                (drive.supply.highest / stage.volts_per_count) as u16,
+            ),
+            temperature: stage.thermistor.count(drive.largest_temperature),
+            offsets: stage.offset_counts,
+            deviation: (self.current * LARGEST_DEVIATION) as f32,
+            instants: (SETTLING / self.plant.feedback).min(u16::MAX as f64) as u16,
+            milliamps_per_count: (stage.amps_per_count * 1e3) as f32,
+            millivolts_per_count: (stage.volts_per_count * 1e3) as f32,
+            thermistor: stage.thermistor.table(),
+        }
+    }
+}
+
+const fn check_positive(drive: &Drive, transducers: &Transducers) -> Result<(), DriveError> {
+    let motor = &drive.motor;
+    let numbers = [
+        ("motor's resistance", motor.resistance),
+        ("motor's inductance", motor.inductance),
+        ("motor's torque constant", motor.torque_constant),
+        ("bandwidth", drive.bandwidth),
+        ("lowest supply", drive.supply.lowest),
+        ("highest supply", drive.supply.highest),
+        ("full-scale torque", transducers.full_scale_torque),
+        ("largest speed", transducers.largest_speed),
+        ("counts per turn", transducers.counts_per_turn),
+    ];
+    let mut i = 0;
+    while i < numbers.len() {
+        if let Err(error) = DriveError::unless_positive(numbers[i].0, numbers[i].1) {
+            return Err(error);
+        }
+        i += 1;
+    }
+    Ok(())
+}
+
+/// The least whole number that a positive one is not above.
+const fn rounded_up(number: f64) -> u16 {
+    let below = number as u16;
+    if (below as f64) < number { below.saturating_add(1) } else { below }
+}

@@ -1,0 +1,179 @@
+//! Faults of a power stage: its gates are switched off.
+
+use core::fmt;
+
+/// What switched a power stage off, with the numbers to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PowerFault {
+    /// The current of a phase was above what the drive allows.
+    OverCurrent {
+        /// The current in mA, without its sign.
+        current: u32,
+        /// The largest in mA.
+        largest: u32,
+    },
+    /// The supply was above what was stated.
+    OverVoltage {
+        /// The voltage in mV.
+        voltage: u32,
+        /// The highest in mV.
+        highest: u32,
+    },
+    /// The supply was below what was stated.
+    UnderVoltage {
+        /// The voltage in mV.
+        voltage: u32,
+        /// The lowest in mV.
+        lowest: u32,
+    },
+    /// The power stage was too hot.
+    OverTemperature {
+        /// The temperature in tenths of a degree Celsius.
+        temperature: i32,
+        /// The largest, in tenths of a degree Celsius.
+        largest: i32,
+    },
+    /// The count of a phase's current without a current is one of a broken amplifier, or was not measured.
+    CurrentOffset {
+        /// The phase: 0 is U, 1 is V.
+        phase: u32,
+        /// Its count, 0 if there are not enough samples.
+        count: u32,
+    },
+    /// The current was not that of the certified model for too long.
+    CurrentNotFollowing {
+        /// How far off it was, in mA.
+        deviation: u32,
+        /// The most that is allowed, in mA.
+        largest: u32,
+    },
+    /// The supply's voltage was not enough for too long.
+    SaturatedDuty {
+        /// Instants in a row at which it was not.
+        instants: u32,
+        /// The most that are allowed.
+        allowed: u32,
+    },
+    /// The index of the encoder was at another count than when the motor was aligned.
+    IndexMismatch {
+        /// The count, within a turn.
+        count: u32,
+        /// That of the alignment.
+        aligned: u32,
+    },
+    /// The interrupt of the currents did not end before its compare values were loaded.
+    CurrentInterruptLate {
+        /// Timer counts after the beginning of its period.
+        late: u32,
+        /// The most that is allowed.
+        allowed: u32,
+    },
+}
+
+impl PowerFault {
+    /// The fault in one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::OverCurrent { .. } => "over-current",
+            Self::OverVoltage { .. } => "over-voltage",
+            Self::UnderVoltage { .. } => "under-voltage",
+            Self::OverTemperature { .. } => "over-temperature",
+            Self::CurrentOffset { .. } => "current-offset",
+            Self::CurrentNotFollowing { .. } => "current-not-following",
+            Self::SaturatedDuty { .. } => "saturated-duty",
+            Self::IndexMismatch { .. } => "index-mismatch",
+            Self::CurrentInterruptLate { .. } => "current-interrupt-late",
+        }
+    }
+
+    /// The fault as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
+    pub const fn encode(self) -> (u32, [u32; 2]) {
+        match self {
+            Self::OverCurrent { current, largest } => (14, [current, largest]),
+            Self::OverVoltage { voltage, highest } => (15, [voltage, highest]),
+            Self::UnderVoltage { voltage, lowest } => (16, [voltage, lowest]),
+            Self::OverTemperature { temperature, largest } => {
+                (17, [temperature.cast_unsigned(), largest.cast_unsigned()])
+            }
+            Self::CurrentOffset { phase, count } => (18, [phase, count]),
+            Self::CurrentNotFollowing { deviation, largest } => (19, [deviation, largest]),
+            Self::SaturatedDuty { instants, allowed } => (20, [instants, allowed]),
+            Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
+            Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
+        }
+    }
+
+    /// The fault of a code and its numbers; `None` if there is no such fault of a power stage.
+    pub const fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
+        let [a, b] = numbers;
+        Some(match code {
+            14 => Self::OverCurrent { current: a, largest: b },
+            15 => Self::OverVoltage { voltage: a, highest: b },
+            16 => Self::UnderVoltage { voltage: a, lowest: b },
+            17 => Self::OverTemperature { temperature: a.cast_signed(), largest: b.cast_signed() },
+            18 => Self::CurrentOffset { phase: a, count: b },
+            19 => Self::CurrentNotFollowing { deviation: a, largest: b },
+            20 => Self::SaturatedDuty { instants: a, allowed: b },
+            21 => Self::IndexMismatch { count: a, aligned: b },
+            22 => Self::CurrentInterruptLate { late: a, allowed: b },
+            _ => return None,
+        })
+    }
+}
+
+/// What happened, the value, the bound, and how it is cleared.
+impl fmt::Display for PowerFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OverCurrent { current, largest } => write!(
+                f,
+                "a phase had {current} mA, and {largest} mA are allowed: check the motor's wires for a \
+                 short circuit, then arm again"
+            ),
+            Self::OverVoltage { voltage, highest } => write!(
+                f,
+                "the supply had {voltage} mV, and at most {highest} mV are allowed: lower it, or give it a \
+                 brake resistor for what the motor feeds back, then arm again"
+            ),
+            Self::UnderVoltage { voltage, lowest } => write!(
+                f,
+                "the supply had {voltage} mV, and at least {lowest} mV are needed: check it and its wires, \
+                 then arm again"
+            ),
+            Self::OverTemperature { temperature, largest } => write!(
+                f,
+                "the power stage had {temperature} tenths of a degree Celsius, and {largest} are allowed: \
+                 let it cool down, then arm again"
+            ),
+            Self::CurrentOffset { phase, count } => write!(
+                f,
+                "the converter reads {count} for phase {} without a current, which no working amplifier \
+                 gives: check the power stage, then arm again",
+                if *phase == 0 { "U" } else { "V" }
+            ),
+            Self::CurrentNotFollowing { deviation, largest } => write!(
+                f,
+                "the current was {deviation} mA off its model, and {largest} mA are allowed: check the \
+                 motor's wires, and its resistance and inductance, then arm again"
+            ),
+            Self::SaturatedDuty { instants, allowed } => write!(
+                f,
+                "the voltage was not enough for {instants} instants in a row, and {allowed} are allowed: the \
+                 handle was faster than its largest speed, or the motor has more resistance than was \
+                 stated; arm again"
+            ),
+            Self::IndexMismatch { count, aligned } => write!(
+                f,
+                "the encoder's index was at the count {count}, and at {aligned} when the motor was aligned: \
+                 check the encoder's cable and coupling, then align again"
+            ),
+            Self::CurrentInterruptLate { late, allowed } => write!(
+                f,
+                "the currents' interrupt ended {late} timer counts after the start of its period, and \
+                 {allowed} are allowed: shorten the critical sections that mask it, then arm again"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for PowerFault {}

@@ -1,0 +1,47 @@
+//! The current controller of an on-board power stage: from a code to the compare values of a timer.
+//!
+//! A [`Drive`] and the [`PowerStage`] of a board become a [`CurrentLoop`] at compile time, or do not compile.
+//! A [`CurrentController`] runs it, one call an instant of the pulse-width modulation. All of it is without
+//! hardware, so that what is flashed is what the tests run (theory, section 15).
+//!
+//! ```text
+//! instant    k                        k+1                      k+2
+//!            |                        |                        |
+//! current    i(k) sampled             i(k+1) sampled           i(k+2) sampled
+//! computed   voltage v(k)             voltage v(k+1)
+//! at motor   v(k-1)                   v(k)                     v(k+1)
+//! ```
+//!
+//! The current follows a reference model, which is the amplifier that the certificate knows: a lag with a gain
+//! of 1 behind a delay of one instant ([`Response`]).
+
+mod controller;
+mod current_loop;
+mod error;
+mod fault;
+mod follower;
+mod motor;
+mod offset;
+mod plant;
+mod power_stage;
+mod program;
+mod resolution;
+mod sample;
+mod speed;
+mod supervision;
+mod thermistor;
+mod timing;
+
+pub use controller::CurrentController;
+pub use current_loop::{CurrentLoop, OVER_CURRENT, Response};
+pub use error::DriveError;
+pub use fault::PowerFault;
+pub use motor::{Drive, Motor, Supply, Winding};
+pub use power_stage::{B_G431B_ESC1, PowerStage};
+pub use resolution::CurrentResolution;
+pub use sample::{Duties, Sample};
+pub use thermistor::Thermistor;
+pub use timing::PwmTiming;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,60 @@
+//! A motor, its supply, and how fast its current is to follow: what a program states.
+
+/// How many phases a motor has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Winding {
+    /// One winding and a commutator, between the phases U and V.
+    Brushed,
+    /// Three windings in a star, and magnets.
+    Brushless {
+        /// Electrical turns in a turn of the handle: the pole pairs of the motor, times its gearing.
+        pole_pairs: u16,
+    },
+}
+
+/// A motor as its current loop has to know it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// How many phases it has.
+    pub winding: Winding,
+    /// Resistance in ohm: between the terminals of a brushed motor, of one phase of a brushless one, which is
+    /// half of what is measured between two of its terminals.
+    pub resistance: f64,
+    /// Inductance in H, of the same.
+    pub inductance: f64,
+    /// Torque at the handle in N m/A: of a brushless motor per ampere of a phase current's amplitude.
+    pub torque_constant: f64,
+}
+
+impl Motor {
+    /// Voltage in V that a rad/s of the handle induces: between the terminals of a brushed motor, the amplitude
+    /// in a phase of a brushless one, where each phase has 2/3 of a direct current's power.
+    pub const fn back_emf(&self) -> f64 {
+        match self.winding {
+            Winding::Brushed => self.torque_constant,
+            Winding::Brushless { .. } => self.torque_constant * 2.0 / 3.0,
+        }
+    }
+}
+
+/// Voltages in V between which a supply stays, under load and when the motor feeds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supply {
+    /// The lowest.
+    pub lowest: f64,
+    /// The highest.
+    pub highest: f64,
+}
+
+/// What is connected to a power stage, and how fast the current is to follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// The motor.
+    pub motor: Motor,
+    /// Its supply.
+    pub supply: Supply,
+    /// Bandwidth in Hz of the reference model that the current follows.
+    pub bandwidth: f64,
+    /// Temperature in degrees Celsius at the power stage's sensor above which it is switched off.
+    pub largest_temperature: f64,
+}

@@ -1,0 +1,109 @@
+//! A current loop and the program that it makes torque for.
+
+use super::current_loop::CurrentLoop;
+use super::motor::Winding;
+use crate::latency::Latency;
+use crate::output_timing::OutputTiming;
+use crate::text::Sentence;
+use crate::transducers::Transducers;
+
+/// How far times may be from each other that are meant to be the same, relatively.
+const SAME: f64 = 1e-9;
+
+impl CurrentLoop {
+    /// The latency of a scene whose torques this loop makes, by when its program puts codes out.
+    ///
+    /// # Panics
+    /// In a constant, as a compile error, where a phase is no whole number of instants.
+    #[track_caller]
+    pub const fn latency(&self, timing: OutputTiming) -> Latency {
+        let response = self.response();
+        let period = response.delay * response.updates as f64;
+        let phase = self.instants_in(timing) as f64 * response.delay;
+        let latency = Latency::sampled(response.updates, response.lag, period);
+        let output_delay = crate::latency::TimeRange::exactly(phase + response.delay);
+        Latency { output_delay, ..latency }
+    }
+
+    /// Instants from the begin of a period to the one at which its code is taken over: none where a code is put
+    /// out at the next count.
+    ///
+    /// # Panics
+    /// In a constant, as a compile error, where a phase is no whole number of instants.
+    #[track_caller]
+    pub const fn instants_in(&self, timing: OutputTiming) -> u32 {
+        let Some(phase) = timing.phase() else { return 0 };
+        let response = self.response();
+        let instants = (phase / response.delay + 0.5) as u32;
+        // The timing is in whole nanoseconds.
+        let off = (phase - instants as f64 * response.delay).abs();
+        assert!(
+            instants > 0 && instants < response.updates as u32 && off <= 1e-9,
+            "a phase is a whole number of instants of the current loop, and less than a period"
+        );
+        instants
+    }
+
+    /// For constants: whether this loop is that of a program with a scene of this latency and this period in s,
+    /// with these transducers, which puts codes out like this.
+    ///
+    /// # Panics
+    /// If it is not; in a constant that is a compile error with the numbers.
+    #[track_caller]
+    pub const fn check_serves(
+        &self,
+        latency: &Latency,
+        period: f64,
+        transducers: &Transducers,
+        timing: OutputTiming,
+    ) {
+        let own = self.latency(timing);
+        let response = self.response();
+        let pairs = [
+            ("period", period, response.delay * response.updates as f64),
+            ("output delay", latency.output_delay.least, own.output_delay.least),
+            ("output delay", latency.output_delay.most, own.output_delay.most),
+            ("actuator lag", latency.actuator_lag.least, own.actuator_lag.least),
+            ("actuator lag", latency.actuator_lag.most, own.actuator_lag.most),
+            (
+                "number of actuator updates",
+                latency.actuator_updates as f64,
+                response.updates as f64,
+            ),
+            (
+                "full-scale torque",
+                transducers.full_scale_torque,
+                self.full_scale_current() * self.torque_per_amp(),
+            ),
+        ];
+        let mut i = 0;
+        while i < pairs.len() {
+            let (name, stated, own) = pairs[i];
+            // Written so that NaN is refused.
+            if !((stated - own).abs() <= SAME * own.abs()) {
+                let mut t = Sentence::new();
+                t.push("the program's ");
+                t.push(name);
+                t.push(" is ");
+                t.push_number(stated);
+                t.push(", and that of its current loop ");
+                t.push_number(own);
+                panic!("{}", t.as_str());
+            }
+            i += 1;
+        }
+    }
+
+    /// Phases that the motor is wired to.
+    pub const fn phases(&self) -> usize {
+        match self.winding() {
+            Winding::Brushed => 2,
+            Winding::Brushless { .. } => 3,
+        }
+    }
+
+    /// Clock counts in a period of the servo: the timer counts up and down in each instant.
+    pub const fn clock_counts(&self) -> u32 {
+        2 * self.timer_counts() as u32 * self.updates() as u32
+    }
+}

@@ -1,0 +1,43 @@
+//! The speed of the handle, from the encoder's counts in each instant.
+
+use crate::encoder::{CounterWidth, RawCount};
+
+/// Part of the last instant's counts in the mean: a time constant of 32 instants, behind which a count of
+/// a coarse encoder is a small step of the back-EMF.
+const NEWEST: f32 = 1.0 / 32.0;
+
+/// Mean of the counts in an instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Speed {
+    last: u32,
+    width: CounterWidth,
+    mean: f32,
+}
+
+impl Speed {
+    pub(super) const fn new(width: CounterWidth) -> Self {
+        Self { last: 0, width, mean: 0.0 }
+    }
+
+    /// At rest, where the counter is now.
+    pub(super) const fn restart(&mut self, position: RawCount) {
+        (self.last, self.mean) = (position.bits(), 0.0);
+    }
+
+    /// Counts since the last reading, which are fewer than half the counter's range.
+    #[inline(always)]
+    const fn step(&mut self, position: RawCount) -> i32 {
+        let shift = self.width as u32;
+        let step = (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift;
+        self.last = position.bits();
+        step
+    }
+
+    /// Takes a reading; gives the mean of the counts in an instant.
+    #[inline(always)]
+    pub(super) const fn update(&mut self, position: RawCount) -> f32 {
+        let step = self.step(position);
+        self.mean += NEWEST * (step as f32 - self.mean);
+        self.mean
+    }
+}

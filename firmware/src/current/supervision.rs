@@ -1,0 +1,104 @@
+//! What is checked at each instant.
+
+use core::hint::cold_path;
+
+use super::current_loop::Limits;
+use super::fault::PowerFault;
+use super::sample::Sample;
+
+/// How long a deviation or a limited voltage has lasted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Supervision {
+    deviating: u16,
+    limited: u16,
+}
+
+impl Supervision {
+    /// Nothing has lasted.
+    pub(super) const NONE: Self = Self { deviating: 0, limited: 0 };
+
+    /// Takes an instant's deviation in A, without its sign, and whether its voltage was limited.
+    ///
+    /// # Errors
+    /// Where one of them has lasted too long.
+    #[inline(always)]
+    pub(super) fn observe(
+        &mut self,
+        limits: &Limits,
+        deviation: f32,
+        is_limited: bool,
+    ) -> Result<(), PowerFault> {
+        let allowed = limits.instants;
+        self.limited = if is_limited { self.limited + 1 } else { 0 };
+        self.deviating = if deviation > limits.deviation { self.deviating + 1 } else { 0 };
+        if self.limited > allowed {
+            cold_path();
+            let instants = self.limited.into();
+            return Err(PowerFault::SaturatedDuty { instants, allowed: allowed.into() });
+        }
+        if self.deviating > allowed {
+            cold_path();
+            return Err(PowerFault::CurrentNotFollowing {
+                deviation: (deviation * 1e3) as u32,
+                largest: (limits.deviation * 1e3) as u32,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Limits {
+    /// Whether a sample is one of a healthy power stage, with these offsets in counts.
+    #[inline(always)]
+    pub(super) fn check(&self, sample: &Sample, offset: [f32; 2]) -> Result<(), PowerFault> {
+        let over_current = f32::from(self.over_current);
+        for (count, offset) in sample.currents.into_iter().zip(offset) {
+            let counts = (f32::from(count) - offset).abs();
+            if counts > over_current {
+                cold_path();
+                return Err(self.over_current(counts));
+            }
+        }
+        self.check_surroundings(sample)
+    }
+
+    /// Whether the supply and the temperature are in their range.
+    #[inline(always)]
+    pub(super) fn check_surroundings(&self, sample: &Sample) -> Result<(), PowerFault> {
+        let is_good = sample.bus >= self.bus.0
+            && sample.bus <= self.bus.1
+            && sample.temperature <= self.temperature;
+        if is_good {
+            return Ok(());
+        }
+        cold_path();
+        Err(self.surroundings(sample))
+    }
+
+    #[cold]
+    #[inline(never)]
+    pub(super) fn over_current(&self, counts: f32) -> PowerFault {
+        let milliamps = |counts: f32| (counts * self.milliamps_per_count) as u32;
+        PowerFault::OverCurrent {
+            current: milliamps(counts),
+            largest: milliamps(self.over_current.into()),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn surroundings(&self, sample: &Sample) -> PowerFault {
+        let millivolts = |count: u16| (f32::from(count) * self.millivolts_per_count) as u32;
+        let voltage = millivolts(sample.bus);
+        if sample.bus < self.bus.0 {
+            return PowerFault::UnderVoltage { voltage, lowest: millivolts(self.bus.0) };
+        }
+        if sample.bus > self.bus.1 {
+            return PowerFault::OverVoltage { voltage, highest: millivolts(self.bus.1) };
+        }
+        PowerFault::OverTemperature {
+            temperature: self.thermistor.tenths(sample.temperature),
+            largest: self.thermistor.tenths(self.temperature),
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! A brushed motor.
+
+use super::rig::Rig;
+use super::*;
+
+/// Deviation in A that counts may leave, with what the ripple leaves of it at the samples: it is of the second
+/// order in the resistance.
+fn allowed(design: &CurrentLoop) -> f64 {
+    design.resolution().deviation / design.torque_per_amp() + 0.01
+}
+
+/// Largest deviation from the certified current in A over instants.
+fn deviation(rig: &mut Rig, steps: &[(usize, i16)], instants: std::ops::Range<usize>) -> f64 {
+    let mut most = 0.0_f64;
+    for instant in 0..instants.end {
+        let code = steps.iter().rev().find(|step| step.0 <= instant).map_or(0, |step| step.1);
+        let current = rig.instant(code).unwrap();
+        if instants.contains(&instant) {
+            most = most.max((current - certified_current(&BRUSHED, steps, instant)).abs());
+        }
+    }
+    most
+}
+
+const STEPS: [(usize, i16); 4] = [(3, FULL_SCALE), (100, -FULL_SCALE), (140, 300), (300, 0)];
+
+#[test]
+fn the_current_is_the_certified_one_at_every_instant() {
+    let off = deviation(&mut Rig::started(&BRUSHED), &STEPS, 0..600);
+    assert!(off < allowed(&BRUSHED), "{off}");
+    assert!(off > 0.1 * allowed(&BRUSHED), "{off}");
+}
+
+#[test]
+fn a_motor_that_is_off_by_a_third_settles_and_stays_near() {
+    for (resistance, inductance) in [(1.4, 1.0), (1.0, 0.7), (1.0, 1.3), (1.4, 0.7), (1.4, 1.3)] {
+        let mut rig = Rig::started(&BRUSHED);
+        rig.motor.resistance *= resistance;
+        rig.motor.inductance *= inductance;
+        let steps = [(3, FULL_SCALE), (100, -FULL_SCALE)];
+        let transient = deviation(&mut rig, &steps, 0..200);
+        assert!(transient < 0.3 * 8.0, "{resistance}, {inductance}: {transient}");
+        for _ in 0..200 {
+            rig.instant(-FULL_SCALE).unwrap();
+        }
+        let settled = (rig.current + 4.0).abs();
+        assert!(settled < allowed(&BRUSHED), "{resistance}, {inductance}: {settled}");
+    }
+}
+
+#[test]
+fn the_back_emf_is_fed_forward_and_the_rest_of_it_is_fed_back() {
+    let mut rig = Rig::started(&BRUSHED);
+    rig.speed = 60.0;
+    // Three volts at once: the feedback alone has them until the speed is known.
+    let step = deviation(&mut rig, &[(0, 900)], 0..400);
+    assert!((0.1..1.0).contains(&step), "{step}");
+    let steady = (0..400).map(|_| (rig.instant(900).unwrap() - 900.0 / 1791.0 * 4.0).abs());
+    assert!(steady.fold(0.0, f64::max) < allowed(&BRUSHED));
+    // A hand changes the speed more slowly: a quarter of a second from one end to the other.
+    let mut most = 0.0_f64;
+    for instant in 0..4000 {
+        rig.speed = 100.0 * (f64::from(instant) / 4000.0 * std::f64::consts::TAU).sin();
+        let current = rig.instant(0).unwrap();
+        most = most.max(if instant > 400 { current.abs() } else { 0.0 });
+    }
+    assert!(most < 0.05, "{most}");
+}
+
+#[test]
+fn another_supply_does_not_show() {
+    for bus in [22.1, 25.9] {
+        let mut rig = Rig::started(&BRUSHED);
+        rig.bus = bus;
+        let off = deviation(&mut rig, &STEPS, 0..600);
+        assert!(off < allowed(&BRUSHED), "{bus}: {off}");
+    }
+    // Falls by an eighth while the current is there.
+    let mut rig = Rig::started(&BRUSHED);
+    for _ in 0..100 {
+        rig.instant(1000).unwrap();
+    }
+    rig.bus = 22.1;
+    for _ in 0..100 {
+        let off = (rig.instant(1000).unwrap() - 1000.0 / 1791.0 * 4.0).abs();
+        assert!(off < allowed(&BRUSHED) + 0.05, "{off}");
+    }
+}
+
+#[test]
+fn a_voltage_that_is_not_enough_leaves_nothing_behind() {
+    // Speed and torque take all the voltage, for less time than is a fault, and then a part of it.
+    let mut rig = Rig::started(&BRUSHED);
+    rig.speed = 340.0;
+    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    for instant in 0..500 {
+        let code = if (300..345).contains(&instant) { FULL_SCALE } else { 500 };
+        rig.bus = if (300..345).contains(&instant) { 22.1 } else { 25.0 };
+        let current = rig.instant(code).unwrap();
+        if instant > 250 {
+            (least, most) = (least.min(current), most.max(current));
+        }
+    }
+    // A supply that jumps shows for two instants.
+    assert!((0.93..1.12).contains(&least), "{least}");
+    assert!((3.3..3.7).contains(&most), "{most}");
+    // The integral has not gone on in the meantime: it would have taken the current further down.
+    assert!((rig.current - 500.0 / 1791.0 * 4.0).abs() < allowed(&BRUSHED), "{}", rig.current);
+}
+
+#[test]
+fn a_settled_current_stays_within_its_resolution() {
+    let (mut random, mut most) = (Random(1), 0.0_f64);
+    for _ in 0..60 {
+        let mut rig = Rig::started(&BRUSHED);
+        rig.offsets = [2050.0 + random.next(), 2041.0 + random.next()];
+        rig = rig.restarted();
+        let code = (random.next() * 3582.0) as i16;
+        for instant in 0..700 {
+            let current = rig.instant(code).unwrap();
+            if instant > 300 {
+                most = most.max((current - f64::from(code) / 1791.0 * 4.0).abs());
+            }
+        }
+    }
+    let bound = BRUSHED.resolution().deviation / BRUSHED.torque_per_amp();
+    assert!(most < bound && most > 0.3 * bound, "{most} of {bound}");
+}
+
+#[test]
+fn the_ripple_is_that_of_the_formula() {
+    // Half of the supply.
+    let code = (13.0 / 0.6 / 4.0 / 3.0 * 1791.0) as i16;
+    let mut rig = Rig::started(&BRUSHED);
+    rig.bus = 26.0;
+    rig.speed = 130.0;
+    for _ in 0..300 {
+        rig.instant(code.min(FULL_SCALE)).unwrap();
+    }
+    let ripple = rig.extremes.1 - rig.extremes.0;
+    let bound = BRUSHED.resolution().ripple / BRUSHED.torque_per_amp();
+    assert!(ripple < bound && ripple > 0.7 * bound, "{ripple} of {bound}");
+}
+
+/// Numbers from -0.5 to 0.5, the same in each run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+}

@@ -1,0 +1,132 @@
+//! What is refused when it is compiled, and the numbers that come out.
+
+use super::*;
+
+fn refused(drive: Drive) -> String {
+    with(drive, STAGE, TRANSDUCERS, PERIOD)
+}
+
+fn with(drive: Drive, stage: PowerStage, transducers: Transducers, period: f64) -> String {
+    CurrentLoop::design(&drive, &stage, &transducers, period).unwrap_err().to_string()
+}
+
+fn motor(motor: Motor) -> Drive {
+    Drive { motor, ..DRIVE }
+}
+
+#[test]
+fn a_period_is_filled_by_the_highest_frequency_that_fits() {
+    for (period, clock, counts, updates) in [
+        (1e-3, 170e6, 2125, 40),
+        (0.5e-3, 170e6, 2125, 20),
+        (1e-4, 170e6, 2125, 4),
+        (1e-3, 168e6, 2100, 40),
+        (30e-6, 170e6, 2550, 1),
+        (0.13e-3, 170e6, 2210, 5),
+    ] {
+        assert_eq!(
+            PwmTiming::of(period, clock).unwrap(),
+            PwmTiming { counts, updates },
+            "{period}"
+        );
+    }
+    for period in [40e-6, 10e-6, 1.0 / 3000.0, f64::NAN, 0.0, -1.0, 1e9] {
+        let Err(DriveError::Period { nearest, .. }) = PwmTiming::of(period, 170e6) else {
+            panic!("{period}")
+        };
+        if period < 1.0 {
+            assert!(PwmTiming::of(nearest, 170e6).is_ok(), "{period}: {nearest}");
+        }
+    }
+}
+
+#[test]
+fn the_response_is_that_of_the_model() {
+    let Response { delay, lag, updates } = BRUSHED.response();
+    assert_eq!((delay, updates), (25e-6, 40));
+    assert!((lag - 159.155e-6).abs() < 1e-9);
+    assert!((BRUSHED.full_scale_current() - 4.0).abs() < 1e-12);
+    assert_eq!(BRUSHED.over_current_counts(), 166);
+    assert_eq!(BRUSHED.bus_counts(), (2620, 3095));
+}
+
+#[test]
+fn refusals_name_the_value_and_its_bound() {
+    for resistance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let told = refused(motor(Motor { resistance, ..DRIVE.motor }));
+        assert!(
+            told.starts_with("the drive's motor's resistance must be positive and finite, and is ")
+        );
+    }
+    let inductance = 0.0;
+    assert!(refused(motor(Motor { inductance, ..DRIVE.motor })).contains("inductance"));
+    assert!(refused(Drive { bandwidth: -3.0, ..DRIVE }).ends_with("and is -3"));
+    assert_eq!(
+        refused(Drive { bandwidth: 4000.0, ..DRIVE }),
+        "the bandwidth of 4000 Hz is above 3183.098862 Hz, where the time constant of the current is two \
+         periods of the modulation: a faster one leaves the feedback no time"
+    );
+    assert_eq!(
+        with(DRIVE, STAGE, Transducers { full_scale_torque: 1.8, ..TRANSDUCERS }, PERIOD),
+        "full-scale torque of 1.8 N m, and the quarter more at which over-current trips, take 45 A, and the \
+         power stage measures and bears 40 A: lower the full-scale torque"
+    );
+    assert_eq!(
+        refused(Drive { supply: Supply { lowest: 22.0, highest: 36.0 }, ..DRIVE }),
+        "a supply from 22 to 36 V is not in the board's range from 10 to 34 V"
+    );
+    assert!(
+        refused(Drive { supply: Supply { lowest: 24.0, highest: 22.0 }, ..DRIVE })
+            .starts_with("a supply")
+    );
+    assert_eq!(
+        refused(Drive { largest_temperature: 150.0, ..DRIVE }),
+        "the largest temperature of 150 degrees Celsius is not between -20 and 140"
+    );
+    assert_eq!(
+        with(DRIVE, PowerStage { largest_current: 60.0, ..STAGE }, TRANSDUCERS, PERIOD),
+        "the board's largest current of 60 A is above the 53.85 A that its converter can measure"
+    );
+    assert_eq!(
+        with(DRIVE, STAGE, TRANSDUCERS, 40e-6),
+        "the period of 0.00004 s is not filled by whole periods of a modulation between 30000 and 40000 Hz in \
+         whole counts of its timer: 0.00003332941176 s is"
+    );
+}
+
+#[test]
+fn a_supply_that_is_too_low_is_told_what_would_be_enough() {
+    let supply = |lowest| Drive { supply: Supply { lowest, highest: 26.0 }, ..DRIVE };
+    let at = |lowest| CurrentLoop::design(&supply(lowest), &STAGE, &TRANSDUCERS, PERIOD);
+    let Err(DriveError::Voltage { needed, available, enough }) = at(15.0) else { panic!() };
+    // Resistance, inductance and back-EMF of the model's first step, from -4 A at a speed of 100 rad/s.
+    let (a, p) = ((-0.05_f64).exp(), (-std::f64::consts::TAU * 0.025).exp());
+    let first = -4.0 + 8.0 * (1.0 - p);
+    let volts = (first + 4.0 * a) / ((1.0 - a) / 0.6) + 5.0;
+    assert!((needed / volts - 1.0).abs() < 1e-12, "{needed}, {volts}");
+    assert!(available < 15.0 && enough > needed);
+    assert!(at(enough * 0.999_999).is_err() && at(enough * 1.000_001).is_ok());
+    let told = at(15.0).unwrap_err().to_string();
+    assert!(told.starts_with(
+        "the step from full-scale torque to its opposite at the largest speed needs "
+    ));
+    assert!(told.ends_with(" V, or lower bandwidth, torque or speed"), "{told}");
+}
+
+#[test]
+fn the_thermistor_is_the_one_of_its_formula() {
+    let table = STAGE.thermistor.table();
+    assert_eq!(STAGE.thermistor.count(25.0), 1309);
+    for celsius in -20..=140 {
+        let kelvin = f64::from(celsius) + 273.15;
+        let ohm = 10e3 * (3380.0 * (1.0 / kelvin - 1.0 / 298.15)).exp();
+        let count = STAGE.thermistor.count(celsius.into());
+        assert!((f64::from(count) - 4095.0 * 4.7e3 / (4.7e3 + ohm)).abs() < 0.51, "{celsius}");
+        assert!(
+            (table.tenths(count) - celsius * 10).abs() < 15,
+            "{celsius}: {}",
+            table.tenths(count)
+        );
+    }
+    assert_eq!((table.tenths(0), table.tenths(4095)), (-200, 1400));
+}

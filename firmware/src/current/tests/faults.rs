@@ -1,0 +1,133 @@
+//! What switches a power stage off.
+
+use proptest::prelude::*;
+
+use super::rig::Rig;
+use super::*;
+use crate::encoder::RawCount;
+
+/// Instants until a fault, and the fault.
+fn fault(rig: &mut Rig, code: i16, instants: usize) -> (usize, PowerFault) {
+    let first = (0..instants).find_map(|k| rig.instant(code).err().map(|fault| (k, fault)));
+    first.expect("there is a fault")
+}
+
+#[test]
+fn does_not_start_without_offsets_in_range() {
+    let mut rig = Rig::off(&BRUSHED);
+    let none = PowerFault::CurrentOffset { phase: 0, count: 0 };
+    assert_eq!(rig.controller.start(), Err(none));
+    rig.offsets[1] = 2400.0;
+    for _ in 0..256 {
+        rig.controller.measure_offset(&rig.sample());
+    }
+    let broken = PowerFault::CurrentOffset { phase: 1, count: 2400 };
+    assert_eq!(rig.controller.start(), Err(broken));
+    rig.offsets[1] = 2040.0;
+    for _ in 0..256 {
+        rig.controller.measure_offset(&rig.sample());
+    }
+    assert_eq!(rig.controller.start(), Ok(()));
+}
+
+#[test]
+fn does_not_start_with_a_supply_or_a_temperature_out_of_range() {
+    let started = |bus: f64, celsius: f64| {
+        let mut rig = Rig::started(&BRUSHED);
+        (rig.bus, rig.celsius) = (bus, celsius);
+        rig.controller.measure_offset(&rig.sample());
+        rig.controller.start()
+    };
+    assert_eq!(started(24.0, 30.0), Ok(()));
+    let Err(PowerFault::UnderVoltage { voltage: 20_000..20_010, lowest: 22_000..22_010 }) =
+        started(20.0, 30.0)
+    else {
+        panic!()
+    };
+    let Err(PowerFault::OverVoltage { voltage: 27_990..28_010, highest: 25_990..=26_000 }) =
+        started(28.0, 30.0)
+    else {
+        panic!()
+    };
+    let Err(PowerFault::OverTemperature { temperature: 990..1010, largest: 895..905 }) =
+        started(24.0, 100.0)
+    else {
+        panic!("{:?}", started(24.0, 100.0))
+    };
+}
+
+#[test]
+fn a_short_circuit_is_over_current() {
+    let mut rig = Rig::started(&BRUSHED);
+    rig.motor.inductance *= 0.01;
+    rig.motor.resistance *= 0.1;
+    let (instants, fault) = fault(&mut rig, FULL_SCALE, 100);
+    assert!(instants < 10, "{instants}");
+    let PowerFault::OverCurrent { current: 5000.., largest: 4_950..=5_000 } = fault else {
+        panic!("{fault:?}")
+    };
+}
+
+#[test]
+fn a_broken_wire_is_a_current_that_does_not_follow() {
+    let mut rig = Rig::started(&BRUSHED);
+    rig.motor.resistance = 1e6;
+    // So much that the voltage is enough, and so little that the current is none.
+    let (instants, fault) = fault(&mut rig, 500, 2000);
+    assert!(instants > 30 && instants < 200, "{instants}");
+    let (PowerFault::CurrentNotFollowing { largest: 1000, .. } | PowerFault::SaturatedDuty { .. }) =
+        fault
+    else {
+        panic!("{fault:?}")
+    };
+}
+
+#[test]
+fn a_hand_that_is_too_fast_for_the_supply_is_a_saturated_duty() {
+    let mut rig = Rig::started(&BRUSHED);
+    let fault = (0..2000).find_map(|instant| {
+        rig.speed = 0.3 * f64::from(instant);
+        rig.instant(FULL_SCALE).err()
+    });
+    let Some(PowerFault::SaturatedDuty { instants, allowed }) = fault else { panic!("{fault:?}") };
+    assert!(instants == allowed + 1 && (340.0..400.0).contains(&rig.speed), "{}", rig.speed);
+}
+
+#[test]
+fn every_fault_comes_back_from_its_code() {
+    for code in 14..=22 {
+        let fault = PowerFault::decode(code, [7, 9]).unwrap();
+        assert_eq!(fault.encode(), (code, [7, 9]));
+        assert!(!fault.as_str().is_empty() && fault.to_string().ends_with("again"), "{fault}");
+        // No number belongs to two faults.
+        assert_eq!(crate::fault::Fault::decode(code, [7, 9]), None);
+    }
+    assert_eq!(PowerFault::decode(13, [0; 2]), None);
+    assert_eq!(PowerFault::decode(23, [0; 2]), None);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    /// Whatever is sampled, the compare values are within the timer, and leave the low sides their time.
+    #[test]
+    fn nothing_but_compare_values_and_faults(
+        samples in proptest::collection::vec(any::<([u16; 2], u16, u16, u32, i16)>(), 1..20),
+        near in any::<bool>(),
+    ) {
+        let mut rig = Rig::started(&BRUSHED);
+        let longest = BRUSHED.timer_counts() - BRUSHED.timer_counts() / 20;
+        for (currents, bus, temperature, position, code) in samples {
+            let mut sample = Sample { currents, bus, temperature, position: RawCount::from(position) };
+            if near {
+                sample.currents = currents.map(|count| 1970 + count % 160);
+                sample.bus = 2700 + bus % 300;
+                sample.temperature = temperature % 3000;
+            }
+            match rig.controller.step(&sample, code) {
+                Ok(duties) => prop_assert!(duties.0.iter().all(|&duty| duty <= longest), "{duties:?}"),
+                Err(fault) => prop_assert!(!fault.to_string().is_empty()),
+            }
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The current loop against motors that are computed by the exact response of each stretch between two edges of
+//! the switches.
+
+mod brushed;
+mod design;
+mod faults;
+mod follower;
+mod rig;
+
+use super::*;
+use crate::encoder::CounterWidth;
+use crate::transducers::Transducers;
+
+/// A stage with the numbers of a small one: shunts of 3 milliohm, and amplifiers with a gain of 9.
+const STAGE: PowerStage = PowerStage {
+    clock: 170e6,
+    amps_per_count: 0.03,
+    current_lowers_count: true,
+    volts_per_count: 0.0084,
+    largest_current: 40.0,
+    offset_counts: (1900, 2300),
+    supply: Supply { lowest: 10.0, highest: 34.0 },
+    dead_time: 0.2e-6,
+    shortest_low: 1.5e-6,
+    thermistor: Thermistor { resistance: 10e3, beta: 3380.0, to_ground: 4.7e3 },
+};
+
+const DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushed,
+        resistance: 0.6,
+        inductance: 0.3e-3,
+        torque_constant: 0.05,
+    },
+    supply: Supply { lowest: 22.0, highest: 26.0 },
+    bandwidth: 1000.0,
+    largest_temperature: 90.0,
+};
+
+/// Full scale is 4 A.
+const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 0.2,
+    largest_speed: 100.0,
+};
+
+/// Forty instants, of 25 microseconds.
+const PERIOD: f64 = 1e-3;
+const INSTANT: f64 = 25e-6;
+
+const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
+
+const FULL_SCALE: i16 = 1791;
+
+/// What the certificate knows: the steps of a lag behind a delay of an instant, as sums of exponential functions
+/// and not by a recursion. The steps are instants and the codes from there on.
+fn certified_current(design: &CurrentLoop, steps: &[(usize, i16)], instant: usize) -> f64 {
+    let Response { delay, lag, .. } = design.response();
+    let (mut last, mut current) = (0, 0.0);
+    for &(at, code) in steps {
+        let time = (instant as f64 - at as f64) * INSTANT - delay;
+        let amps = f64::from(code - last) / 1791.0 * design.full_scale_current();
+        current += if time > 0.0 { -amps * (-time / lag).exp_m1() } else { 0.0 };
+        last = code;
+    }
+    current
+}

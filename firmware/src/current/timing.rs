@@ -1,0 +1,66 @@
+//! How many periods of the pulse-width modulation a period of the servo has.
+
+use super::error::DriveError;
+
+/// Lowest and highest frequency in Hz of the modulation: below, the ripple grows and ears hear it when it beats;
+/// above, the interrupts take too much of the processor, and the dead time too much of the voltage.
+const FREQUENCIES: (f64, f64) = (30e3, 40e3);
+
+/// How far a number of counts may be from a whole one, relatively: what rounding leaves.
+const WHOLE: f64 = 1e-9;
+
+/// The modulation's timer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PwmTiming {
+    /// Its reload value: it counts up to it and down to zero in a period.
+    pub counts: u16,
+    /// Periods of the modulation in one of the servo.
+    pub updates: u16,
+}
+
+impl PwmTiming {
+    /// The highest allowed frequency whose periods fill a period of the servo in s exactly, by a timer with this
+    /// clock in Hz.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub const fn of(period: f64, clock: f64) -> Result<Self, DriveError> {
+        let wanted = period * clock / 2.0;
+        // All casts round positive numbers down; what is none, or too large, is not whole.
+        let halves = (wanted + 0.5) as u32;
+        let is_whole = (wanted - halves as f64).abs() <= WHOLE * wanted;
+        let mut updates = (period * FREQUENCIES.1 * (1.0 + WHOLE)) as u16;
+        while is_whole && updates as f64 >= period * FREQUENCIES.0 * (1.0 - WHOLE) && updates > 0 {
+            let counts = halves / updates as u32;
+            if halves.is_multiple_of(updates as u32) && counts <= u16::MAX as u32 {
+                return Ok(Self { counts: counts as u16, updates });
+            }
+            updates -= 1;
+        }
+        Err(DriveError::Period {
+            period,
+            lowest: FREQUENCIES.0,
+            highest: FREQUENCIES.1,
+            nearest: nearest(period, clock),
+        })
+    }
+
+    /// A period of the modulation in s, as a part of a period of the servo in s.
+    pub const fn instant(&self, period: f64) -> f64 {
+        period / self.updates as f64
+    }
+}
+
+/// The longest period that a timer can fill and that is not longer than this one; at least one of the modulation.
+const fn nearest(period: f64, clock: f64) -> f64 {
+    let updates = whole(period * FREQUENCIES.1 * (1.0 + WHOLE)).max(1.0);
+    let least = whole(clock / 2.0 / FREQUENCIES.1) + 1.0;
+    let most = whole(clock / 2.0 / FREQUENCIES.0);
+    let counts = whole(period * clock / 2.0 / updates).max(least).min(most);
+    2.0 * updates * counts / clock
+}
+
+/// A positive number, rounded down.
+const fn whole(number: f64) -> f64 {
+    number as u32 as f64
+}
