@@ -269,8 +269,13 @@ impl Board {
     }
 
     fn take(&mut self, outcome: Outcome) {
-        let Outcome { counts, gates, floating } = outcome;
-        self.turn_encoder(counts);
+        let Outcome { turns, gates, floating } = outcome;
+        for (counts, triggers) in turns {
+            self.turn_encoder(counts);
+            if triggers {
+                self.encoder.capture();
+            }
+        }
         if let Some(recorded) = &mut self.gates {
             recorded.extend(gates);
         }

@@ -57,8 +57,8 @@ pub(crate) struct Surroundings<'a> {
 /// What a time has brought to the rest of the board.
 #[derive(Default)]
 pub(crate) struct Outcome {
-    /// Counts of the encoder.
-    pub counts: i32,
+    /// Counts of the encoder, one after the other, and whether TIM1's trigger output rose behind them.
+    pub turns: Vec<(i32, bool)>,
     /// Changes of the gates.
     pub gates: Vec<(u64, Gates)>,
     /// A converter that has sampled what nothing drives: which.
@@ -190,21 +190,22 @@ impl PowerStage {
         }
     }
 
-    /// What the program writes; [`Self::changed`] has to follow.
+    /// What the program writes; [`Self::changed`] has to follow. Whether TIM1's trigger output rises.
     pub(crate) fn write(
         &mut self,
         unit: Unit,
         offset: u32,
         value: u32,
         around: &Surroundings<'_>,
-    ) -> Access<()> {
+    ) -> Access<bool> {
         let (now, clock) = (self.now, self.clock(around));
         match unit {
             Unit::PwmTimer => {
-                if self.timer.write(offset, value, now)? {
+                let triggers = self.timer.write(offset, value, now)?;
+                if triggers {
                     self.trigger(around);
                 }
-                Ok(())
+                return Ok(triggers);
             }
             Unit::Adc(number) => self.adcs[number].write(offset, value, now, clock),
             Unit::AdcCommon => self.adc_common.write(offset, value),
@@ -212,7 +213,8 @@ impl PowerStage {
             Unit::OpAmps => self.op_amps.write(offset, value),
             Unit::ThresholdDac => self.thresholds.write(offset, value),
             _ => Err(Unmodelled::Register),
-        }
+        }?;
+        Ok(false)
     }
 
     /// One of its units as out of reset.
@@ -271,8 +273,10 @@ impl PowerStage {
             self.trigger(around);
         }
         let waits = !self.timer.runs() && self.circuit.motor.is_some();
-        if instant.valley || waits && now >= self.stepped + LONGEST {
-            outcome.counts += self.step(around, device);
+        let steps = instant.valley || waits && now >= self.stepped + LONGEST;
+        let counts = if steps { self.step(around, device) } else { 0 };
+        if counts != 0 || instant.trigger {
+            outcome.turns.push((counts, instant.trigger));
         }
         self.compare(around);
         self.drive(around, outcome);

@@ -228,7 +228,10 @@ impl Board {
             | Unit::ThresholdDac => {
                 let Self { power_stage, ports, chip, clock, .. } = self;
                 let around = Surroundings { chip, ports, core: clock.core() };
-                power_stage.write(unit, offset, value, &around)
+                if power_stage.write(unit, offset, value, &around)? {
+                    self.encoder.capture();
+                }
+                Ok(())
             }
         }
     }

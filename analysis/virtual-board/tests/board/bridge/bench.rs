@@ -1,0 +1,91 @@
+//! A virtual board with a motor at its bridge.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use analysis::toolchain::TorqueOutput;
+use firmware::current::Winding;
+use virtual_board::board::{Board, BusAccess};
+use virtual_board::chip::B_G431B_ESC1;
+use virtual_board::device::Device;
+use virtual_board::motor::{self, Motor};
+use virtual_board::peripheral::pins::Level;
+use virtual_board::power_stage::{Circuit, Gates, Supply};
+
+use super::bridge_wall::{CURRENT_LOOP, DRIVE};
+use crate::bench::{Bench, build_for};
+
+/// Core clocks in a period of the modulation.
+pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
+
+/// The program's file. It is built when it is first asked for.
+fn program() -> &'static PathBuf {
+    static FILE: OnceLock<PathBuf> = OnceLock::new();
+    FILE.get_or_init(|| build_for(&B_G431B_ESC1, TorqueOutput::Bridge, &["bridge_wall"]).remove(0))
+}
+
+/// The motor that the program is for.
+pub fn motor() -> Motor {
+    let firmware::current::Motor { winding, resistance, inductance, torque_constant } = DRIVE.motor;
+    let winding = match winding {
+        Winding::Brushed => motor::Winding::Brushed,
+        Winding::Brushless { pole_pairs } => {
+            motor::Winding::Brushless { pole_pairs: pole_pairs.into(), offset: 0.0 }
+        }
+    };
+    Motor::new(winding, resistance, inductance, torque_constant)
+}
+
+/// A bench with that motor, whose gates are recorded.
+pub fn boot(device: impl Device + Send + 'static) -> Bench {
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, program(), device);
+    let board = bench.machine.board_mut();
+    board.gates = Some(Vec::new());
+    let circuit = circuit(&mut bench);
+    circuit.motor = Some(motor());
+    circuit.supply = Supply::stiff(24.0);
+    bench
+}
+
+/// The same, armed and run until the scene is felt.
+pub fn running(device: impl Device + Send + 'static) -> Bench {
+    /// More than the tenth of a second in which the clamp opens.
+    const OPEN: u64 = 110;
+    let mut bench = boot(device);
+    bench.armed();
+    bench.run(OPEN);
+    bench
+}
+
+/// What is wired to the power stage.
+pub fn circuit(bench: &mut Bench) -> &mut Circuit {
+    &mut bench.machine.board_mut().power_stage.circuit
+}
+
+/// The changes of the gates so far.
+pub fn gates(bench: &Bench) -> &[(u64, Gates)] {
+    bench.machine.board().gates.as_deref().unwrap()
+}
+
+/// Whether any gate is high now.
+pub fn has_high_gate(board: &Board) -> bool {
+    board.power_stage.gates().contains(&Level::High)
+}
+
+/// The accesses to peripherals since the last time.
+pub fn take_accesses(bench: &mut Bench) -> Vec<BusAccess> {
+    bench.machine.board_mut().accesses.replace(Vec::new()).unwrap_or_default()
+}
+
+/// The code that the servo gave last.
+pub fn code(bench: &mut Bench) -> u16 {
+    let (place, _) = bench.symbol("6bridge7WAITING");
+    bench.machine.core_mut().word(place & !3).unwrap().wrapping_shr(8 * (place & 3)) as u16
+}
+
+/// Runs to the next valley of the modulation.
+pub fn run_to_valley(bench: &mut Bench) {
+    let board = bench.machine.board();
+    let valley = board.power_stage.timer.valley().expect("the counter runs");
+    bench.run_for(valley + INSTANT - board.now);
+}
