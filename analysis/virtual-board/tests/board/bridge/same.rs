@@ -9,6 +9,7 @@ use firmware::servo::RenderingOptions;
 use firmware::servo_loop::Options;
 use tests::replica::Replica;
 use virtual_board::board::BusAccess;
+use virtual_board::chip::TICK_INTERRUPT;
 
 use super::bench::{armed, boot, code, take_accesses};
 use super::bridge_wall::{CURRENT_LOOP, SCENE, TRANSDUCERS};
@@ -23,8 +24,9 @@ const COMPARE: [u32; 3] = [0x4001_2C34, 0x4001_2C38, 0x4001_2C3C];
 const CURRENTS: [u32; 2] = [0x5000_0080, 0x5000_0180];
 const SUPPLY: u32 = 0x5000_0140;
 const TEMPERATURE: u32 = 0x5000_0040;
-/// The servo's interrupt is asked for.
+/// Where interrupts are asked for, and the servo's there.
 const PEND: u32 = 0xE000_E204;
+const SERVO: u32 = 1 << (TICK_INTERRUPT % 32);
 
 /// An instant of the current loop, as the bus has seen it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,7 +54,7 @@ impl Instant {
             (SUPPLY, false) => self.bus = value as u16,
             (TEMPERATURE, false) => self.temperature = value as u16,
             (BREAK_CONTROL, true) => self.switched = Some(value & MAIN_OUTPUT != 0),
-            (PEND, true) => self.begins = true,
+            (PEND, true) => self.begins |= value & SERVO != 0,
             (address, writes) => {
                 let place = |places: &[u32]| places.iter().position(|&place| place == address);
                 if let (Some(phase), false) = (place(&CURRENTS), writes) {
@@ -80,7 +82,7 @@ fn instants(accesses: &[BusAccess]) -> Vec<Instant> {
 
 /// A hand that swings the paddle into the wall and out of it.
 fn swings(time: f64) -> f64 {
-    0.4 * (40.0 * time).cos()
+    0.1 + 0.25 * (40.0 * time).cos()
 }
 
 #[test]
@@ -112,7 +114,11 @@ fn the_current_interrupt_computes_what_the_host_computes() {
             let duties = host.step(&sample, reference).unwrap();
             let expected = duties.0.map(|duty| u32::from(CURRENT_LOOP.timer_counts() - duty));
             for phase in 0..CURRENT_LOOP.phases() {
-                assert_eq!(instant.compare[phase], Some(expected[phase]), "{instant:?}");
+                assert_eq!(
+                    instant.compare[phase],
+                    Some(expected[phase]),
+                    "{compared}: {instant:?}"
+                );
             }
             compared += 1;
             moved += usize::from(reference != 0);
