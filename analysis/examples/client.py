@@ -26,7 +26,10 @@ STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost",
           6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick", 10: "clock-lost",
-          11: "flash-ecc", 12: "ram-parity", 13: "non-maskable"}
+          11: "flash-ecc", 12: "ram-parity", 13: "non-maskable", 14: "over-current",
+          15: "over-voltage", 16: "under-voltage", 17: "over-temperature", 18: "current-offset",
+          19: "current-not-following", 20: "saturated-duty", 21: "index-mismatch",
+          22: "current-interrupt-late"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
@@ -40,6 +43,7 @@ TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "tel
 # The fields of the messages in order. A field more in the protocol is a line more here.
 DISCARDED = [("broken", "u"), ("too_long", "u"), ("checksum", "u"), ("unknown", "u")]
 FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
+POWER = [("current", "i"), ("reference", "i"), ("voltage", "u"), ("temperature", "i")]
 STEP = ("enum", [("change", []), ("certificate", []), ("servo", [])])
 REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
                     ("set", [("step", STEP)])])
@@ -95,6 +99,7 @@ FIELDS = {
         ("discarded", DISCARDED),
         ("stack_left", ("option", "u")),
         ("reset", "u"),
+        ("power", ("option", POWER)),
     ],
     "remembered": [("fault", FAULT), ("tick", "u"), ("count", "i")],
     "telemetry": [("ticks", ("list", [("later", "u"), ("moved", "i"), ("code", "u"),

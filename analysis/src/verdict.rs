@@ -77,6 +77,12 @@ pub struct AtRest {
     pub numbers: f64,
     /// Bound for the DAC's step; `None`: not stated.
     pub converter: Option<f64>,
+    /// Bound for the steps of a current loop; absent: there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub current: Option<f64>,
+    /// What is to be added where the torque changes its sign; absent: nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing: Option<f64>,
     /// The sum: bound on the limit cycle, and the friction that prevents it.
     pub hum: f64,
     /// Declared friction of the device; `None`: not stated.
@@ -91,9 +97,27 @@ pub struct AtRest {
 impl AtRest {
     /// Of the certificate's bound.
     pub fn of(rest: &QuantizationBound) -> Self {
-        let QuantizationBound { encoder, numbers, converter, friction, in_any_motion } = *rest;
+        let QuantizationBound {
+            encoder,
+            numbers,
+            converter,
+            current,
+            crossing,
+            friction,
+            in_any_motion,
+        } = *rest;
         let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
-        Self { encoder, numbers, converter, hum, friction, comes_to_rest, in_any_motion }
+        Self {
+            encoder,
+            numbers,
+            converter,
+            current,
+            crossing,
+            hum,
+            friction,
+            comes_to_rest,
+            in_any_motion,
+        }
     }
 }
 

@@ -187,8 +187,9 @@ where
         .map_err(|step| not_started::<E, N, M>(&program, step))?;
     let (mut servo_loop, margin) = (booted.servo_loop, booted.margin);
     let (reset, previous_fault) = (booted.reset, booted.previous_fault);
-    let info =
-        BoardInfo { name, timer_counts: TIMER_COUNTS, reset, previous_fault, stack_left: || None };
+    let (stack_left, power) = (|| None, || None);
+    let timer_counts = TIMER_COUNTS;
+    let info = BoardInfo { name, timer_counts, reset, previous_fault, stack_left, power };
     let mut session = Session::new(program, margin, info, requests, ticks);
     let period = Duration::from_secs_f64(program.scene.timing.period);
     let mut next = Instant::now();

@@ -1,17 +1,20 @@
 //! `haptic tune`: the parameters of a running board.
 
 use std::io::{self, Write};
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 use firmware::certificate::Parameter;
-use firmware::wire::message::{ActiveParameters, Changes, Status};
+use firmware::servo_loop::State;
+use firmware::wire::message::{ActiveParameters, Changes, FaultCode, Status};
 use serde::Serialize;
 
 use super::shared_arguments::{JsonOption, json};
 use super::status::{CommandError, CommandStatus};
 use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
-use crate::scope::formatting;
+use crate::scope::{Power, formatting};
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
@@ -33,10 +36,17 @@ pub struct Arguments {
     /// Switch the amplifier off before the change
     #[arg(long)]
     pub disarm: bool,
+    /// Align the brushless motor of a motor board, after a change and before --arm: its field turns the handle
+    /// for some seconds. Keep the hand off. Needed once after each reset
+    #[arg(long)]
+    pub align: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub answer: JsonOption,
 }
+
+/// Time between two questions whether an alignment has ended.
+const POLL: Duration = Duration::from_millis(200);
 
 /// The answer as JSON.
 #[derive(Serialize)]
@@ -62,6 +72,8 @@ struct Report<'a> {
     thinned: u32,
     discarded: u32,
     stack_left: Option<u32>,
+    /// What the power stage measures, where the board has one that drives the motor.
+    power: Option<Power>,
 }
 
 /// Sends the request and prints the active parameters. A refusal is a negative verdict.
@@ -99,10 +111,29 @@ fn request(
     if outcome == link::RequestResult::Done && !changes.is_empty() {
         outcome = link.set(changes)?;
     }
+    if outcome == link::RequestResult::Done && arguments.align {
+        outcome = align(link)?;
+    }
     if outcome == link::RequestResult::Done && arguments.arm {
         outcome = link.arm()?;
     }
     Ok(outcome)
+}
+
+/// Aligns the motor, and waits for the end.
+fn align(link: &mut Link) -> Result<link::RequestResult, CommandError> {
+    let outcome = link.align()?;
+    if outcome != link::RequestResult::Done {
+        return Ok(outcome);
+    }
+    loop {
+        let status = link.status()?;
+        if status.state != State::Aligning {
+            let failed = |fault: FaultCode| link::RequestResult::Refused(fault.to_string());
+            return Ok(status.fault.map_or(link::RequestResult::Done, failed));
+        }
+        thread::sleep(POLL);
+    }
 }
 
 fn print(
@@ -129,6 +160,9 @@ fn print(
     }
     writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
     writeln!(out, "{}", formatting::energy(status, board))?;
+    if let Some(reading) = status.power {
+        writeln!(out, "{}", Power::from(reading))?;
+    }
     writeln!(out, "{}", formatting::losses(status, link.discarded()))?;
     Ok(())
 }
@@ -162,5 +196,6 @@ fn report<'a>(
         thinned: status.thinned,
         discarded: status.discarded.total(),
         stack_left: status.stack_left,
+        power: status.power.map(Power::from),
     }
 }

@@ -45,7 +45,7 @@ impl SceneFile {
     /// The file's resolution, for the certificate's assumptions.
     pub fn steps(&self) -> Resolution {
         let Self { encoder_step: encoder, full_scale, friction, .. } = *self;
-        Resolution { encoder, full_scale, friction }
+        Resolution { encoder, full_scale, friction, ..Resolution::default() }
     }
 }
 

@@ -140,8 +140,9 @@ fn remedy(end: SweepEnd, travel: &f64, speed: &f64) -> String {
                            its supply and counts_per_turn"
             .to_owned(),
         SweepEnd::OutputFault => {
-            "the board's bridge took the torque away by itself: a scene's program \
-                                  tells the fault (haptic scope), and boards.md what it means"
+            "the board's own bridge took the torque away: wrong current, supply or temperature. \
+             Flash a scene's program with the same motor and arm it: `haptic tune` then says which \
+             fault it was, and firmware/TROUBLESHOOTING.md what to do"
                 .to_owned()
         }
     }

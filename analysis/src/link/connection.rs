@@ -248,6 +248,14 @@ impl Link {
         Ok(self.request("the request to arm", |id| ToBoard::Arm { id })?.into())
     }
 
+    /// Has a motor board begin to align its brushless motor, which moves the handle.
+    ///
+    /// # Errors
+    /// Where the board does not answer.
+    pub fn align(&mut self) -> Result<RequestResult, LinkError> {
+        Ok(self.request("the request to align the motor", |id| ToBoard::Align { id })?.into())
+    }
+
     /// Fades the torque out and switches the amplifier off.
     ///
     /// # Errors

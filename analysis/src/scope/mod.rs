@@ -4,6 +4,7 @@ pub mod control;
 pub mod formatting;
 pub mod history;
 pub mod poller;
+mod power;
 pub mod record;
 pub mod sample;
 #[cfg(test)]
@@ -16,6 +17,7 @@ use firmware::wire::message::{ActiveParameters, Board, PreviousFault, Status};
 use self::control::Control;
 use self::history::History;
 use self::poller::Event;
+pub use self::power::Power;
 use self::sample::{Sample, Scale};
 
 /// The state of a board.

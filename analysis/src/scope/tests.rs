@@ -1,6 +1,7 @@
 use firmware::certificate::Parameter;
 use firmware::dac::DacCode;
 use firmware::fault::Fault;
+use firmware::power_reading::PowerReading;
 use firmware::reset::ResetCause;
 use firmware::servo_loop::{Frame, State};
 use firmware::torque::LimitReason;
@@ -39,6 +40,7 @@ const STATUS: Status = Status {
     discarded: Discarded { broken: 1, too_long: 2, checksum: 3, unknown: 2 },
     stack_left: None,
     reset: ResetCause::PowerOn,
+    power: None,
 };
 
 fn frame(tick: u32, count: i32, limit: LimitReason) -> Frame {
@@ -94,6 +96,24 @@ fn shows_everything_that_is_to_be_watched() {
     ] {
         assert!(shown.contains(part), "{part:?} is not in\n{shown}");
     }
+}
+
+#[test]
+fn shows_what_a_power_stage_measures() {
+    const LINE: &str = "current -0.412 A of -0.400 A asked, supply 24.1 V, 31.5 C";
+    let mut scope = connected();
+    assert!(!screen(&scope, 120, 40).contains("asked"));
+    let power =
+        Some(PowerReading { current: -412, reference: -400, voltage: 24_070, temperature: 315 });
+    take(&mut scope, Event::Status(Status { power, ..STATUS }, Discarded::default()));
+    let shown = screen(&scope, 120, 40);
+    let lines: Vec<_> = shown.lines().map(|line| line.trim_matches('"').trim_end()).collect();
+    let at = lines.iter().position(|line| *line == LINE);
+    let at = at.unwrap_or_else(|| panic!("{LINE:?} is no line of\n{shown}"));
+    // Between the facts of every board, of which none gives way.
+    assert!(lines[at - 1].starts_with("energy into the hand"), "{shown}");
+    assert!(lines[at + 1].starts_with("ticks dropped"), "{shown}");
+    assert!(shown.contains("q quits"), "{shown}");
 }
 
 #[test]

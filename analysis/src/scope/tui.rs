@@ -8,6 +8,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 
 use super::control::{self, Control};
+use super::power::Power;
 use super::sample::Sample;
 use super::{Scope, formatting};
 use crate::quantity::{shortened, significant};
@@ -20,11 +21,12 @@ pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
     let width = usize::from(frame.area().width);
     let message =
         scope.control.message.as_deref().map_or(Vec::new(), |message| wrapped(message, width));
+    let lines = facts_of(scope);
     let [head, position, torque, facts, answer, keys] = Layout::vertical([
         Constraint::Length(2),
         Constraint::Fill(1),
         Constraint::Fill(1),
-        Constraint::Length(4),
+        Constraint::Length(lines.len().max(FACTS) as u16),
         Constraint::Length(message.len() as u16),
         Constraint::Length(1),
     ])
@@ -32,10 +34,13 @@ pub fn draw(frame: &mut Frame<'_>, scope: &Scope) {
     frame.render_widget(Paragraph::new(heading(scope, width)), head);
     draw_curve(frame, position, scope, "position, rad", |sample| sample.position);
     draw_curve(frame, torque, scope, "coupling torque, N m", |sample| sample.torque);
-    frame.render_widget(Paragraph::new(facts_of(scope)), facts);
+    frame.render_widget(Paragraph::new(lines), facts);
     frame.render_widget(Paragraph::new(message), answer);
     frame.render_widget(last_line(&scope.control), keys);
 }
+
+/// Lines of facts before a board has told any, so that the curves keep their place; a power stage has one more.
+const FACTS: usize = 4;
 
 /// Most lines of an answer: a refusal names the remedies.
 const ANSWER: usize = 5;
@@ -107,12 +112,14 @@ fn facts_of(scope: &Scope) -> Vec<Line<'static>> {
     };
     let slack = scope.history.last().map(|last| last.slack);
     let energy = formatting::energy(&status, &connected.board);
-    vec![
+    let mut lines = vec![
         Line::from(formatting::numbers(parameters)),
         Line::from(formatting::reserves(parameters, &status, &connected.board, slack)),
         Line::from(format!("{energy}   {}", formatting::limits(scope))),
-        Line::from(formatting::losses(&status, here)).dim(),
-    ]
+    ];
+    lines.extend(status.power.map(|reading| Line::from(Power::from(reading).to_string())));
+    lines.push(Line::from(formatting::losses(&status, here)).dim());
+    lines
 }
 
 fn draw_curve(

@@ -11,6 +11,7 @@ use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
 use firmware::fault::Fault;
 use firmware::number::Format;
+use firmware::power_reading::PowerReading;
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
 use firmware::servo::{OutputTiming, RenderingOptions, Step, Transducers};
 use firmware::servo_loop::{Frame, State};
@@ -77,6 +78,12 @@ fn status() -> Status {
         discarded: Discarded { broken: 7, too_long: 8, checksum: 9, unknown: 10 },
         stack_left: Some(2048),
         reset: firmware::reset::ResetCause::Pin,
+        power: Some(PowerReading {
+            current: -412,
+            reference: i32::MIN,
+            voltage: u32::MAX,
+            temperature: -15,
+        }),
     }
 }
 
@@ -156,7 +163,9 @@ fn reads_every_message_to_the_host() {
                     "count": -70_000_000_000_i64, "sets": 3, "missed": 4, "worst_slack": 170_000,
                     "energy": i64::MIN, "worst_deficit": i64::MAX, "dropped": 5, "thinned": 6,
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
-                    "stack_left": 2048, "reset": 3}],
+                    "stack_left": 2048, "reset": 3,
+                    "power": {"current": -412, "reference": i32::MIN, "voltage": u32::MAX,
+                              "temperature": -15}}],
         ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "servo"}}}],
         ["answer", {"id": 7, "refused": {"type": "fault", "fault": code}}],
         ["answer", {"id": 0, "refused": null}],

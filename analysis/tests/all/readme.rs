@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::{answer, haptic, program, read, root};
 
 /// The documents that name commands of the program.
-const DOCUMENTS: [&str; 18] = [
+const DOCUMENTS: [&str; 19] = [
     "README.md",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
@@ -16,6 +16,7 @@ const DOCUMENTS: [&str; 18] = [
     "docs/guarantees.md",
     "docs/knob-modes.md",
     "docs/measure.md",
+    "docs/power-stage.md",
     "docs/rate-and-format.md",
     "docs/set-up.md",
     "docs/torque-profiles.md",

@@ -155,6 +155,7 @@ fn tune_changes_what_is_certified_and_prints_what_runs() {
     // The clamp opens again, for as long as that takes.
     let state = said["state"].as_str().unwrap();
     assert!(["settling", "fading-in", "running"].contains(&state), "{state}");
+    assert!(said.as_object().unwrap().get("power").is_some_and(Value::is_null), "{said}");
     assert!((said["longest_gap"].as_f64().unwrap() - 0.036).abs() < 1e-9, "{said}");
 }
 

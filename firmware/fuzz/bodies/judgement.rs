@@ -172,9 +172,14 @@ where
     let device = SimHardware::new(Still { count: 0, code: DacCode::MID_SCALE }, PERIOD);
     let servo_loop = ServoLoop::new(first, options, PERIOD, None);
     let mut servo = Running { servo_loop, device, inbox, frames };
-    let (reset, stack_left) = (ResetCause::PowerOn, || None);
-    let facts =
-        BoardInfo { name: "any", timer_counts: 1000, reset, previous_fault: None, stack_left };
+    let facts = BoardInfo {
+        name: "any",
+        timer_counts: 1000,
+        reset: ResetCause::PowerOn,
+        previous_fault: None,
+        stack_left: || None,
+        power: || None,
+    };
     let mut session = Session::new(program, None, facts, requests, reader);
     let mut limit = scene.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
     let (mut bytes, mut count) = (Reader(data), 0_i16);

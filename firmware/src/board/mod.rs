@@ -136,6 +136,7 @@ macro_rules! scene_program {
             let mut friction = None;
             $(friction = Some($friction);)?
             let steps = $crate::certificate::Resolution::of(&PROGRAM.transducers, friction);
+            $(let steps = steps.with_current_loop(&$current_loop.resolution());)?
             let injection = PROGRAM.rendering.injection;
             if !CERTIFIED_AS_IT_RUNS.is_what_is_stated() {
                 eprintln!("the constant was certified as something else than its environment states");

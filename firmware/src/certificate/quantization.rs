@@ -19,6 +19,7 @@ use super::composed::{jump_at_face, peak_gain_beside};
 use super::model::{LoopIntervals, LoopTransfers, Washout, canceller, damper};
 use super::profile::{peak_gain, step_of_part};
 use super::rules::is_nonlinear;
+use crate::current::CurrentResolution;
 use crate::dac::DacCode;
 use crate::environment::{Environment, Rational};
 use crate::matched::{MatchedCoupling, Trail};
@@ -38,6 +39,12 @@ pub struct Resolution {
     pub full_scale: Option<f64>,
     /// Coulomb friction of the device in N m, at the motor.
     pub friction: Option<f64>,
+    /// Most by which the torque of a current loop is off its model, in N m; none where an amplifier outside has
+    /// no such steps.
+    pub current: Option<f64>,
+    /// What a current loop is off beside that where the torque changes its sign, in N m, until its feedback has
+    /// found the dead time's other side.
+    pub crossing: Option<f64>,
 }
 
 impl Resolution {
@@ -47,7 +54,16 @@ impl Resolution {
             encoder: Some(TAU / transducers.counts_per_turn),
             full_scale: Some(transducers.full_scale_torque),
             friction,
+            current: None,
+            crossing: None,
         }
+    }
+
+    /// The same in front of a current loop of this resolution: what counts and compare values leave of a settled
+    /// current, with half of its ripple, and what a change of its sign adds.
+    pub fn with_current_loop(self, loop_resolution: &CurrentResolution) -> Self {
+        let CurrentResolution { deviation, zero_crossing, ripple, .. } = *loop_resolution;
+        Self { current: Some(deviation + 0.5 * ripple), crossing: Some(zero_crossing), ..self }
     }
 
     /// Torque of one DAC code in N m.
@@ -66,6 +82,10 @@ pub struct QuantizationBound {
     pub numbers: f64,
     /// Of the DAC: half a code.
     pub converter: Option<f64>,
+    /// Of the current loop: see [`Resolution::with_current_loop`].
+    pub current: Option<f64>,
+    /// What is to be added to that where the torque changes its sign: see [`Resolution::crossing`].
+    pub crossing: Option<f64>,
     /// Declared friction of the device.
     pub friction: Option<f64>,
     /// Whether the bound holds for any motion. Otherwise it holds at rest, and on one side of a
@@ -82,6 +102,8 @@ impl QuantizationBound {
             encoder: steps.encoder.map(|step| 0.5 * step * peak),
             numbers: numbers(scene, format, steps, peak)?,
             converter: steps.converter().map(|step| 0.5 * step),
+            current: steps.current,
+            crossing: steps.crossing,
             friction: steps.friction,
             in_any_motion,
         };
@@ -105,9 +127,14 @@ impl QuantizationBound {
     }
 
     /// Its parts by name, as far as they were stated.
-    pub fn parts(&self) -> [(&'static str, Option<f64>); 3] {
-        let Self { encoder, numbers, converter, .. } = *self;
-        [("encoder", encoder), ("numbers", Some(numbers)), ("DAC", converter)]
+    pub fn parts(&self) -> [(&'static str, Option<f64>); 4] {
+        let Self { encoder, numbers, converter, current, .. } = *self;
+        [
+            ("encoder", encoder),
+            ("numbers", Some(numbers)),
+            ("DAC", converter),
+            ("current loop", current),
+        ]
     }
 
     /// Whether the declared friction is enough; `None` where that cannot be said.
@@ -142,6 +169,13 @@ impl fmt::Display for QuantizationBound {
                 "a limit cycle of up to {hum} N m is possible: the device's friction of {friction} \
                  N m is lower"
             )?,
+        }
+        if let Some(crossing) = self.crossing.map(RoundUp3) {
+            write!(
+                f,
+                "; where the torque changes its sign, it is off by up to {crossing} N m more until the \
+                 current loop has found the dead time's other side"
+            )?;
         }
         if self.in_any_motion {
             return Ok(());
@@ -380,7 +414,7 @@ mod tests {
         let steps = Resolution {
             encoder: Some(TAU / COUNTS_PER_TURN),
             full_scale: Some(FULL_SCALE),
-            friction: None,
+            ..Resolution::default()
         };
         QuantizationBound::of(scene, format, &steps)
     }

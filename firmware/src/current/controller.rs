@@ -1,13 +1,20 @@
 //! What runs at each instant: from a sample and a code to compare values.
 
+use core::hint::cold_path;
+
+use super::alignment::{Alignment, AlignmentStep, Field};
 use super::current_loop::CurrentLoop;
 use super::fault::PowerFault;
-use super::follower::Follower;
+use super::follower::{Follower, Wanted};
 use super::motor::Winding;
 use super::offset::Offsets;
+use super::phase::{PhaseAlignment, Turn};
 use super::sample::{Duties, Sample};
 use super::speed::Speed;
 use super::supervision::Supervision;
+use super::vector::{Rotation, Vector};
+use crate::dac::DacCode;
+use crate::encoder::RawCount;
 
 /// A current loop that runs.
 #[derive(Clone, Copy, Debug)]
@@ -18,9 +25,15 @@ pub struct CurrentController {
     last: Option<Sample>,
     /// Of the phases U and V, in counts, as the last start took them over.
     offset: [f32; 2],
+    /// The current that makes torque, and of a brushless motor the one along its magnets.
     follower: Follower,
+    along: Follower,
+    turn: Turn,
+    phase: Option<PhaseAlignment>,
     speed: Speed,
     supervision: Supervision,
+    /// In A, of the last sample; zero while the gates are off.
+    current: f32,
 }
 
 impl CurrentController {
@@ -32,29 +45,70 @@ impl CurrentController {
             last: None,
             offset: [0.0; 2],
             follower: Follower::AT_REST,
+            along: Follower::AT_REST,
+            turn: design.turn,
+            phase: None,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
+            current: 0.0,
         }
     }
 
     /// Takes a sample while the gates are off: the counts without a current.
     pub fn measure_offset(&mut self, sample: &Sample) {
         self.offsets.measure(sample);
-        self.speed.restart(sample.position);
+        self.move_to(sample.position);
         self.last = Some(*sample);
+        self.current = 0.0;
+    }
+
+    /// Current in A of the last sample, with the sign of its torque; zero while the gates are off.
+    pub const fn current(&self) -> f32 {
+        self.current
+    }
+
+    /// The count of the handle in its turn, of a brushless motor: where an index is, for an
+    /// [`IndexCheck`](super::IndexCheck).
+    pub const fn count_in_turn(&self) -> u32 {
+        self.turn.count().cast_unsigned()
+    }
+
+    /// Takes over what an alignment has found.
+    pub const fn set_phase(&mut self, phase: PhaseAlignment) {
+        self.phase = Some(phase);
     }
 
     /// Gets ready for gates that are switched on before the next instant: no current and no voltage. The code
     /// has to be that of no torque.
     ///
     /// # Errors
-    /// Where the offsets, the supply or the temperature of the last sample are out of range.
+    /// Where the offsets, the supply or the temperature of the last sample are out of range, or a brushless
+    /// motor has not been aligned.
     pub fn start(&mut self) -> Result<(), PowerFault> {
+        if matches!(self.design.winding, Winding::Brushless { .. }) && self.phase.is_none() {
+            return Err(PowerFault::NotAligned);
+        }
+        self.start_at_rest()
+    }
+
+    /// The same for an alignment, which is to be done for a motor whose phase is not known: on request only, as
+    /// it moves the handle.
+    ///
+    /// # Errors
+    /// Where the offsets, the supply or the temperature of the last sample are out of range.
+    pub fn start_alignment(&mut self) -> Result<Alignment, PowerFault> {
+        self.start_at_rest()?;
+        Ok(Alignment::new(&self.design, self.turn))
+    }
+
+    fn start_at_rest(&mut self) -> Result<(), PowerFault> {
         self.offset = self.offsets.checked(&self.design.limits)?;
         if let Some(sample) = self.last {
             self.design.limits.check_surroundings(&sample)?;
         }
-        (self.follower, self.supervision) = (Follower::AT_REST, Supervision::NONE);
+        (self.follower, self.along) = (Follower::AT_REST, Follower::AT_REST);
+        self.supervision = Supervision::NONE;
+        self.speed.restart();
         Ok(())
     }
 
@@ -67,7 +121,7 @@ impl CurrentController {
     pub fn step(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         match self.design.winding {
             Winding::Brushed => self.step_brushed(sample, code_offset),
-            Winding::Brushless { .. } => Ok(self.design.no_voltage()),
+            Winding::Brushless { .. } => self.step_brushless(sample, code_offset),
         }
     }
 
@@ -79,6 +133,34 @@ impl CurrentController {
         self.design.limits.over_current(counts(0).max(counts(1)))
     }
 
+    /// One instant of an alignment. At its end the phase is taken over, if there is one.
+    ///
+    /// # Errors
+    /// Faults, after which the gates are to be switched off.
+    pub fn align(
+        &mut self,
+        sample: &Sample,
+        alignment: &mut Alignment,
+    ) -> Result<AlignmentStep, PowerFault> {
+        let step = self.move_to(sample.position);
+        let Some(Field { angle, current }) = alignment.step(step) else {
+            let result = alignment.result();
+            self.phase = result.ok();
+            return Ok(AlignmentStep::Ended(result));
+        };
+        let amps = self.design.law.amps_per_code * f32::from(DacCode::CODES_TO_FULL_SCALE);
+        let wanted = Vector { along: current * amps, across: 0.0 };
+        self.step_vector(sample, angle, wanted, 0.0).map(AlignmentStep::Turning)
+    }
+
+    /// Counts since the last instant.
+    #[inline(always)]
+    const fn move_to(&mut self, position: RawCount) -> i32 {
+        let step = self.speed.step(position);
+        self.turn.move_by(step);
+        step
+    }
+
     /// The same of a brushed motor.
     #[inline(always)]
     fn step_brushed(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
@@ -87,7 +169,9 @@ impl CurrentController {
         let [u, v] = sample.currents.map(f32::from);
         // Both shunts see the current, with opposite signs; half the difference has half the step.
         let current = 0.5 * law.amps_per_count * ((u - v) - (self.offset[0] - self.offset[1]));
-        let back_emf = law.back_emf * self.speed.update(sample.position);
+        self.current = current;
+        let step = self.speed.step(sample.position);
+        let back_emf = law.back_emf * self.speed.update(step);
         let reference = law.amps_per_code * f32::from(code_offset);
         let wanted = self.follower.follow(law, reference, current);
         // The supply changes from instant to instant: the only division.
@@ -102,5 +186,59 @@ impl CurrentController {
         );
         self.supervision.observe(limits, wanted.deviation.abs(), is_limited)?;
         Ok(timing.between_two(limited))
+    }
+
+    /// The same of a brushless motor: the current across the magnets, as long as none is along them.
+    #[inline(always)]
+    fn step_brushless(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
+        let Some(phase) = self.phase else {
+            cold_path();
+            return Err(PowerFault::NotAligned);
+        };
+        let step = self.move_to(sample.position);
+        let speed = phase.sign() * self.speed.update(step);
+        let reference = phase.sign() * self.design.law.amps_per_code * f32::from(code_offset);
+        let wanted = Vector { along: 0.0, across: reference };
+        let duties = self.step_vector(sample, phase.angle(self.turn.angle()), wanted, speed);
+        self.current *= phase.sign();
+        duties
+    }
+
+    /// The currents along and across an angle, which turns by so many counts in an instant.
+    #[inline(always)]
+    fn step_vector(
+        &mut self,
+        sample: &Sample,
+        angle: u32,
+        reference: Vector,
+        speed: f32,
+    ) -> Result<Duties, PowerFault> {
+        let CurrentLoop { law, output, limits, timing, .. } = &self.design;
+        limits.check(sample, self.offset)?;
+        let [u, v] = sample.currents.map(f32::from);
+        let amps = |count: f32, offset: f32| law.amps_per_count * (count - offset);
+        let phases = Vector::of_two_phases(amps(u, self.offset[0]), amps(v, self.offset[1]));
+        let rotation = Rotation::of(angle);
+        let current = phases.seen_from(rotation);
+        self.current = current.across;
+        let across = self.follower.follow(law, reference.across, current.across);
+        let along = self.along.follow(law, reference.along, current.along);
+        let turned = law.radians * speed;
+        let volts = Vector {
+            along: along.volts - 0.5 * turned * self.follower.volts_across(law),
+            across: across.volts
+                + law.back_emf * speed
+                + 0.5 * turned * self.along.volts_across(law),
+        };
+        // The supply changes from instant to instant: the only division.
+        let counts = volts.times(output.counts_per_volt / f32::from(sample.bus));
+        let (limited, is_limited) = counts.within(output.circle);
+        let goes_on = |wanted: Wanted, counts: f32| is_limited && wanted.deviation * counts > 0.0;
+        self.follower.integrate(law, across.deviation, goes_on(across, counts.across));
+        self.along.integrate(law, along.deviation, goes_on(along, counts.along));
+        let deviation = across.deviation.abs().max(along.deviation.abs());
+        self.supervision.observe(limits, deviation, is_limited)?;
+        // From the sample to the middle of the period in which the voltage acts.
+        Ok(limited.turned(rotation.ahead(1.5 * turned)).duties(*timing))
     }
 }

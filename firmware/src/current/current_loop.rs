@@ -2,6 +2,7 @@
 
 use super::error::DriveError;
 use super::motor::{Drive, Winding};
+use super::phase::Turn;
 use super::plant::{Plant, lag_of};
 use super::power_stage::PowerStage;
 use super::resolution::{CurrentResolution, Quanta};
@@ -55,6 +56,10 @@ pub struct CurrentLoop {
     pub(super) law: Law,
     pub(super) output: Output,
     pub(super) limits: Limits,
+    /// At the count 0; not used by a brushed motor.
+    pub(super) turn: Turn,
+    /// Period of the modulation in s.
+    pub(super) instant: f64,
     amps_per_code: f64,
     torque_constant: f64,
     response: Response,
@@ -80,6 +85,8 @@ pub(super) struct Law {
     pub integral: f32,
     /// Back-EMF in V of a count of the encoder in an instant.
     pub back_emf: f32,
+    /// Electrical rad of a count; none of a brushed motor.
+    pub radians: f32,
 }
 
 /// From a voltage to compare values.
@@ -282,12 +289,17 @@ impl<'a> Design<'a> {
         Ok(())
     }
 
+    /// None of a brushed motor.
+    const fn pole_pairs(&self) -> u16 {
+        match self.drive.motor.winding {
+            Winding::Brushed => 0,
+            Winding::Brushless { pole_pairs } => pole_pairs,
+        }
+    }
+
     /// Electrical rad/s at the largest speed; none of a brushed motor.
     const fn electrical_speed(&self) -> f64 {
-        match self.drive.motor.winding {
-            Winding::Brushed => 0.0,
-            Winding::Brushless { pole_pairs } => pole_pairs as f64 * self.transducers.largest_speed,
-        }
+        self.pole_pairs() as f64 * self.transducers.largest_speed
     }
 
     /// Whether the current can be measured, and the board bears it.
@@ -361,6 +373,8 @@ impl<'a> Design<'a> {
             law: self.law(),
             output: self.output(),
             limits: self.limits(),
+            turn: self.turn(),
+            instant: self.instant,
             amps_per_code: self.amps_per_code(),
             torque_constant: drive.motor.torque_constant,
             response: Response { delay: self.instant, lag: self.lag, updates: timing.updates },
@@ -376,6 +390,13 @@ impl<'a> Design<'a> {
                 dead_time: stage.dead_time,
             }
             .resolution(drive.motor.winding),
+        }
+    }
+
+    const fn turn(&self) -> Turn {
+        match self.pole_pairs() {
+            0 => Turn::new(1, 0),
+            pole_pairs => Turn::new(self.transducers.counts_per_turn as u32, pole_pairs),
         }
     }
 
@@ -395,6 +416,7 @@ impl<'a> Design<'a> {
             volts: (1.0 / gain) as f32,
             proportional: (feedback * decay / gain) as f32,
             integral: (feedback * (1.0 - decay) / gain) as f32,
+            radians: (self.pole_pairs() as f64 * radians_per_count) as f32,
             back_emf: (self.drive.motor.back_emf() * radians_per_count / self.instant) as f32,
         }
     }

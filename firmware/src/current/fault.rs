@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use super::alignment::AlignmentError;
+
 /// What switched a power stage off, with the numbers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerFault {
@@ -68,6 +70,10 @@ pub enum PowerFault {
         /// The most that is allowed.
         allowed: u32,
     },
+    /// A brushless motor has not been aligned.
+    NotAligned,
+    /// The motor could not be aligned.
+    Alignment(AlignmentError),
 }
 
 impl PowerFault {
@@ -83,6 +89,8 @@ impl PowerFault {
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
             Self::CurrentInterruptLate { .. } => "current-interrupt-late",
+            Self::NotAligned => "not-aligned",
+            Self::Alignment(_) => "alignment",
         }
     }
 
@@ -100,6 +108,8 @@ impl PowerFault {
             Self::SaturatedDuty { instants, allowed } => (20, [instants, allowed]),
             Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
+            Self::NotAligned => (23, [0; 2]),
+            Self::Alignment(error) => error.encode(),
         }
     }
 
@@ -116,7 +126,11 @@ impl PowerFault {
             20 => Self::SaturatedDuty { instants: a, allowed: b },
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
-            _ => return None,
+            23 => Self::NotAligned,
+            _ => match AlignmentError::decode(code, numbers) {
+                Some(error) => Self::Alignment(error),
+                None => return None,
+            },
         })
     }
 }
@@ -171,6 +185,10 @@ impl fmt::Display for PowerFault {
                 f,
                 "the currents' interrupt ended {late} timer counts after the start of its period, and \
                  {allowed} are allowed: shorten the critical sections that mask it, then arm again"
+            ),
+            Self::Alignment(error) => write!(f, "not aligned: {error}"),
+            Self::NotAligned => f.write_str(
+                "the motor has not been aligned with its encoder: align it, then arm again",
             ),
         }
     }

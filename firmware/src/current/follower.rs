@@ -37,6 +37,13 @@ impl Follower {
         Wanted { volts: forward + feedback, deviation }
     }
 
+    /// What the voltage across the model's current has to be for each rad that the current turns from an instant
+    /// to the middle of the next voltage, after [`follow`](Self::follow).
+    #[inline(always)]
+    pub(super) const fn volts_across(&self, law: &Law) -> f32 {
+        (self.next + law.decay * self.model) * law.volts
+    }
+
     /// Goes on with the integral, unless a limit of the voltage would make it grow for nothing.
     #[inline(always)]
     pub(super) const fn integrate(&mut self, law: &Law, deviation: f32, is_limited: bool) {

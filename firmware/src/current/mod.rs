@@ -15,28 +15,36 @@
 //! The current follows a reference model, which is the amplifier that the certificate knows: a lag with a gain
 //! of 1 behind a delay of one instant ([`Response`]).
 
+mod alignment;
 mod controller;
 mod current_loop;
 mod error;
 mod fault;
 mod follower;
+mod index_check;
 mod motor;
 mod offset;
+mod phase;
 mod plant;
 mod power_stage;
 mod program;
+mod reading;
 mod resolution;
 mod sample;
 mod speed;
 mod supervision;
 mod thermistor;
 mod timing;
+mod vector;
 
+pub use alignment::{Alignment, AlignmentError, AlignmentStep};
 pub use controller::CurrentController;
 pub use current_loop::{CurrentLoop, OVER_CURRENT, Response};
 pub use error::DriveError;
 pub use fault::PowerFault;
+pub use index_check::IndexCheck;
 pub use motor::{Drive, Motor, Supply, Winding};
+pub use phase::PhaseAlignment;
 pub use power_stage::{B_G431B_ESC1, PowerStage};
 pub use resolution::CurrentResolution;
 pub use sample::{Duties, Sample};

@@ -19,24 +19,24 @@ impl Speed {
         Self { last: 0, width, mean: 0.0 }
     }
 
-    /// At rest, where the counter is now.
-    pub(super) const fn restart(&mut self, position: RawCount) {
-        (self.last, self.mean) = (position.bits(), 0.0);
+    /// Goes on with the mean from zero.
+    pub(super) const fn restart(&mut self) {
+        self.mean = 0.0;
     }
 
-    /// Counts since the last reading, which are fewer than half the counter's range.
+    /// Counts since the last reading, which are fewer than half the counter's range. The first one is since the
+    /// zero that is nearest.
     #[inline(always)]
-    const fn step(&mut self, position: RawCount) -> i32 {
+    pub(super) const fn step(&mut self, position: RawCount) -> i32 {
         let shift = self.width as u32;
         let step = (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift;
         self.last = position.bits();
         step
     }
 
-    /// Takes a reading; gives the mean of the counts in an instant.
+    /// Takes a step; gives the mean of the counts in an instant.
     #[inline(always)]
-    pub(super) const fn update(&mut self, position: RawCount) -> f32 {
-        let step = self.step(position);
+    pub(super) const fn update(&mut self, step: i32) -> f32 {
         self.mean += NEWEST * (step as f32 - self.mean);
         self.mean
     }

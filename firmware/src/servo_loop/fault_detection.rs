@@ -16,7 +16,8 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     #[cold]
     #[inline(never)]
     pub(super) fn unless_disarmed(&self, code: DacCode) -> DacCode {
-        if self.state.is_armed() { code } else { DacCode::MID_SCALE }
+        let renders = self.state.is_armed() && self.state != State::Aligning;
+        if renders { code } else { DacCode::MID_SCALE }
     }
 
     /// A tick that is not the next one after the last, or that began late, and the encoder's counter

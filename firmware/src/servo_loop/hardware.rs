@@ -1,5 +1,6 @@
 //! Hardware of the servo's interrupt.
 
+use crate::current::{AlignmentError, PowerFault};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::{Fault, FaultRecord};
@@ -21,6 +22,17 @@ pub trait Hardware {
     /// none.
     fn output_fault(&mut self) -> Option<Fault> {
         None
+    }
+    /// Begins to align a brushless motor, which moves the handle.
+    ///
+    /// # Errors
+    /// Where there is none on a bridge of this board.
+    fn align(&mut self) -> Result<(), Fault> {
+        Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)))
+    }
+    /// Whether an alignment runs.
+    fn is_aligning(&mut self) -> bool {
+        false
     }
     /// Whole periods that began since the last call: 1 in time, more where ticks were missed, and
     /// [`BEGAN_LATE`] for one whose tick is late. A simulated board whose count is the one at its

@@ -13,6 +13,7 @@ const DISARM: u32 = 2;
 const STATUS: u32 = 4;
 const SET: u32 = 8;
 const HOST_ALIVE: u32 = 16;
+const ALIGN: u32 = 32;
 
 /// Sets that wait: one, and the place that a queue keeps free.
 const SETS: usize = 2;
@@ -68,6 +69,12 @@ impl<R> Requests<'_, R> {
         self.post(DISARM);
     }
 
+    /// Requests the alignment of a brushless motor, which moves the handle; [`Notice::Aligning`] or
+    /// [`Notice::NotAligning`] answers.
+    pub fn align(&self) {
+        self.post(ALIGN);
+    }
+
     /// Requests a [`Notice::Status`].
     pub fn request_status(&self) {
         self.post(STATUS);
@@ -111,6 +118,7 @@ pub struct Inbox<'a, R> {
 pub(super) struct PendingRequests {
     pub arm: bool,
     pub disarm: bool,
+    pub align: bool,
     pub status: bool,
     pub host_alive: bool,
 }
@@ -128,6 +136,7 @@ impl<R> Inbox<'_, R> {
         PendingRequests {
             arm: pending & (ARM | DISARM) == ARM,
             disarm: pending & DISARM != 0,
+            align: pending & (ALIGN | DISARM) == ALIGN,
             status: pending & STATUS != 0,
             host_alive: pending & HOST_ALIVE != 0,
         }

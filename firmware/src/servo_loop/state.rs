@@ -22,17 +22,20 @@ pub enum State {
     Settling = 4,
     /// A fault stopped it; the amplifier is off.
     Faulted = 5,
+    /// A brushless motor is aligned: its field turns the handle, and no scene is felt.
+    Aligning = 6,
 }
 
 impl State {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Disarmed,
         Self::FadingIn,
         Self::Running,
         Self::FadingOut,
         Self::Settling,
         Self::Faulted,
+        Self::Aligning,
     ];
 
     /// The state in one word, for tables.
@@ -44,6 +47,7 @@ impl State {
             Self::FadingOut => "fading-out",
             Self::Settling => "settling",
             Self::Faulted => "faulted",
+            Self::Aligning => "aligning",
         }
     }
 
@@ -96,6 +100,10 @@ pub enum Notice {
     Armed,
     /// The servo was not armed: what stopped it is still there.
     NotArmed(Fault),
+    /// The motor is being aligned; [`State::Aligning`] ends by itself.
+    Aligning,
+    /// It is not: because of this fault, or because the servo is armed.
+    NotAligning(Option<Fault>),
     /// The amplifier is off.
     Disarmed,
     /// The submitted set is running now.

@@ -3,6 +3,7 @@
 
 use super::swap::ARMING;
 use super::*;
+use crate::current::PowerFault;
 use crate::fault::FaultRecord;
 
 impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
@@ -23,8 +24,11 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         if requests.arm {
             self.arm(hardware, inbox);
         }
+        if requests.align {
+            self.align(hardware, inbox);
+        }
         if requests.disarm {
-            self.disarm(inbox);
+            self.disarm(hardware, inbox);
         }
         match self.state {
             State::Running => self.begin_swap(inbox),
@@ -32,6 +36,7 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
             State::FadingOut => self.fade_out(hardware, inbox),
             State::Settling => self.settle(inbox),
             State::Disarmed | State::Faulted => self.idle(inbox),
+            State::Aligning => self.wait_for_alignment(hardware),
         }
         if requests.status {
             inbox.notify(Notice::Status(self.status(dropped)));
@@ -39,6 +44,9 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
     }
 
     fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+        if self.state == State::Aligning {
+            return inbox.notify(Notice::NotArmed(Fault::Power(PowerFault::NotAligned)));
+        }
         if !self.state.is_armed() {
             if let Some(fault) = self.persistent_fault() {
                 return inbox.notify(Notice::NotArmed(fault));
@@ -63,7 +71,45 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
         inbox.notify(Notice::Armed);
     }
 
-    fn disarm(&mut self, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
+    /// Has the field of a brushless motor turn the handle. No scene is felt meanwhile.
+    fn align(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) {
+        if self.state.is_armed() && self.state != State::Aligning {
+            return inbox.notify(Notice::NotAligning(None));
+        }
+        if let Some(fault) = self.persistent_fault() {
+            return inbox.notify(Notice::NotAligning(Some(fault)));
+        }
+        if let Err(fault) = hardware.align() {
+            return inbox.notify(Notice::NotAligning(Some(fault)));
+        }
+        self.fault = None;
+        hardware.store_fault(&FaultRecord::NOTHING);
+        self.rendering.servo_mut().shut();
+        self.state = State::Aligning;
+        inbox.notify(Notice::Aligning);
+    }
+
+    /// An alignment ends by itself, or by a fault, which has stopped the servo before this.
+    fn wait_for_alignment(&mut self, hardware: &mut impl Hardware) {
+        if !hardware.is_aligning() {
+            hardware.amplifier(false);
+            self.state = State::Disarmed;
+        }
+    }
+
+    fn disarm(
+        &mut self,
+        hardware: &mut impl Hardware,
+        inbox: &mut Inbox<'_, PreparedServo<E, N, M>>,
+    ) {
+        if self.state == State::Aligning {
+            hardware.amplifier(false);
+            self.state = State::Disarmed;
+        }
         if self.state.is_armed() {
             self.ramp = ARMING;
             self.begin_fading_out(AfterFade::Release);

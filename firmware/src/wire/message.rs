@@ -15,6 +15,7 @@ use super::description::Description;
 use super::telemetry::Batch;
 use crate::certificate::Parameter;
 use crate::fault::{Fault, FaultRecord};
+use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::servo::Step;
 use crate::servo_loop::State;
@@ -64,6 +65,12 @@ pub enum ToBoard {
     Stream(Option<NonZeroU32>),
     /// What exactly is running? Answered by [`ToHost::Described`].
     Describe,
+    /// Align a brushless motor on the board's bridge, which moves the handle. Answered by
+    /// [`ToHost::Answer`] once it begins; the state is then [`State::Aligning`] until it has ended.
+    Align {
+        /// Comes back with the answer.
+        id: Id,
+    },
 }
 
 /// Replies and telemetry. `S` is text.
@@ -147,6 +154,8 @@ pub enum Refusal {
     Fault(FaultCode),
     /// This step failed; [`Description::explain`] has the reason.
     Set(Step),
+    /// No alignment begins: because of this fault, or because the servo is armed.
+    NotAligning(Option<FaultCode>),
 }
 
 impl fmt::Display for Refusal {
@@ -160,6 +169,10 @@ impl fmt::Display for Refusal {
                                             that",
             ),
             Self::Fault(fault) => write!(f, "not armed: {fault}"),
+            Self::NotAligning(Some(fault)) => write!(f, "no alignment begins: {fault}"),
+            Self::NotAligning(None) => f.write_str(
+                "no alignment begins: the servo is armed, and an alignment moves the handle; disarm it first",
+            ),
             Self::Set(step) => write!(
                 f,
                 "the board refused the set by its {}, and this program cannot reproduce the \
@@ -203,6 +216,8 @@ pub struct Status {
     pub stack_left: Option<u32>,
     /// Why the board was last reset.
     pub reset: ResetCause,
+    /// What its power stage measures, where the torque is that of its own bridge.
+    pub power: Option<PowerReading>,
 }
 
 /// A [`Fault`] on the wire: a code and two numbers, so that a host that does not know the fault can

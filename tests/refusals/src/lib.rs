@@ -3,6 +3,7 @@
 //! in `tests`.
 
 use firmware::certificate::Certified;
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
 use firmware::encoder::CounterWidth;
 use firmware::environment::{DamperWall, DelayedSpring, Matched};
 use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
@@ -45,3 +46,24 @@ pub const TRANSDUCERS: Transducers = Transducers {
     full_scale_torque: 2.0,
     largest_speed: 100.0,
 };
+
+/// Sensor and motor of a board with a bridge.
+pub const MOTORISED: Transducers =
+    Transducers { full_scale_torque: 1.0, largest_speed: 25.0, ..TRANSDUCERS };
+
+/// A motor that such a board can drive, and its supply.
+pub const DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushed,
+        resistance: 0.6,
+        inductance: 0.12e-3,
+        torque_constant: 0.29,
+    },
+    supply: Supply { lowest: 23.0, highest: 25.2 },
+    bandwidth: 2000.0,
+    largest_temperature: 80.0,
+};
+
+/// Its current loop.
+pub const CURRENT_LOOP: CurrentLoop =
+    CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &MOTORISED, 0.001);

@@ -174,7 +174,11 @@ proptest! {
     /// The whole answer, remedies, sentence and assumptions included.
     #[test]
     fn every_scene_gets_an_answer(scene in scene(), encoder in float(), friction in float()) {
-        let steps = Resolution { encoder: Some(encoder), full_scale: None, friction: Some(friction) };
+        let steps = Resolution {
+            encoder: Some(encoder),
+            friction: Some(friction),
+            ..Resolution::default()
+        };
         let assumptions = Assumptions::of(&scene, &assess_in(&scene, Format::F32), &steps);
         prop_assert!(assumptions.iter().all(|one| one.to_string().len() > 40));
         match certify(&scene) {
@@ -212,7 +216,12 @@ fn a_delay_of_any_size_gets_an_answer() {
             latency: Latency::NONE,
             torque_limit: None,
         };
-        let steps = Resolution { encoder: Some(1e-4), full_scale: Some(1.0), friction: Some(0.01) };
+        let steps = Resolution {
+            encoder: Some(1e-4),
+            full_scale: Some(1.0),
+            friction: Some(0.01),
+            ..Resolution::default()
+        };
         let assessment = assess_in(&scene, Format::F32);
         assert!(matches!(assessment.outcome, Err(Rejection::Invalid(_))), "{assessment:?}");
         assert!(Assumptions::of(&scene, &assessment, &steps).iter().count() > 0);

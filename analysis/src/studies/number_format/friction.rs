@@ -12,11 +12,13 @@ impl FormatProblem {
     pub fn rest(&self, arithmetic: Arithmetic) -> Option<QuantizationBound> {
         // In the units of the servo, since it rounds in those.
         let units = self.units(arithmetic);
-        let Resolution { encoder, full_scale, friction } = self.steps;
+        let Resolution { encoder, full_scale, friction, current, crossing } = self.steps;
         let steps = Resolution {
             encoder: encoder.map(|step| step / units.angle),
             full_scale: full_scale.map(|torque| torque / units.torque),
             friction: friction.map(|torque| torque / units.torque),
+            current: current.map(|torque| torque / units.torque),
+            crossing: crossing.map(|torque| torque / units.torque),
         };
         let scene = units.scene(&self.scene);
         let QuantizationBound { encoder, numbers, converter, in_any_motion, .. } =
@@ -26,6 +28,8 @@ impl FormatProblem {
             encoder: encoder.map(in_newton_metres),
             numbers: in_newton_metres(numbers),
             converter: converter.map(in_newton_metres),
+            current,
+            crossing,
             friction,
             in_any_motion,
         })

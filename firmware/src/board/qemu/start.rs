@@ -141,6 +141,7 @@ where
         reset,
         previous_fault,
         stack_left: || Some(stack::unused()),
+        power: || None,
     };
     statics.link.init_with(|| Link {
         port: serial::open(),

@@ -62,6 +62,14 @@ impl Hardware for Registers {
         self.output.fault()
     }
 
+    fn align(&mut self) -> Result<(), Fault> {
+        self.output.align()
+    }
+
+    fn is_aligning(&mut self) -> bool {
+        self.output.is_aligning()
+    }
+
     #[inline(always)]
     fn periods_since_last(&mut self) -> u32 {
         self.pace.periods_since_last()

@@ -124,6 +124,7 @@ where
         reset,
         previous_fault,
         stack_left: || Some(stack::unused()),
+        power: output::power_reading,
     };
     let session = Session::new(program, margin, info, requests, frame_reader);
     statics.link.init(Link { port, session })

@@ -99,11 +99,14 @@ fn every_fault_comes_back_from_its_code() {
         let fault = PowerFault::decode(code, [7, 9]).unwrap();
         assert_eq!(fault.encode(), (code, [7, 9]));
         assert!(!fault.as_str().is_empty() && fault.to_string().ends_with("again"), "{fault}");
-        // No number belongs to two faults.
-        assert_eq!(crate::fault::Fault::decode(code, [7, 9]), None);
+        // No code belongs to two faults.
+        let decoded = crate::fault::Fault::decode(code, [7, 9]);
+        assert_eq!(decoded, Some(crate::fault::Fault::Power(fault)));
     }
     assert_eq!(PowerFault::decode(13, [0; 2]), None);
-    assert_eq!(PowerFault::decode(23, [0; 2]), None);
+    assert_eq!(PowerFault::decode(23, [0; 2]), Some(PowerFault::NotAligned));
+    assert_eq!(PowerFault::NotAligned.encode(), (23, [0; 2]));
+    assert_eq!(PowerFault::decode(24, [0; 2]), None);
 }
 
 proptest! {

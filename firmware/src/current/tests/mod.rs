@@ -1,11 +1,14 @@
 //! The current loop against motors that are computed by the exact response of each stretch between two edges of
 //! the switches.
 
+mod aligned;
 mod brushed;
+mod brushless;
 mod design;
 mod faults;
 mod follower;
 mod rig;
+mod three_phases;
 
 use super::*;
 use crate::encoder::CounterWidth;
@@ -50,6 +53,19 @@ const PERIOD: f64 = 1e-3;
 const INSTANT: f64 = 25e-6;
 
 const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
+
+/// A motor of seven pole pairs, whose phases have half of the brushed one's resistance.
+const BRUSHLESS_DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushless { pole_pairs: 7 },
+        resistance: 0.3,
+        inductance: 0.15e-3,
+        torque_constant: 0.05,
+    },
+    ..DRIVE
+};
+
+const BRUSHLESS: CurrentLoop = CurrentLoop::checked(&BRUSHLESS_DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
 
 const FULL_SCALE: i16 = 1791;
 

@@ -355,7 +355,7 @@ fn no_motion_has_a_torque_farther_off_than_the_bound_on_its_limit_cycle() {
         let steps = Resolution {
             encoder: Some(core::f64::consts::TAU / COUNTS),
             full_scale: Some(1.0),
-            friction: None,
+            ..Resolution::default()
         };
         for (found, format) in [
             (largest_error::<f32>(&scene, COUNTS), Format::F32),

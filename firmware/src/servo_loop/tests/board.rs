@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::boot::{Booted, Program, Startup, boot};
+use crate::current::{AlignmentError, PowerFault};
 use crate::encoder::RawCount;
 use crate::fault::FaultRecord;
 use crate::reset::ResetCause;
@@ -21,12 +22,18 @@ pub enum Event {
     Feed,
 }
 
+/// What a board says that has no motor to be aligned.
+pub const NO_MOTOR: Fault = Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded));
+
 pub struct Board {
     pub events: Vec<Event>,
     pub count: i32,
     /// What the next tick finds; in time and without trouble again after it.
     pub passed: u32,
     pub elapsed: u32,
+    pub output_fault: Option<Fault>,
+    /// Ticks that an alignment still takes; `None`: there is no motor for one.
+    pub alignment: Option<u32>,
     pub stored: [u32; FaultRecord::WORDS],
     pub reset: ResetCause,
 }
@@ -38,6 +45,8 @@ impl Board {
             count: 0,
             passed: 1,
             elapsed: 300,
+            output_fault: None,
+            alignment: None,
             stored: FaultRecord::NOTHING,
             reset: ResetCause::PowerOn,
         }
@@ -71,6 +80,16 @@ impl Hardware for Board {
     }
     fn amplifier(&mut self, on: bool) {
         self.events.push(Event::Amplifier(on));
+    }
+    fn output_fault(&mut self) -> Option<Fault> {
+        self.output_fault.take()
+    }
+    fn align(&mut self) -> Result<(), Fault> {
+        self.alignment.map(|_| ()).ok_or(NO_MOTOR)
+    }
+    fn is_aligning(&mut self) -> bool {
+        self.alignment = self.alignment.map(|ticks| ticks.saturating_sub(1));
+        self.alignment != Some(0)
     }
     fn periods_since_last(&mut self) -> u32 {
         core::mem::replace(&mut self.passed, 1)

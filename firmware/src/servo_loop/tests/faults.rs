@@ -1,6 +1,7 @@
 //! What stops the servo, one test each; and that arming again is refused while the cause is there.
 
 use super::*;
+use crate::current::PowerFault;
 use crate::reset::ResetCause;
 
 /// The servo has just been stopped by this fault: no torque, amplifier off, a record of it.
@@ -47,6 +48,34 @@ fn a_tick_that_ends_late() {
     let frame = bench.tick(500);
     assert_eq!((frame.slack, frame.state), (0, State::Faulted));
     assert_stopped(&mut bench, Fault::MissedTick { missed: 1, tolerated: 0 });
+    assert_armed_again(&mut bench);
+}
+
+/// What the bridge of a motor board says, which has taken its gates away before.
+const OVER_CURRENT: Fault = Fault::Power(PowerFault::OverCurrent { current: 9000, largest: 8000 });
+
+#[test]
+fn a_bridge_that_took_the_torque_away() {
+    let mut bench = running(&SPRING, 500);
+    bench.board.output_fault = Some(OVER_CURRENT);
+    let frame = bench.tick(500);
+    assert_eq!((frame.code.get(), frame.state), (2048, State::Faulted));
+    assert_stopped(&mut bench, OVER_CURRENT);
+    assert_armed_again(&mut bench);
+}
+
+/// As a supply that is too low before the gates are ever on.
+#[test]
+fn a_bridge_that_cannot_start_is_not_armed_until_it_can() {
+    let mut bench: Bench<Spring, f32, Latched> = Bench::boot(&SPRING, Board::new()).unwrap();
+    bench.board.output_fault = Some(OVER_CURRENT);
+    bench.stand(0, 1);
+    assert_eq!(bench.notices(), []);
+    bench.requests.arm();
+    bench.stand(0, 1);
+    assert_eq!(bench.notices(), [Notice::NotArmed(OVER_CURRENT)]);
+    assert!(!bench.board.is_on());
+    bench.stand(0, 2000);
     assert_armed_again(&mut bench);
 }
 

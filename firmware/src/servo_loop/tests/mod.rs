@@ -1,5 +1,6 @@
 //! The cycle on a board that exists in memory only.
 
+mod alignment;
 mod board;
 mod faults;
 mod frames;

@@ -36,6 +36,7 @@ use crate::certificate::scene_data;
 use crate::environment::Discretize;
 use crate::fault::FaultRecord;
 use crate::number::Number;
+use crate::power_reading::PowerReading;
 use crate::reset::ResetCause;
 use crate::scene::Scene;
 use crate::servo::{OutputMode, PreparedServo, SupportsTiming};
@@ -55,6 +56,8 @@ pub struct BoardInfo {
     pub previous_fault: Option<FaultRecord>,
     /// Bytes of the stack that were never used; returns `None` where the board cannot tell.
     pub stack_left: fn() -> Option<u32>,
+    /// What the power stage measures; returns `None` where the torque is not that of a bridge on the board.
+    pub power: fn() -> Option<PowerReading>,
 }
 
 /// Most notices that one poll takes: more than the queue holds.
@@ -171,6 +174,10 @@ where
                     self.requests.arm();
                 }
             }
+            ToBoard::Align { id } => {
+                self.replies.align(id);
+                self.requests.align();
+            }
             ToBoard::Disarm { id } => {
                 self.replies.disarm(id);
                 self.requests.disarm();
@@ -189,8 +196,17 @@ where
             Notice::Status(status) => self.replies.status = Some(status),
             Notice::Armed => self.replies.switched(true, Ok(())),
             Notice::NotArmed(fault) => self.replies.switched(true, Err(fault)),
+            Notice::Aligning => self.replies.aligning(Outcome::Done),
+            Notice::NotAligning(fault) => {
+                let refusal = Refusal::NotAligning(fault.map(FaultCode::from));
+                self.replies.aligning(Outcome::Refused(refusal));
+            }
             // A servo that has stopped is as disarmed as it was to be.
-            Notice::Disarmed | Notice::Stopped(_) => self.replies.switched(false, Ok(())),
+            Notice::Disarmed | Notice::Stopped(_) => {
+                self.replies.switched(false, Ok(()));
+                // Disarming went before it.
+                self.replies.aligning(Outcome::Refused(Refusal::Disarming));
+            }
             Notice::Applied => {
                 if let Some((id, set)) = self.submitted.take() {
                     self.active = set;
@@ -296,6 +312,7 @@ where
             discarded: self.decoder.discarded(),
             stack_left: (self.info.stack_left)(),
             reset: self.info.reset,
+            power: (self.info.power)(),
         }
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct PendingReplies {
     pub status: Option<Status>,
     /// The request to switch the amplifier on (`true`) or off that the servo has not confirmed yet.
     switching: Option<(Id, bool)>,
+    /// The request to align the motor that the servo has not answered yet.
+    aligning: Option<Id>,
     answers: Deque<(Id, Outcome), ANSWERS>,
 }
 
@@ -81,6 +83,18 @@ impl PendingReplies {
                     Err(fault) => Outcome::Refused(Refusal::Fault(fault.into())),
                 },
             );
+        }
+    }
+
+    /// Records a request to align the motor; one that was not answered yet is answered with it.
+    pub(super) fn align(&mut self, id: Id) {
+        self.aligning = Some(id);
+    }
+
+    /// The alignment has begun, or not.
+    pub(super) fn aligning(&mut self, outcome: Outcome) {
+        if let Some(id) = self.aligning.take() {
+            self.answer(id, outcome);
         }
     }
 

@@ -21,7 +21,7 @@ use crate::servo::{Latched, RenderingOptions, Step, Transducers};
 use crate::servo_loop::{Frame, FrameQueue, Frames, Hardware, Inbox, Mailbox, ServoLoop, State};
 use crate::tuning::RenderError;
 use crate::wire::message::LONGEST_TO_HOST;
-use crate::wire::{encode, largest_frame};
+use crate::wire::{Discarded, encode, largest_frame};
 
 type Wall = OneSided<DamperWall<1>>;
 
@@ -72,6 +72,10 @@ impl Hardware for Still {
 
 type Said = ToHost<String>;
 
+/// Of a board with a bridge; the numbers are as long as they get.
+const READING: PowerReading =
+    PowerReading { current: i32::MIN, reference: 400, voltage: u32::MAX, temperature: i32::MIN };
+
 /// Frames that wait.
 const FRAMES: usize = 32;
 
@@ -101,6 +105,7 @@ impl Bench {
             reset,
             previous_fault,
             stack_left: || Some(77),
+            power: || Some(READING),
         };
         requests.arm();
         let session = Session::new(program, prepared.margin, info, requests, queue);
@@ -176,6 +181,33 @@ fn refused(id: Id, refusal: Refusal) -> Said {
 }
 
 /// With everything that a description can have, and numbers that take all their bytes.
+fn longest_status(fault: FaultCode) -> Status {
+    let discarded = u32::MAX;
+    Status {
+        state: State::Faulted,
+        fault: Some(fault),
+        link_lost: true,
+        tick: u32::MAX,
+        count: i64::MIN,
+        sets: u32::MAX,
+        missed: u32::MAX,
+        worst_slack: u32::MAX,
+        energy: i64::MIN,
+        worst_deficit: i64::MAX,
+        dropped: u32::MAX,
+        thinned: u32::MAX,
+        discarded: Discarded {
+            broken: discarded,
+            too_long: discarded,
+            checksum: discarded,
+            unknown: discarded,
+        },
+        stack_left: Some(u32::MAX),
+        reset: ResetCause::OptionBytes,
+        power: Some(READING),
+    }
+}
+
 fn largest_description() -> Description {
     let wall = crate::environment::Wall {
         stiffness: 1.0,
@@ -307,6 +339,12 @@ fn a_refused_set_changes_nothing_and_its_host_has_the_compilers_sentence() {
 }
 
 #[test]
+fn a_status_has_what_the_board_itself_knows() {
+    let Status { stack_left, power, reset, .. } = Bench::new(None).status();
+    assert_eq!((stack_left, power, reset), (Some(77), Some(READING), ResetCause::Pin));
+}
+
+#[test]
 fn one_set_at_a_time() {
     let mut bench = Bench::new(None);
     bench.run(500);
@@ -409,6 +447,7 @@ fn every_message_fits_its_frame() {
     for message in [
         Said::Telemetry(batch),
         ToHost::Answer { id: u16::MAX, outcome },
+        ToHost::Status(longest_status(fault)),
         ToHost::ActiveParameters(ActiveParameters {
             sets: u32::MAX,
             margin: Some(1.0),

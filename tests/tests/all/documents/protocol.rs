@@ -59,6 +59,7 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "Board"),
         (MESSAGES, "ActiveParameters"),
         (MESSAGES, "Status"),
+        ("firmware/src/power_reading.rs", "PowerReading"),
         (MESSAGES, "FaultCode"),
         (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),

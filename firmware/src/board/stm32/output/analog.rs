@@ -6,6 +6,7 @@ use crate::build_error::BuildError;
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
+use crate::power_reading::PowerReading;
 use crate::torque_output::TorqueOutput;
 
 /// What this output has to know of a program: nothing.
@@ -58,6 +59,11 @@ pub fn off() {
 /// Zero torque at once, without the timer.
 pub fn stop() {
     DAC.stop();
+}
+
+/// An amplifier outside tells nothing of what it measures.
+pub fn power_reading() -> Option<PowerReading> {
+    None
 }
 
 /// The DAC needs to know nothing of a program, and drives no motor that is the bridge's.

@@ -2,7 +2,8 @@
 //! by the feature `bridge`.
 //!
 //! Each of the two has the same names for the rest of the board: [`Output`] and its [`Setup`], the [`Pace`]
-//! of the servo's interrupt, and [`off`] and [`stop`] for a program that has come to its end.
+//! of the servo's interrupt, [`power_reading`] for the host, and [`off`] and [`stop`] for a program that has come
+//! to its end.
 
 #[cfg(not(feature = "bridge"))]
 mod analog;
@@ -16,8 +17,8 @@ pub mod pin;
 mod tick_timer;
 
 #[cfg(not(feature = "bridge"))]
-pub use analog::{Output, Setup, off, stop};
+pub use analog::{Output, Setup, off, power_reading, stop};
 #[cfg(feature = "bridge")]
-pub use bridge::{Output, Pace, Setup, off, stop};
+pub use bridge::{Output, Pace, Setup, off, power_reading, stop};
 #[cfg(not(feature = "bridge"))]
 pub use tick_timer::TickTimer as Pace;

@@ -6,8 +6,10 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, off, pace, pwm, sense, tell};
-use crate::current::{CurrentController, CurrentLoop, PowerFault, Sample};
+use super::{STATE, State, WAITING, latest, off, pace, pwm, sense, tell};
+use crate::current::{
+    Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
+};
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
 
@@ -21,6 +23,8 @@ pub struct CurrentIsr {
     instant: u32,
     /// The instant at which a code becomes the reference.
     due: u32,
+    /// The alignment that runs.
+    alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
     reference: i16,
 }
@@ -34,6 +38,7 @@ impl CurrentIsr {
             updates: current_loop.updates().into(),
             instant: 1 % u32::from(current_loop.updates()),
             due: current_loop.instants_in(timing),
+            alignment: None,
             reference: 0,
         }
     }
@@ -59,9 +64,12 @@ impl CurrentIsr {
             self.drive(&sample);
         } else {
             cold_path();
-            self.idle(&sample);
+            self.otherwise(&sample);
         }
-        // Bookkeeping: the servo, below this.
+        // Bookkeeping: the host, and the servo, both below this.
+        if begins {
+            latest::keep(&sample, self.controller.current());
+        }
         self.instant += 1;
         if self.instant == self.updates {
             self.instant = 0;
@@ -91,20 +99,46 @@ impl CurrentIsr {
         }
     }
 
-    /// With the gates low: the offsets of the amplifiers, and the beginning where it is wanted.
+    /// All instants but those of a servo that drives the motor.
     #[cold]
     #[inline(never)]
-    fn idle(&mut self, sample: &Sample) {
+    fn otherwise(&mut self, sample: &Sample) {
+        let state = STATE.load(Ordering::Relaxed);
+        if state == State::Aligning as u8 {
+            return self.align(sample);
+        }
+        // With the gates low: the offsets of the amplifiers.
         self.controller.measure_offset(sample);
         pwm::set(self.current_loop, self.current_loop.no_voltage());
-        if STATE.load(Ordering::Relaxed) != State::Starting as u8 {
+        let started = if state == State::Starting as u8 {
+            self.controller.start().map(|()| State::On)
+        } else if state == State::StartingAlignment as u8 {
+            self.controller.start_alignment().map(|alignment| {
+                self.alignment = Some(alignment);
+                State::Aligning
+            })
+        } else {
             return;
-        }
-        match self.controller.start() {
-            Ok(()) => {
-                STATE.store(State::On as u8, Ordering::Relaxed);
+        };
+        match started {
+            Ok(state) => {
+                STATE.store(state as u8, Ordering::Relaxed);
                 pwm::on();
             }
+            Err(fault) => stop(fault),
+        }
+    }
+
+    /// An instant of an alignment.
+    fn align(&mut self, sample: &Sample) {
+        if pwm::broke() {
+            return stop(self.controller.over_current(sample));
+        }
+        let Some(alignment) = &mut self.alignment else { return off() };
+        match self.controller.align(sample, alignment) {
+            Ok(AlignmentStep::Turning(duties)) => pwm::set(self.current_loop, duties),
+            Ok(AlignmentStep::Ended(Ok(_))) => off(),
+            Ok(AlignmentStep::Ended(Err(error))) => stop(PowerFault::Alignment(error)),
             Err(fault) => stop(fault),
         }
     }

@@ -17,6 +17,7 @@
 //! current by [hardware](over_current) alone.
 
 mod interrupt;
+mod latest;
 mod over_current;
 mod pace;
 mod pwm;
@@ -29,12 +30,13 @@ use embassy_stm32::interrupt as interrupts;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 
 pub use interrupt::CurrentIsr;
+pub use latest::power_reading;
 pub use pace::Pace;
 
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{CurrentLoop, PowerFault};
+use crate::current::{AlignmentError, CurrentLoop, PowerFault, Winding};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
@@ -72,11 +74,17 @@ enum State {
     Starting,
     /// Driven.
     On,
+    /// The current interrupt is asked to begin an alignment.
+    StartingAlignment,
+    /// Driven by an alignment.
+    Aligning,
 }
 
 /// The bridge, for the servo's interrupt.
 #[derive(Debug)]
-pub struct Output(());
+pub struct Output {
+    is_brushed: bool,
+}
 
 impl Output {
     /// The bridge with its gates low, and what paces the servo; nothing runs yet.
@@ -89,10 +97,12 @@ impl Output {
         GATES.connect(current_loop.phases());
         over_current::prepare(current_loop.over_current_counts());
         sense::prepare();
+        latest::of(current_loop);
         // SAFETY: the interrupt that uses the place is not enabled yet.
         unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        Ok((Self(()), Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        let is_brushed = matches!(current_loop.winding(), Winding::Brushed);
+        Ok((Self { is_brushed }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Lets the current interrupt begin, with the gates low.
@@ -120,6 +130,21 @@ impl TorqueOutput for Output {
         if STATE.load(Ordering::Relaxed) == State::Off as u8 {
             STATE.store(State::Starting as u8, Ordering::Relaxed);
         }
+    }
+
+    fn align(&mut self) -> Result<(), Fault> {
+        if self.is_brushed {
+            return Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)));
+        }
+        if STATE.load(Ordering::Relaxed) == State::Off as u8 {
+            STATE.store(State::StartingAlignment as u8, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+
+    fn is_aligning(&self) -> bool {
+        let state = STATE.load(Ordering::Relaxed);
+        state == State::StartingAlignment as u8 || state == State::Aligning as u8
     }
 
     #[inline(always)]

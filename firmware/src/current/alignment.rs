@@ -1,0 +1,299 @@
+//! How the phase of a brushless motor is found: a field turns slowly, and the magnets follow it.
+//!
+//! ```text
+//! current  /-----------------------------------------------------\
+//! angle    0   0  90  180  270  360  450  360  270  180  90   0
+//! ```
+//!
+//! At each stop the handle settles, and its count is taken. Both from 90 to 450 degrees and from 360 back to 0
+//! are a whole electrical turn between two stops that are approached from the same side, so that neither
+//! friction nor cogging is in the number of counts between them. The phase is the mean over all stops but the
+//! first, to which the magnets need not have come: with friction of the same size on both ways, the
+//! mean has none of it.
+
+use core::fmt;
+
+use super::current_loop::CurrentLoop;
+use super::motor::Winding;
+use super::phase::{PhaseAlignment, Turn};
+use super::sample::Duties;
+
+/// Current of the field, as a part of that of full-scale torque.
+const PART: f32 = 0.25;
+
+/// Times in s: of a ramp of the current, of a quarter of a turn, and of a stop.
+const RAMP: f64 = 0.3;
+const QUARTER: f64 = 0.3;
+const STOP: f64 = 0.25;
+
+/// Stops, and those after which the field turns back.
+const STOPS: usize = 11;
+const FORTH: usize = 5;
+
+/// What the handle may be off from what turns by a whole electrical turn, at the most.
+const TOLERANCE: f32 = 0.125;
+
+/// How far the stops may be from their mean, in parts of a turn of 2^32: a twelfth of a turn, at which 13 per cent
+/// of the torque would be lost.
+const SPREAD: u32 = u32::MAX / 12;
+
+/// The field that an alignment wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Field {
+    /// Electrical angle in parts of a turn of 2^32.
+    pub angle: u32,
+    /// Current as a part of that of full-scale torque.
+    pub current: f32,
+}
+
+/// What an instant of an alignment brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlignmentStep {
+    /// It goes on: compare values for the next instant.
+    Turning(Duties),
+    /// It has ended: the gates are to be switched off, and here is its result.
+    Ended(Result<PhaseAlignment, AlignmentError>),
+}
+
+/// Why a motor could not be aligned. Counts are those of an electrical turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlignmentError {
+    /// No motor whose field this board turns: a brushed one, or that of an amplifier outside.
+    NotNeeded,
+    /// The handle did not move.
+    Blocked {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts of an electrical turn.
+        expected: i32,
+    },
+    /// The handle moved, but not by an electrical turn.
+    PolePairs {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts of an electrical turn.
+        expected: i32,
+    },
+    /// The handle did not come back as it went.
+    NotReturned {
+        /// Counts that it moved.
+        moved: i32,
+        /// Counts that it moved back.
+        returned: i32,
+    },
+    /// The stops are not where a field would bring the magnets.
+    Uneven {
+        /// The worst of them, in degrees of an electrical turn.
+        degrees: i32,
+        /// The most that is allowed.
+        largest: i32,
+    },
+}
+
+impl AlignmentError {
+    /// The error as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
+    pub(super) const fn encode(self) -> (u32, [u32; 2]) {
+        let (code, [a, b]) = match self {
+            Self::NotNeeded => (24, [0; 2]),
+            Self::Blocked { moved, expected } => (25, [moved, expected]),
+            Self::PolePairs { moved, expected } => (26, [moved, expected]),
+            Self::NotReturned { moved, returned } => (27, [moved, returned]),
+            Self::Uneven { degrees, largest } => (28, [degrees, largest]),
+        };
+        (code, [a.cast_unsigned(), b.cast_unsigned()])
+    }
+
+    /// The error of a code and its numbers; `None` if there is no such error.
+    pub(super) const fn decode(code: u32, numbers: [u32; 2]) -> Option<Self> {
+        let (a, b) = (numbers[0].cast_signed(), numbers[1].cast_signed());
+        Some(match code {
+            24 => Self::NotNeeded,
+            25 => Self::Blocked { moved: a, expected: b },
+            26 => Self::PolePairs { moved: a, expected: b },
+            27 => Self::NotReturned { moved: a, returned: b },
+            28 => Self::Uneven { degrees: a, largest: b },
+            _ => return None,
+        })
+    }
+}
+
+impl fmt::Display for AlignmentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotNeeded => f.write_str(
+                "this motor needs no alignment: it is brushed, or an amplifier outside turns its field",
+            ),
+            Self::Blocked { moved, expected } => write!(
+                f,
+                "the handle moved by {moved} counts, and an electrical turn has {expected}: release it, check \
+                 the wires of motor and encoder, then align again"
+            ),
+            Self::PolePairs { moved, expected } => write!(
+                f,
+                "an electrical turn moved the handle by {moved} counts, and not by {expected}: check the pole \
+                 pairs and the counts per turn, keep the hand off, then align again"
+            ),
+            Self::NotReturned { moved, returned } => write!(
+                f,
+                "the handle moved by {moved} counts and back by {returned}: keep the hand off, check the \
+                 encoder's coupling, then align again"
+            ),
+            Self::Uneven { degrees, largest } => write!(
+                f,
+                "the handle settled {degrees} electrical degrees off the field, and {largest} are allowed: \
+                 friction or cogging is too much for the current of the alignment"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for AlignmentError {}
+
+/// An alignment that runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Alignment {
+    /// Instants of a ramp, of a quarter, of a stop.
+    ramp: u32,
+    quarter: u32,
+    stop: u32,
+    is_brushed: bool,
+    state: State,
+    /// Instants in this state.
+    time: u32,
+    /// Counts since the begin, and their sum over the second half of a stop.
+    moved: i32,
+    sum: i64,
+    /// Where the handle was in its turn at the begin.
+    begin: Turn,
+    stops: [i32; STOPS],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    Rising,
+    /// At a stop.
+    At(usize),
+    /// From a stop to the next one.
+    From(usize),
+    Falling,
+    Ended,
+}
+
+/// Quarters of a turn at which a stop is.
+const fn quarters(stop: usize) -> u32 {
+    (if stop <= FORTH { stop } else { 2 * FORTH - stop }) as u32
+}
+
+impl Alignment {
+    pub(super) const fn new(design: &CurrentLoop, begin: Turn) -> Self {
+        let instants = 1.0 / design.instant;
+        let is_brushed = matches!(design.winding, Winding::Brushed);
+        Self {
+            ramp: (RAMP * instants) as u32,
+            quarter: (QUARTER * instants) as u32,
+            stop: (STOP * instants) as u32,
+            is_brushed,
+            state: if is_brushed { State::Ended } else { State::Rising },
+            time: 0,
+            moved: 0,
+            sum: 0,
+            begin,
+            stops: [0; STOPS],
+        }
+    }
+
+    /// An instant, in which the handle moved by so many counts; gives the field for the next one, and none after
+    /// the end.
+    pub(super) const fn step(&mut self, moved: i32) -> Option<Field> {
+        self.moved = self.moved.wrapping_add(moved);
+        self.time += 1;
+        let (angle, part) = match self.state {
+            State::Rising => (0, self.time as f32 / self.ramp as f32),
+            State::At(stop) => (quarters(stop) << 30, 1.0),
+            State::From(stop) => (self.angle_from(stop), 1.0),
+            State::Falling => (0, 1.0 - self.time as f32 / self.ramp as f32),
+            State::Ended => return None,
+        };
+        self.go_on();
+        Some(Field { angle, current: PART * part })
+    }
+
+    const fn angle_from(&self, stop: usize) -> u32 {
+        let part = ((self.time as u64) << 30) / self.quarter as u64;
+        let from = quarters(stop) << 30;
+        if stop < FORTH { from.wrapping_add(part as u32) } else { from.wrapping_sub(part as u32) }
+    }
+
+    const fn go_on(&mut self) {
+        let (next, lasts) = match self.state {
+            State::Rising => (State::At(0), self.ramp),
+            State::At(stop) => {
+                if self.time > self.stop / 2 {
+                    self.sum += self.moved as i64;
+                }
+                let next = if stop + 1 < STOPS { State::From(stop) } else { State::Falling };
+                (next, self.stop)
+            }
+            State::From(stop) => (State::At(stop + 1), self.quarter),
+            State::Falling => (State::Ended, self.ramp),
+            State::Ended => return,
+        };
+        if self.time < lasts {
+            return;
+        }
+        if let State::At(stop) = self.state {
+            self.stops[stop] = (self.sum / (self.stop - self.stop / 2) as i64) as i32;
+            self.sum = 0;
+        }
+        (self.state, self.time) = (next, 0);
+    }
+
+    /// The result, after the end.
+    ///
+    /// # Errors
+    /// Where the handle did not follow the field as the magnets of such a motor do.
+    pub(super) fn result(&self) -> Result<PhaseAlignment, AlignmentError> {
+        if self.is_brushed {
+            return Err(AlignmentError::NotNeeded);
+        }
+        let turn = self.begin.counts_per_electrical_turn();
+        let expected = turn as i32;
+        let moved = self.stops[FORTH] - self.stops[FORTH - 4];
+        let returned = self.stops[FORTH + 1] - self.stops[FORTH + 5];
+        if moved.unsigned_abs() < expected.unsigned_abs() / 8 {
+            return Err(AlignmentError::Blocked { moved, expected });
+        }
+        // A pole pair more or less is twice as much.
+        let tolerance = TOLERANCE.min(0.5 / (1.0 + self.begin.pole_pairs() as f32));
+        if (moved.abs() as f32 - turn).abs() > tolerance * turn {
+            return Err(AlignmentError::PolePairs { moved, expected });
+        }
+        if (moved - returned).abs() as f32 > 2.0 * tolerance * turn {
+            return Err(AlignmentError::NotReturned { moved, returned });
+        }
+        self.offset(moved < 0)
+    }
+
+    /// The mean of all stops but the first.
+    fn offset(&self, is_reversed: bool) -> Result<PhaseAlignment, AlignmentError> {
+        let at = |stop: usize| {
+            let mut turn = self.begin;
+            turn.move_by(self.stops[stop]);
+            let since_zero = PhaseAlignment { offset: 0, is_reversed }.angle(turn.angle());
+            (quarters(stop) << 30).wrapping_sub(since_zero)
+        };
+        let from_first = |stop: usize| i64::from(at(stop).wrapping_sub(at(1)).cast_signed());
+        let mean = (1..STOPS).map(from_first).sum::<i64>() / (STOPS as i64 - 1);
+        let offset = at(1).wrapping_add(mean as u32);
+        let off = |stop: usize| at(stop).wrapping_sub(offset).cast_signed().unsigned_abs();
+        let worst = (1..STOPS).map(off).fold(0, u32::max);
+        if worst > SPREAD {
+            let degrees = |angle: u32| ((u64::from(angle) * 360) >> 32) as i32;
+            return Err(AlignmentError::Uneven {
+                degrees: degrees(worst),
+                largest: degrees(SPREAD) + 1,
+            });
+        }
+        Ok(PhaseAlignment { offset, is_reversed })
+    }
+}

@@ -1,0 +1,92 @@
+//! The phase of a brushless motor, from the counts of an encoder.
+//!
+//! Angles are parts of an electrical turn in 32 bits, which wrap as turns do.
+
+/// Where the handle is in its turn: in whole counts, so that nothing is lost after any number of turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    /// From zero to one below the counts of a turn.
+    count: i32,
+    counts: i32,
+    /// Electrical turns in a count, times 2^64: over the counts of a turn its rounding adds up to less than a
+    /// part in 2^40 of a turn.
+    scale: u64,
+    pole_pairs: u16,
+}
+
+impl Turn {
+    /// A quarter of a turn.
+    pub(super) const QUARTER: u32 = 1 << 30;
+
+    /// At the count 0 of an encoder with so many of them a turn.
+    pub(super) const fn new(counts: u32, pole_pairs: u16) -> Self {
+        let whole = (pole_pairs as u128) << 64;
+        // The quotient is below 2^59: no electrical turn has fewer than 64 counts.
+        let scale = ((whole + counts as u128 / 2) / counts as u128) as u64;
+        Self { count: 0, counts: counts.cast_signed(), scale, pole_pairs }
+    }
+
+    /// Goes on by a step.
+    #[inline(always)]
+    pub(super) const fn move_by(&mut self, step: i32) {
+        let mut count = self.count.wrapping_add(step);
+        if count < 0 {
+            count = count.wrapping_add(self.counts);
+        } else if count >= self.counts {
+            count -= self.counts;
+        }
+        self.count = if 0 <= count && count < self.counts { count } else { self.far(step) };
+    }
+
+    /// After a step of more than a turn, which no handle makes.
+    #[cold]
+    #[inline(never)]
+    const fn far(&self, step: i32) -> i32 {
+        (self.count as i64 + step as i64).rem_euclid(self.counts as i64) as i32
+    }
+
+    /// The count in its turn.
+    pub(super) const fn count(&self) -> i32 {
+        self.count
+    }
+
+    /// Electrical angle since the count 0.
+    #[inline(always)]
+    pub(super) const fn angle(&self) -> u32 {
+        ((self.count as u64).wrapping_mul(self.scale) >> 32) as u32
+    }
+
+    /// Electrical turns in a turn.
+    pub(super) const fn pole_pairs(&self) -> u16 {
+        self.pole_pairs
+    }
+
+    /// Counts in an electrical turn.
+    pub(super) const fn counts_per_electrical_turn(&self) -> f32 {
+        self.counts as f32 / self.pole_pairs as f32
+    }
+}
+
+/// How the phase of a motor belongs to the counts of its encoder: the result of an [`Alignment`](super::Alignment).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhaseAlignment {
+    /// Electrical angle at the count 0, in parts of a turn of 2^32.
+    pub offset: u32,
+    /// Whether it falls while the count rises: the encoder, or two of the motor's wires, are the other way round.
+    pub is_reversed: bool,
+}
+
+impl PhaseAlignment {
+    /// The angle of the motor's magnets, for their angle since the count 0 as the encoder has it.
+    #[inline(always)]
+    pub(super) const fn angle(&self, since_zero: u32) -> u32 {
+        let angle = if self.is_reversed { since_zero.wrapping_neg() } else { since_zero };
+        self.offset.wrapping_add(angle)
+    }
+
+    /// The sign of a current, or a speed, that is positive in the direction in which the count rises.
+    #[inline(always)]
+    pub(super) const fn sign(&self) -> f32 {
+        if self.is_reversed { -1.0 } else { 1.0 }
+    }
+}

@@ -1,0 +1,167 @@
+//! A brushless motor whose phase is known.
+
+use super::super::phase::Turn;
+use super::three_phases::ThreePhases;
+use super::*;
+
+const STEPS: [(usize, i16); 4] = [(3, FULL_SCALE), (100, -FULL_SCALE), (140, 300), (300, 0)];
+
+/// Deviation in A that counts may leave, with the ripple at the samples.
+fn allowed(design: &CurrentLoop) -> f64 {
+    design.resolution().deviation / design.torque_per_amp() + 0.01
+}
+
+/// Largest deviations, along and across the magnets, from the certified current.
+fn deviations(rig: &mut ThreePhases, steps: &[(usize, i16)], begin: usize, end: usize) -> [f64; 2] {
+    let mut most = [0.0_f64; 2];
+    for instant in 0..end {
+        let code = steps.iter().rev().find(|step| step.0 <= instant).map_or(0, |step| step.1);
+        let [along, across] = rig.currents();
+        if instant >= begin {
+            let off = across - certified_current(&BRUSHLESS, steps, instant);
+            most = [most[0].max(along.abs()), most[1].max(off.abs())];
+        }
+        rig.instant(code).unwrap();
+    }
+    most
+}
+
+#[test]
+fn the_current_across_the_magnets_is_the_certified_one_and_none_is_along_them() {
+    for angle in 0..12 {
+        let mut rig = ThreePhases::started(&BRUSHLESS);
+        rig.offset = f64::from(angle) / 12.0 * std::f64::consts::TAU;
+        rig = started_again(rig);
+        let [along, across] = deviations(&mut rig, &STEPS, 0, 600);
+        let allowed = allowed(&BRUSHLESS);
+        assert!(along < allowed && across < allowed, "{angle}: {along}, {across} of {allowed}");
+        assert!(across > 0.1 * allowed, "{angle}: {across}");
+    }
+}
+
+fn started_again(mut rig: ThreePhases) -> ThreePhases {
+    let offset = (rig.offset / std::f64::consts::TAU * 2_f64.powi(32)) as u32;
+    rig.controller.set_phase(PhaseAlignment { offset, is_reversed: false });
+    rig.controller.start().unwrap();
+    rig
+}
+
+#[test]
+fn at_the_largest_speed_it_is_the_same_once_the_speed_is_known() {
+    for speed in [100.0, -100.0] {
+        let mut rig = ThreePhases::started(&BRUSHLESS);
+        // From rest, as a hand would.
+        for instant in 0..4000 {
+            rig.speed = speed * f64::from(instant) / 4000.0;
+            rig.instant(0).unwrap();
+        }
+        rig.speed = speed;
+        for _ in 0..400 {
+            rig.instant(0).unwrap();
+        }
+        let [along, across] = deviations(&mut rig, &STEPS, 0, 600);
+        // What two terms of the small angle and the turning magnets leave of a step.
+        assert!(along < 0.2 && across < 0.2, "{speed}: {along}, {across}");
+        let [along, across] = deviations(&mut rig, &[(0, 0)], 100, 400);
+        assert!(along < allowed(&BRUSHLESS) && across < allowed(&BRUSHLESS), "{along}, {across}");
+    }
+}
+
+#[test]
+fn a_motor_that_is_off_by_a_third_settles() {
+    for (resistance, inductance) in [(1.4, 1.0), (1.0, 0.7), (1.0, 1.3), (1.4, 0.7), (1.4, 1.3)] {
+        let mut rig = ThreePhases::started(&BRUSHLESS);
+        rig.motor.resistance *= resistance;
+        rig.motor.inductance *= inductance;
+        let steps = [(3, FULL_SCALE), (100, -FULL_SCALE)];
+        let [along, across] = deviations(&mut rig, &steps, 0, 200);
+        assert!(along < 1.0 && across < 2.4, "{resistance}, {inductance}: {along}, {across}");
+        for _ in 0..200 {
+            rig.instant(-FULL_SCALE).unwrap();
+        }
+        let settled = (rig.currents()[1] + 4.0).abs();
+        assert!(settled < allowed(&BRUSHLESS), "{resistance}, {inductance}: {settled}");
+    }
+}
+
+#[test]
+fn a_voltage_that_is_not_enough_stays_in_the_circle() {
+    let mut rig = ThreePhases::started(&BRUSHLESS);
+    let fault = (0..4000).find_map(|instant| {
+        rig.speed = 0.3 * f64::from(instant);
+        rig.instant(FULL_SCALE).err()
+    });
+    let Some(PowerFault::SaturatedDuty { .. }) = fault else { panic!("{fault:?}, {}", rig.speed) };
+    // 24 V of a circle are 12 V, less 1.2 V and what a ramp takes.
+    assert!((250.0..420.0).contains(&rig.speed), "{}", rig.speed);
+}
+
+#[test]
+fn needs_an_alignment() {
+    let mut rig = ThreePhases::off(&BRUSHLESS).measured();
+    assert_eq!(rig.controller.start(), Err(PowerFault::NotAligned));
+    assert_eq!(rig.instant(0), Err(PowerFault::NotAligned));
+}
+
+/// Against 128 bits, after millions of turns both ways.
+#[test]
+fn a_phase_does_not_drift() {
+    for (counts, pole_pairs) in
+        [(61_440_u32, 7_u16), (4096, 11), (1000, 3), (8191, 21), (16_777_213, 5)]
+    {
+        let mut turn = Turn::new(counts, pole_pairs);
+        let mut position = 0_i64;
+        for k in 0..2_000_000_i64 {
+            let step = (k * k * 7919 % 2003 - 900) as i32 % (counts as i32 - 1);
+            turn.move_by(step);
+            position += i64::from(step);
+        }
+        for step in [counts as i32 * 3 + 5, -(counts as i32) * 100, i32::MAX, i32::MIN, 0, 1, -1] {
+            turn.move_by(step);
+            position += i64::from(step);
+            let within = position.rem_euclid(i64::from(counts)) as u128;
+            assert_eq!(turn.count() as u128, within);
+            let exact = ((within * u128::from(pole_pairs)) << 32) / u128::from(counts);
+            let off = turn.angle().wrapping_sub(exact as u32).cast_signed();
+            assert!(off.abs() <= 1, "{counts}, {pole_pairs}: {off}");
+        }
+    }
+}
+
+#[test]
+fn an_index_stays_where_it_was() {
+    let mut check = IndexCheck::new(61_440);
+    assert_eq!(
+        (check.aligned(), check.observe(61_439), check.aligned()),
+        (None, Ok(()), Some(61_439))
+    );
+    assert_eq!((check.observe(2), check.observe(61_436)), (Ok(()), Ok(())));
+    let mismatch = PowerFault::IndexMismatch { count: 10, aligned: 61_439 };
+    assert_eq!(check.observe(10), Err(mismatch));
+    assert_eq!(
+        IndexCheck::stored(4096, 100).observe(2000).unwrap_err().encode(),
+        (21, [2000, 100])
+    );
+}
+
+#[test]
+fn refusals_of_a_brushless_motor_name_the_value_and_its_bound() {
+    let refused = |pole_pairs: u16, transducers: Transducers| {
+        let motor = Motor { winding: Winding::Brushless { pole_pairs }, ..BRUSHLESS_DRIVE.motor };
+        let drive = Drive { motor, ..BRUSHLESS_DRIVE };
+        CurrentLoop::design(&drive, &STAGE, &transducers, PERIOD).unwrap_err().to_string()
+    };
+    let coarse = Transducers { counts_per_turn: 1000.0, ..TRANSDUCERS };
+    let told = "pole pairs must be at least 1, and at most as many as leave an electrical turn 64 encoder counts, \
+                so that no torque is lost between two of them: 15";
+    assert_eq!(refused(0, coarse), format!("the motor's 0 {told}"));
+    assert_eq!(refused(16, coarse), format!("the motor's 16 {told}"));
+    let broken = Transducers { counts_per_turn: 1000.5, ..TRANSDUCERS };
+    assert!(refused(7, broken).starts_with("a turn has 1000.5 encoder counts, and the phase"));
+    let told = refused(100, Transducers { largest_speed: 100.0, ..TRANSDUCERS });
+    assert_eq!(
+        told,
+        "at the largest speed the motor makes 1591.549431 electrical turns a second, and a 32nd of the \
+         modulation's frequency is 1250: lower the largest speed"
+    );
+}

@@ -1,0 +1,177 @@
+//! A brushless motor on a power stage, in memory.
+
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::encoder::RawCount;
+
+/// A motor with its handle, its supply and its encoder, and a controller.
+pub struct ThreePhases {
+    pub controller: CurrentController,
+    pub motor: Motor,
+    pub pole_pairs: f64,
+    /// The winding to which each of the bridge's phases is connected.
+    pub wires: [usize; 3],
+    /// 1, or -1 of an encoder that counts down where the handle turns up.
+    pub encoder: f64,
+    pub bus: f64,
+    /// Electrical angle at the handle's angle 0, in rad.
+    pub offset: f64,
+    /// Angle in rad and speed in rad/s of the handle.
+    pub angle: f64,
+    pub speed: f64,
+    /// What moves the handle; it turns with its speed where there is none.
+    pub handle: Option<Handle>,
+    /// Whether each edge of the switches is computed, or the mean of a period.
+    pub edges: bool,
+    /// Current in U's direction and across it, of the windings, in A.
+    current: [f64; 2],
+    loaded: Duties,
+}
+
+/// A handle that can turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Handle {
+    pub inertia: f64,
+    pub damping: f64,
+    /// Coulomb friction in N m.
+    pub friction: f64,
+    /// Amplitude in N m, and periods a turn.
+    pub cogging: (f64, f64),
+}
+
+const ROOT_3: f64 = 1.732_050_807_568_877_2;
+
+fn phases([along, across]: [f64; 2]) -> [f64; 3] {
+    let part = across * ROOT_3 / 2.0;
+    [along, -along / 2.0 + part, -along / 2.0 - part]
+}
+
+impl ThreePhases {
+    pub fn off(design: &CurrentLoop) -> Self {
+        Self {
+            controller: CurrentController::new(design),
+            motor: BRUSHLESS_DRIVE.motor,
+            pole_pairs: 7.0,
+            wires: [0, 1, 2],
+            encoder: 1.0,
+            bus: 24.0,
+            offset: 1.0,
+            angle: 0.0,
+            speed: 0.0,
+            handle: None,
+            edges: true,
+            current: [0.0; 2],
+            loaded: design.no_voltage(),
+        }
+    }
+
+    /// Offsets are measured.
+    pub fn measured(mut self) -> Self {
+        for _ in 0..300 {
+            self.controller.measure_offset(&self.sample());
+        }
+        self
+    }
+
+    /// The gates have just been switched on, and the phase is known.
+    pub fn started(design: &CurrentLoop) -> Self {
+        let mut rig = Self::off(design).measured();
+        let offset = (rig.offset / TAU * 2_f64.powi(32)) as u32;
+        rig.controller.set_phase(PhaseAlignment { offset, is_reversed: false });
+        rig.controller.start().unwrap();
+        rig
+    }
+
+    fn electrical(&self) -> f64 {
+        self.offset + self.pole_pairs * self.angle
+    }
+
+    /// Current along and across the magnets in A.
+    pub fn currents(&self) -> [f64; 2] {
+        let (sine, cosine) = self.electrical().sin_cos();
+        let [along, across] = self.current;
+        [along * cosine + across * sine, across * cosine - along * sine]
+    }
+
+    pub fn torque(&self) -> f64 {
+        self.motor.torque_constant * self.currents()[1]
+    }
+
+    /// Largest current of a winding in A.
+    pub fn largest(&self) -> f64 {
+        phases(self.current).into_iter().fold(0.0, |most, current| most.max(current.abs()))
+    }
+
+    pub fn sample(&self) -> Sample {
+        let count = |value: f64| value.round().clamp(0.0, 4095.0) as u16;
+        let currents = phases(self.current);
+        let of = |phase: usize| count(2048.0 - currents[self.wires[phase]] / STAGE.amps_per_count);
+        let position = self.encoder * self.angle / TAU * TRANSDUCERS.counts_per_turn;
+        Sample {
+            currents: [of(0), of(1)],
+            bus: count(self.bus / STAGE.volts_per_count),
+            temperature: STAGE.thermistor.count(30.0),
+            position: RawCount::from(position.floor() as i64 as u32),
+        }
+    }
+
+    /// An instant with this code, and the time until the next one.
+    pub fn instant(&mut self, code: i16) -> Result<(), PowerFault> {
+        let duties = self.controller.step(&self.sample(), code)?;
+        self.pass_with(duties);
+        Ok(())
+    }
+
+    /// The time until the next instant, for which these are loaded.
+    pub fn pass_with(&mut self, duties: Duties) {
+        let counts = f64::from(BRUSHLESS.timer_counts());
+        let compare = self.loaded.0.map(f64::from);
+        assert!(compare.iter().all(|&compare| compare <= counts), "{:?}", self.loaded);
+        if self.edges {
+            let mut edges = vec![0.0, 2.0 * counts];
+            edges.extend(compare.iter().flat_map(|compare| [counts - compare, counts + compare]));
+            edges.sort_by(f64::total_cmp);
+            for edge in edges.windows(2) {
+                let middle = (edge[0] + edge[1]) / 2.0;
+                let legs = compare.map(|compare| f64::from((middle - counts).abs() < compare));
+                self.pass((edge[1] - edge[0]) / (2.0 * counts) * INSTANT, legs);
+            }
+        } else {
+            self.pass(INSTANT, compare.map(|compare| compare / counts));
+        }
+        self.turn();
+        self.loaded = duties;
+    }
+
+    /// A time with the bridge's phases at these parts of the supply. The handle turns on with it.
+    fn pass(&mut self, time: f64, legs: [f64; 3]) {
+        let mut windings = [0.0; 3];
+        for (leg, wire) in legs.into_iter().zip(self.wires) {
+            windings[wire] = leg * self.bus;
+        }
+        let [a, b, c] = windings;
+        let volts = [(2.0 * a - b - c) / 3.0, (b - c) / ROOT_3];
+        self.angle += self.speed * time / 2.0;
+        let induced = self.motor.torque_constant * 2.0 / 3.0 * self.speed;
+        let (sine, cosine) = self.electrical().sin_cos();
+        let emf = [-induced * sine, induced * cosine];
+        let Motor { resistance, inductance, .. } = self.motor;
+        let part = -(-resistance * time / inductance).exp_m1();
+        for axis in 0..2 {
+            let end = (volts[axis] - emf[axis]) / resistance;
+            self.current[axis] += (end - self.current[axis]) * part;
+        }
+        self.angle += self.speed * time / 2.0;
+    }
+
+    fn turn(&mut self) {
+        let Some(handle) = self.handle else { return };
+        let (cogging, periods) = handle.cogging;
+        let torque = self.torque() - cogging * (periods * self.angle).sin();
+        // Friction holds, or takes at most all of the speed.
+        let free = self.speed + (torque - handle.damping * self.speed) / handle.inertia * INSTANT;
+        let most = handle.friction / handle.inertia * INSTANT;
+        self.speed = free - free.clamp(-most, most);
+    }
+}

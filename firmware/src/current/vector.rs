@@ -1,0 +1,120 @@
+//! Currents and voltages of three phases as vectors: at rest, and turning with the magnets.
+//!
+//! Clarke's transformation keeps the amplitude: the vector of three phases has that of one of them.
+
+use core::hint::cold_path;
+
+use crate::excitation::sine::{QUINTIC, sine};
+
+use super::phase::Turn;
+use super::sample::Duties;
+use super::timing::PwmTiming;
+
+const ROOT_3: f32 = 1.732_050_8;
+
+/// A vector: along the magnets and across them where it turns with them, or along U and across it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Vector {
+    pub along: f32,
+    pub across: f32,
+}
+
+/// An angle, by its cosine and sine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rotation {
+    cosine: f32,
+    sine: f32,
+}
+
+impl Rotation {
+    /// Of parts of a turn of 2^32. The polynomial is off by 7e-5, a seventh of a code at full scale.
+    #[inline(always)]
+    pub(super) const fn of(angle: u32) -> Self {
+        Self { cosine: sine_of(angle.wrapping_add(Turn::QUARTER)), sine: sine_of(angle) }
+    }
+
+    /// The same, further by a small angle in rad.
+    #[inline(always)]
+    pub(super) const fn ahead(self, angle: f32) -> Self {
+        let (cosine, sine) = (1.0 - 0.5 * angle * angle, angle);
+        Self {
+            cosine: self.cosine * cosine - self.sine * sine,
+            sine: self.sine * cosine + self.cosine * sine,
+        }
+    }
+}
+
+#[inline(always)]
+const fn sine_of(angle: u32) -> f32 {
+    const TURN: f32 = (1 << 24) as f32;
+    // Exact in 24 bits.
+    sine((angle >> 8) as f32 * (1.0 / TURN), &QUINTIC)
+}
+
+impl Vector {
+    /// Of the currents in U and V; that of W is what is left to a sum of zero.
+    #[inline(always)]
+    pub(super) const fn of_two_phases(u: f32, v: f32) -> Self {
+        Self { along: u, across: (u + 2.0 * v) * (1.0 / ROOT_3) }
+    }
+
+    /// As it is seen from what is turned by that angle.
+    #[inline(always)]
+    pub(super) const fn seen_from(self, rotation: Rotation) -> Self {
+        let Rotation { cosine, sine } = rotation;
+        Self {
+            along: self.along * cosine + self.across * sine,
+            across: self.across * cosine - self.along * sine,
+        }
+    }
+
+    /// Turned by that angle.
+    #[inline(always)]
+    pub(super) const fn turned(self, rotation: Rotation) -> Self {
+        let Rotation { cosine, sine } = rotation;
+        Self {
+            along: self.along * cosine - self.across * sine,
+            across: self.across * cosine + self.along * sine,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) const fn times(self, factor: f32) -> Self {
+        Self { along: self.along * factor, across: self.across * factor }
+    }
+
+    /// The same direction, and no more than this length; and whether it is shorter now.
+    #[inline(always)]
+    pub(super) fn within(self, length: f32) -> (Self, bool) {
+        let square = self.along * self.along + self.across * self.across;
+        if square <= length * length {
+            return (self, false);
+        }
+        cold_path();
+        (self.times(length * one_over_root(square)), true)
+    }
+
+    /// Compare values of a voltage in counts. What all three have in common is chosen so that the highest and the
+    /// lowest are as far from half.
+    #[inline(always)]
+    pub(super) const fn duties(self, timing: PwmTiming) -> Duties {
+        let (u, half) = (self.along, -0.5 * self.along);
+        let part = 0.5 * ROOT_3 * self.across;
+        let (v, w) = (half + part, half - part);
+        let middle = 0.5 * (u.max(v).max(w) + u.min(v).min(w));
+        // The casts round positive numbers down.
+        let zero = 0.5 * timing.counts as f32 + 0.5 - middle;
+        Duties([(u + zero) as u16, (v + zero) as u16, (w + zero) as u16])
+    }
+}
+
+/// One over the root of a positive number, from below: by halving its exponent, and Newton's iteration.
+#[cold]
+#[inline(never)]
+fn one_over_root(square: f32) -> f32 {
+    let mut root = f32::from_bits(0x5f37_59df - (square.to_bits() >> 1));
+    for _ in 0..3 {
+        root *= 1.5 - 0.5 * square * root * root;
+    }
+    root * (1.0 - 4.0 * f32::EPSILON)
+}

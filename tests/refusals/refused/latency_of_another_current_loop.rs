@@ -1,0 +1,35 @@
+//! A scene that is certified for a faster current loop than the one that makes its torque.
+
+use firmware::certificate::Certified;
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive};
+use firmware::environment::{DelayedSpring, Matched};
+use firmware::output_timing::OutputTiming;
+use firmware::scene::{Coupling, Scene};
+use refusals::{CURRENT_LOOP, DRIVE, MOTORISED, scene};
+
+const SLOWER: CurrentLoop = CurrentLoop::checked(
+    &Drive { bandwidth: 1000.0, ..DRIVE },
+    &B_G431B_ESC1,
+    &MOTORISED,
+    0.001,
+);
+
+type Environment = Matched<DelayedSpring<1>, 0, 1>;
+
+const SCENE: Scene<Environment> = Scene {
+    coupling: Coupling::Matched,
+    latency: CURRENT_LOOP.latency(OutputTiming::Latched),
+    torque_limit: Some(1.0),
+    ..scene(Matched { environment: DelayedSpring { stiffness: 5.0 } })
+};
+
+const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();
+
+firmware::scene_program! {
+    scene: SCENE: Environment,
+    certified: CERTIFIED,
+    transducers: MOTORISED,
+    float: f32,
+    fixed: f32,
+    bridge: SLOWER,
+}

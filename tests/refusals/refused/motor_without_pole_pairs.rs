@@ -1,0 +1,10 @@
+//! A brushless motor without magnets.
+
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Winding};
+use refusals::{DRIVE, MOTORISED};
+
+const CHANGED: Drive = Drive { motor: Motor { winding: Winding::Brushless { pole_pairs: 0 }, ..DRIVE.motor }, ..DRIVE };
+
+const _: CurrentLoop = CurrentLoop::checked(&CHANGED, &B_G431B_ESC1, &MOTORISED, 0.001);
+
+fn main() {}

@@ -1,0 +1,10 @@
+//! A supply that has not the voltage for full torque at the largest speed.
+
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Supply};
+use refusals::{DRIVE, MOTORISED};
+
+const CHANGED: Drive = Drive { supply: Supply { lowest: 12.0, highest: 25.2 }, ..DRIVE };
+
+const _: CurrentLoop = CurrentLoop::checked(&CHANGED, &B_G431B_ESC1, &MOTORISED, 0.001);
+
+fn main() {}
