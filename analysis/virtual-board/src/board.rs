@@ -2,7 +2,9 @@
 
 mod bus;
 
-use crate::chip::{CONVERSION_INTERRUPT, Chip, PWM_INTERRUPTS, TICK_INTERRUPT, TORQUE};
+use crate::chip::{
+    BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, PWM_INTERRUPTS, TICK_INTERRUPT, TORQUE,
+};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::device::{Device, FixedDevice};
@@ -266,6 +268,13 @@ impl Board {
         self.advance_power_stage();
         self.power_stage.break_by_system();
         self.power_stage_changed();
+    }
+
+    /// The core is locked up, which breaks the power stage where the program has asked for that.
+    pub(crate) fn lock_up(&mut self) {
+        if self.chip.gates.is_some() && self.configuration.get(BREAKS) & LOCK_UP_BREAKS != 0 {
+            self.break_power_stage();
+        }
     }
 
     fn take(&mut self, outcome: Outcome) {

@@ -114,6 +114,12 @@ pub const WATCHDOG_FREEZES: u32 = 1 << 12;
 /// Place of that register in the unit for debugging.
 pub const FREEZE: u32 = 0x08;
 
+/// Place of the G4's CFGR2 in the system configuration, one of whose bits has a core that is locked up
+/// break the outputs of TIM1 (RM0440, 10.2.8).
+pub const BREAKS: u32 = 0x1C;
+/// That bit.
+pub const LOCK_UP_BREAKS: u32 = 1;
+
 /// The unit for debugging: which chip it is, and what is clocked while the core sleeps.
 static DEBUG_G4: &[(u32, u32, u32)] =
     &[(0x00, 0x2001_6469, 0), (0x04, 0, 0b111), (FREEZE, 0, WATCHDOG_FREEZES)];
@@ -199,7 +205,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     flash_interface: flash::g4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: || InertRegisters::new(&[(0x1C, 0, 0)]),
+    configuration: || InertRegisters::new(&[(BREAKS, 0, 0)]),
     debug: || InertRegisters::new(DEBUG_G4),
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
@@ -231,6 +237,8 @@ pub static B_G431B_ESC1: Chip = Chip {
         ((0, 12), 6),
         ((1, 15), 4),
     ]),
+    // CFGR2 as above, and whether a core that is locked up breaks TIM1's outputs.
+    configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
     // USART2_TX and USART2_RX.

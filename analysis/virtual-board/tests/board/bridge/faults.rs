@@ -3,7 +3,7 @@
 use firmware::servo_loop::State;
 use firmware::wire::message::FaultCode;
 use unicorn_engine::RegisterARM;
-use virtual_board::chip::TICK_INTERRUPT;
+use virtual_board::chip::{CONVERSION_INTERRUPT, TICK_INTERRUPT};
 use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
 use virtual_board::power_stage::Supply;
 use virtual_board::power_stage::gate_log::off_since;
@@ -104,6 +104,16 @@ const CASES: &[Case] = &[
         resets: true,
     },
     Case {
+        fault: "watchdog",
+        cause: "the current loop's interrupt is disabled",
+        bound: 9.0 * SERVO,
+        provoke: |bench| {
+            let exceptions = &mut bench.machine.board_mut().system.exceptions;
+            exceptions.enable(FIRST_INTERRUPT + CONVERSION_INTERRUPT, false);
+        },
+        resets: true,
+    },
+    Case {
         fault: "non-maskable",
         cause: "a non-maskable interrupt comes of which the chip says nothing",
         bound: 1.0,
@@ -152,6 +162,16 @@ const CASES: &[Case] = &[
         cause: "the bus has an error at a compare value",
         bound: 2.0,
         provoke: |bench| bench.machine.board_mut().broken = Some(COMPARE_OF_U),
+        resets: true,
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the core is locked up, so that no handler runs",
+        bound: 9.0 * SERVO,
+        provoke: |bench| {
+            // Without a stack, neither the fault nor its handler has a frame.
+            bench.machine.core_mut().set_register(RegisterARM::MSP, 0x6000_0000);
+        },
         resets: true,
     },
 ];

@@ -1,5 +1,6 @@
 //! What is flashed where the board's own bridge drives the motor.
 
+mod arming;
 mod bench;
 mod faults;
 mod gates;
