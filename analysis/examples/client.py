@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A client of a haptic board: firmware/PROTOCOL.md in Python's standard library.
 
-    client.py PORT status | get | describe | arm | disarm
+    client.py PORT status | get | describe | arm | disarm | align
     client.py PORT set NAME=VALUE [NAME=VALUE ...]
     client.py PORT stream TICKS EVERY
 
@@ -22,21 +22,23 @@ BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
           "window-watchdog", "low-power", "option-bytes"]
-STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted"]
+STATES = ["disarmed", "fading-in", "running", "fading-out", "settling", "faulted", "aligning"]
 LIMITS = ["none", "torque", "converter", "angle", "not-a-number", "ramp"]
 FAULTS = {1: "missed-tick", 2: "encoder-jump", 3: "not-a-number", 5: "link-lost",
           6: "watchdog", 7: "panic", 8: "hard-fault", 9: "late-tick", 10: "clock-lost",
           11: "flash-ecc", 12: "ram-parity", 13: "non-maskable", 14: "over-current",
           15: "over-voltage", 16: "under-voltage", 17: "over-temperature", 18: "current-offset",
           19: "current-not-following", 20: "saturated-duty", 21: "index-mismatch",
-          22: "current-interrupt-late"}
+          22: "current-interrupt-late", 23: "not-aligned", 24: "alignment-not-needed",
+          25: "alignment-blocked", 26: "alignment-pole-pairs", 27: "alignment-not-returned",
+          28: "alignment-uneven"}
 # The parameters that can be changed, by their numbers on the wire.
 PARAMETERS = {5: "coupling.stiffness", 6: "stiffness", 7: "damping", 8: "filter", 10: "face",
               11: "residual", 15: "torque_limit", 23: "torque", 24: "count", 25: "centre",
               28: "mode"}
 
 # Messages to the board and to the host, by number.
-HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE = range(8)
+HELLO, GET, STATUS, SET, ARM, DISARM, STREAM, DESCRIBE, ALIGN = range(9)
 TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "telemetry",
            "described"]
 
@@ -46,7 +48,8 @@ FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
 POWER = [("current", "i"), ("reference", "i"), ("voltage", "u"), ("temperature", "i")]
 STEP = ("enum", [("change", []), ("certificate", []), ("servo", [])])
 REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
-                    ("set", [("step", STEP)])])
+                    ("set", [("step", STEP)]),
+                    ("not-aligning", [("fault", ("option", FAULT))])])
 WALL = [("stiffness", "f64"), ("damping", "f64"), ("filter", ("option", "f64")), ("delay", "u"),
         ("face", "f64"), ("one_sided", "bool")]
 FREE = ("residual", "f64")
@@ -373,8 +376,8 @@ def main(arguments):
         board = Board(port)
         if command == "set":
             board.set(changes)
-        elif command in ("arm", "disarm"):
-            board.request(ARM if command == "arm" else DISARM)
+        elif command in ("arm", "disarm", "align"):
+            board.request({"arm": ARM, "disarm": DISARM, "align": ALIGN}[command])
         elif command == "stream":
             for tick in board.stream(int(rest[0]), int(rest[1])):
                 print(json.dumps(tick))

@@ -151,17 +151,17 @@ impl Latency {
     /// The output delay in periods of a current loop that is updated in them, exactly a whole number of updates.
     ///
     /// `None` where it is not that to a part in a billion, or where a time is stated that such a loop has not.
+    #[inline(never)]
     pub const fn delay_in_updates(&self, period: f64) -> Option<Interval> {
         let is_lag_alone = self.sensor_lag.is_zero() && self.actuator_response.is_zero();
-        if !is_lag_alone || !self.output_delay.is_exact() || !(self.actuator_lag.least > 0.0) {
+        let is_lagging = self.actuator_lag.least > 0.0;
+        if !(is_lag_alone && is_lagging && self.output_delay.is_exact()) {
             return None;
         }
         let update = self.nearest_update(period);
         let whole = self.delay_at_update(update, period);
-        if !((self.output_delay.least - whole).abs() <= NEARLY_WHOLE * whole) {
-            return None;
-        }
-        Some(delay_of_updates(update, self.actuator_updates))
+        let is_whole = (self.output_delay.least - whole).abs() <= NEARLY_WHOLE * whole;
+        if is_whole { Some(delay_of_updates(update, self.actuator_updates)) } else { None }
     }
 
     /// Largest jitter in s of a scene with this period whose environment is late by a sample or more, or is

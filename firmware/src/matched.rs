@@ -21,7 +21,7 @@ use crate::latency::{Latency, TimeRange};
 use crate::number::{Format, Rounding};
 use crate::parameter::MAX_DELAY;
 use crate::passivity::interval::Interval;
-use crate::passivity::lagged::held_back;
+use crate::passivity::lagged::SampledLag;
 use crate::passivity::polynomial::Polynomial;
 
 /// How much softer the first spring is than the other deviations need, which costs the least index:
@@ -78,18 +78,32 @@ impl MatchedCoupling {
     ///
     /// `None` where a number is out of range, or where two lags are too much alike for their difference to
     /// be told from zero.
-    #[inline(never)]
     pub const fn of(
         period: f64,
         passivity: f64,
         latency: &Latency,
         format: Format,
     ) -> Option<Self> {
+        Self::of_kind::<true>(period, passivity, latency, format)
+    }
+
+    /// The same; without `UPDATES` there is none for an amplifier that is updated some times in a period, and no
+    /// code for that.
+    #[inline(never)]
+    pub(crate) const fn of_kind<const UPDATES: bool>(
+        period: f64,
+        passivity: f64,
+        latency: &Latency,
+        format: Format,
+    ) -> Option<Self> {
+        if !UPDATES && latency.actuator_updates != 0 {
+            return None;
+        }
         let (t, delta) = (Interval::decimal(period), Interval::decimal(passivity));
         let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
         let standard = t.div(delta.double());
-        let Some(taps) = Taps::of(t, latency, Within::Middle) else { return None };
-        let Some(unknown) = unknown(t, latency) else { return None };
+        let Some(taps) = Taps::of::<UPDATES>(t, latency, Within::Middle) else { return None };
+        let Some(unknown) = unknown::<UPDATES>(t, latency) else { return None };
         let held = format.coefficient(standard.midpoint(), Rounding::Nearest);
         let arriving =
             format.coefficient(standard.mul(taps.arriving).midpoint(), Rounding::Nearest);
@@ -193,8 +207,13 @@ const fn moments(n: f64, a: Interval, first: Interval, later: Interval) -> Inter
 
 impl Taps {
     /// Of the times at one place in their ranges.
-    const fn of(t: Interval, latency: &Latency, place: Within) -> Option<Self> {
-        let delay = match latency.actuator_updates {
+    const fn of<const UPDATES: bool>(
+        t: Interval,
+        latency: &Latency,
+        place: Within,
+    ) -> Option<Self> {
+        let updates = if UPDATES { latency.actuator_updates } else { 0 };
+        let delay = match updates {
             0 => place.of(latency.torque_delay()).div(t),
             _ => match latency.delay_in_updates(t.midpoint()) {
                 Some(delay) => delay,
@@ -205,11 +224,10 @@ impl Taps {
         let part = delay.sub(Interval::exact(whole as f64));
         let rest = Interval::ONE.sub(part);
         let lags = [place.of(latency.actuator_lag).div(t), place.of(latency.sensor_lag).div(t)];
-        let weights = match latency.actuator_updates {
-            0 => weights(lags),
-            updates => Some([held_back(updates, lags[0]), Interval::ZERO]),
-        };
-        let Some(weights) = weights else { return None };
+        let Some(mut weights) = weights(lags) else { return None };
+        if updates != 0 {
+            weights[0] = SampledLag::of(updates, lags[0]).held();
+        }
         let mut taps =
             Self { whole, arriving: part, trails: [(Interval::ZERO, Interval::ZERO); 2] };
         let mut i = 0;
@@ -277,9 +295,9 @@ impl Within {
 
 /// What the ends of the ranges leave unknown of [`Taps::moment`]: every compliance grows with every
 /// time.
-const fn unknown(t: Interval, latency: &Latency) -> Option<Interval> {
-    let shortest = Taps::of(t, latency, Within::Least);
-    let longest = Taps::of(t, latency, Within::Most);
+const fn unknown<const UPDATES: bool>(t: Interval, latency: &Latency) -> Option<Interval> {
+    let shortest = Taps::of::<UPDATES>(t, latency, Within::Least);
+    let longest = Taps::of::<UPDATES>(t, latency, Within::Most);
     let (Some(shortest), Some(longest)) = (shortest, longest) else { return None };
     let range = longest.moment().sub(shortest.moment());
     Some(Interval::new(0.0, range.hi().max(0.0)))
@@ -346,14 +364,17 @@ pub const fn limit(
 /// `None` where no passive environment is known to be allowed.
 ///
 /// All of the [compliances](MatchedCoupling) that the spring does not have count as deviations.
-pub const fn limit_behind_spring(
+pub const fn limit_behind_spring<const UPDATES: bool>(
     t: Interval,
     delta: Interval,
     compliance: Interval,
     latency: &Latency,
 ) -> Option<Interval> {
+    if !UPDATES && latency.actuator_updates != 0 {
+        return None;
+    }
     let Some((delta, given_up)) = after_jitter(t, delta, latency) else { return None };
-    let Some(taps) = Taps::of(t, latency, Within::Most) else { return None };
+    let Some(taps) = Taps::of::<UPDATES>(t, latency, Within::Most) else { return None };
     let standard = t.div(delta.double());
     let excess = compliance.sub(standard).sub(given_up);
     limit(t, delta, excess, standard.mul(taps.moment()))

@@ -10,7 +10,7 @@ mod quantity;
 
 use firmware::certificate::PassivityProblem;
 use firmware::environment::MAX_DELAY;
-use firmware::scene::{Coupling, Scene};
+use firmware::scene::{Coupling, Scene, TimeRange};
 
 use crate::chain::Chain;
 use crate::file::SceneFile;
@@ -104,7 +104,7 @@ pub fn largest(scene: &Scene, quantity: Quantity, terms: &Terms) -> Answer<Scene
         _ => damping,
     };
     match edge(|value| passes(&at(value)), start, 2.0) {
-        Edge::At(value) => Answer::Limit(value, at(value)),
+        Edge::At(value) => Answer::Limit(quantity.reached(&at(value), value), at(value)),
         Edge::Always if passes(&scene) => Answer::Unlimited(scene),
         Edge::Always => Answer::Unlimited(at(start)),
         Edge::Never if passes(&at(0.0)) => Answer::Limit(0.0, at(0.0)),
@@ -218,10 +218,16 @@ fn timed(
     period_of: fn(f64) -> f64,
 ) -> Answer<Vec<SceneFile>> {
     let with = |scene: &Scene, period: f64| {
-        let mut scene = *scene;
-        let worst = scene.timing.worst_period.map(|worst| worst / scene.timing.period);
+        let (mut scene, before) = (*scene, scene.timing.period);
+        let worst = scene.timing.worst_period.map(|worst| worst / before);
         scene.timing.period = period;
         scene.timing.worst_period = worst.map(|ratio| (ratio * period).max(period));
+        if scene.latency.actuator_updates > 0 {
+            // As many updates of the amplifier as before.
+            let update = scene.latency.nearest_update(before);
+            let delay = scene.latency.delay_at_update(update, period);
+            scene.latency.output_delay = TimeRange::exactly(delay);
+        }
         prepared(&scene, terms)
     };
     let fits = |number: f64| files.iter().all(|file| passes(&with(&file.scene, period_of(number))));

@@ -56,11 +56,21 @@ impl Quantity {
             Self::Count if !scene.environment.profile()?.outline().wraps => None,
             Self::Count => scene.with(Parameter::Count, value),
             Self::OutputDelay => {
+                let value = last_update(scene, value);
                 let mut delayed = scene.with(Parameter::OutputDelay, value)?;
                 delayed.latency.output_jitter =
                     delayed.latency.output_jitter.min(delayed.largest_jitter());
                 Some(delayed)
             }
+        }
+    }
+
+    /// How much of it a scene has that was set to a value: where the amplifier is updated some times in a period,
+    /// the delay of its last update.
+    pub(super) fn reached(self, scene: &Scene, value: f64) -> f64 {
+        match self {
+            Self::OutputDelay => last_update(scene, value),
+            _ => value,
         }
     }
 
@@ -87,4 +97,16 @@ impl Quantity {
             _ => None,
         }
     }
+}
+
+/// The longest time up to one in s at which the amplifier of a scene is updated; any, where it is so all the time.
+fn last_update(scene: &Scene, time: f64) -> f64 {
+    /// Of a whole number of updates, as decimals have it.
+    const ROUNDING: f64 = 1e-9;
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    if latency.actuator_updates == 0 {
+        return time;
+    }
+    let updates = time / period * f64::from(latency.actuator_updates);
+    latency.delay_at_update((updates * (1.0 + ROUNDING)) as u32, period)
 }

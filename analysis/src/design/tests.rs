@@ -2,7 +2,7 @@ use super::*;
 use crate::chain::{Link, Mass};
 use crate::file::{Format, parse, write};
 use firmware::environment::{Environment, Wall};
-use firmware::scene::{Device, Latency, Timing};
+use firmware::scene::{Device, Latency, TimeRange, Timing};
 
 fn scene(environment: Environment) -> Scene {
     Scene {
@@ -86,6 +86,25 @@ fn a_latency_is_at_most_what_a_scene_may_have_and_a_matched_coupling_stays() {
     let mut lagging = delayed_spring(1.0);
     lagging.latency = Latency::delayed(1e-5);
     assert_eq!(prepared(&lagging, &Terms::default()).coupling, lagging.coupling);
+}
+
+/// Delays between two updates of an amplifier are none, and there are as many updates in any period.
+#[test]
+fn an_amplifier_in_updates_keeps_a_delay_of_whole_updates() {
+    let kept = Terms { coupling: Choice::Kept, ..Terms::default() };
+    let sampled = Scene { latency: Latency::sampled(3, 2e-4, 1e-3), ..delayed_spring(7.5) };
+    assert!(passes(&sampled));
+    let (delay, found) = limit(largest(&sampled, Quantity::OutputDelay, &kept));
+    assert!(passes(&found) && found.latency.output_delay.most == delay);
+    assert_eq!(found.latency.nearest_update(1e-3), 3);
+    let later = Latency { output_delay: TimeRange::exactly(4e-3 / 3.0), ..sampled.latency };
+    assert!(!passes(&Scene { latency: later, ..sampled }));
+    let Answer::Limit(longest, scenes) = period(&[file(sampled)], &kept) else { panic!() };
+    let scene = scenes[0].scene;
+    assert!(longest > 1.1e-3 && passes(&scene));
+    assert!((scene.latency.output_delay.most * 3.0 / longest - 1.0).abs() < 1e-9);
+    let (lag, found) = limit(largest(&sampled, Quantity::ActuatorLag, &kept));
+    assert!(lag > 2e-4 && passes(&found));
 }
 
 /// `K T / 2 + B < b` (theory, section 5).

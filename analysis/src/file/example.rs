@@ -155,6 +155,12 @@ mod tests {
             let is_torque = key.name().starts_with("torque") && line.starts_with("torque_pulses");
             match line.strip_prefix("# ") {
                 Some(rest) if line.starts_with(&commented) && table == key.table() => rest,
+                // Updates are those of a lag.
+                Some(rest)
+                    if *key == key::ACTUATOR_UPDATES && line.starts_with("# actuator_lag") =>
+                {
+                    rest
+                }
                 _ if is_torque => "",
                 _ => line,
             }

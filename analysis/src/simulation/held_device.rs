@@ -114,9 +114,9 @@ impl HeldDevice {
         let before = self.before.as_ref().map(|part| (part, old));
         let mut work = 0.0;
         for (part, command) in before.into_iter().chain([(&self.after, new)]).flat_map(each) {
-            let motor = self.plant.motor_input(command, &state.states);
+            let input = self.plant.motor_input(command, &state.states);
             let start = state.motion();
-            let spent = part.spent(&self.device, &mut state.states, motor, speed);
+            let spent = part.spent(&self.device, &mut state.states, [command, input], speed);
             work += self.kinetic(state.motion()) - self.kinetic(start) + spent;
         }
         work
@@ -128,7 +128,7 @@ impl HeldDevice {
 }
 
 /// A part of a tick as often as it is repeated.
-fn each<'p>((part, command): (&'p Part, f64)) -> impl Iterator<Item = (&'p Part, f64)> {
+fn each((part, command): (&Part, f64)) -> impl Iterator<Item = (&Part, f64)> {
     std::iter::repeat_n((part, command), part.count as usize)
 }
 
@@ -153,15 +153,21 @@ impl Part {
         Ok(Self { count, tick, velocity_energy, motor_work })
     }
 
-    /// Takes the states to its end; gives the energy in J that the device's damping took less that which
-    /// the motor gave.
-    fn spent(&self, device: &Device, states: &mut DVector<f64>, motor: f64, speed: f64) -> f64 {
-        let end = self.tick.end(states, motor, speed);
+    /// Takes the states to its end, with a commanded torque and the motor's input that it is; gives the energy
+    /// in J that the device's damping took less that which the motor gave.
+    fn spent(
+        &self,
+        device: &Device,
+        states: &mut DVector<f64>,
+        [command, input]: [f64; 2],
+        speed: f64,
+    ) -> f64 {
+        let end = self.tick.end(states, command, speed);
         let moved = end[POSITION] - states[POSITION];
         let rows = self.velocity_energy.nrows();
-        let start = at(std::mem::replace(states, end), rows, motor, speed);
+        let start = at(std::mem::replace(states, end), rows, input, speed);
         let form = |form: &DMatrix<f64>| start.dot(&(form * &start));
-        let gained = self.motor_work.as_ref().map_or(motor * moved, form);
+        let gained = self.motor_work.as_ref().map_or(command * moved, form);
         device.damping * form(&self.velocity_energy) - gained
     }
 }

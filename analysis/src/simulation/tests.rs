@@ -354,8 +354,8 @@ fn integrated(case: &LateLoop, samples: usize, start: Motion) -> Vec<f64> {
         for step in 0..FINE {
             let age = if step as f64 + 0.5 < part * FINE as f64 { whole + 1 } else { whole };
             let mut command = torques[torques.len() - 1 - age];
-            if updates > 0 {
-                if step % (FINE / updates) == 0 {
+            if let Some(between) = FINE.checked_div(updates) {
+                if step % between == 0 {
                     slope = caught_up * (command - state[2]) * updates as f64 / period;
                 }
                 command = slope;

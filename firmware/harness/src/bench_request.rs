@@ -1,4 +1,4 @@
-//! Instruction benchmarks: a request to compute torques or sines, and the results with the
+//! Instruction benchmarks: a request to compute torques, sines or compare values, and the results with the
 //! instructions of each.
 //!
 //! A [`BenchRequest`] goes to the board as [`BenchRequestWords`], which are answered by one byte: whether it can be
@@ -8,6 +8,8 @@ use firmware::number::Arithmetic;
 use firmware::scene::Scene;
 use firmware::servo::Transducers;
 
+use crate::currents::CurrentBench;
+use crate::rotations::Rotation;
 use crate::scene_codec::{self, SceneWords, encode};
 use crate::sines::Sine;
 use crate::transducer_codec::{self, TransducerWords};
@@ -27,6 +29,11 @@ pub enum BenchRequest {
     },
     /// The sine of each part of a turn, which is the bits of an `f32`.
     Sine(Sine),
+    /// Sine and cosine of each angle, [packed](crate::rotations::packed).
+    Rotation(Rotation),
+    /// The compare values of a current loop at each instant, from rest: of
+    /// [`Input`](crate::currents::Input)s.
+    Current(CurrentBench),
 }
 
 /// Inputs at a time: as many as fit a pipe's buffer, so that asking never waits for the board.
@@ -39,9 +46,9 @@ pub type Outputs = [Output; BLOCK];
 /// What came of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Output {
-    /// Torque in N m, or sine.
+    /// Torque in N m, sine, or compare value of U.
     pub value: f64,
-    /// The DAC code; of a sine none.
+    /// The DAC code, or compare value of V; of a sine none.
     pub code: u16,
     /// Instructions that it took.
     pub instructions: u32,
@@ -87,6 +94,14 @@ impl BenchRequest {
                 words[1..HEAD].copy_from_slice(&transducer_codec::encode(transducers, *arithmetic));
                 words[HEAD..].copy_from_slice(&encode(scene));
             }
+            Self::Rotation(rotation) => {
+                words[0] = ROTATION;
+                words[1] = transducer_codec::index_of(&Rotation::ALL, rotation);
+            }
+            Self::Current(bench) => {
+                words[0] = CURRENT;
+                words[1] = transducer_codec::index_of(&CurrentBench::ALL, bench);
+            }
             Self::Sine(sine) => words[0] = transducer_codec::index_of(&Sine::ALL, sine),
         }
         words
@@ -95,6 +110,12 @@ impl BenchRequest {
     /// The request of the words; `None` if they are malformed.
     pub fn decode(words: &BenchRequestWords) -> Option<Self> {
         let (&[which, ref machine @ ..], scene) = words.split_first_chunk::<HEAD>()?;
+        if which == ROTATION {
+            return transducer_codec::from_index(&Rotation::ALL, machine[0]).map(Self::Rotation);
+        }
+        if which == CURRENT {
+            return transducer_codec::from_index(&CurrentBench::ALL, machine[0]).map(Self::Current);
+        }
         if which != SERVO {
             return transducer_codec::from_index(&Sine::ALL, which).map(Self::Sine);
         }
@@ -104,5 +125,7 @@ impl BenchRequest {
     }
 }
 
-/// Stands where a sine would.
+/// Stand where a sine would.
 const SERVO: u64 = u64::MAX;
+const CURRENT: u64 = u64::MAX - 1;
+const ROTATION: u64 = u64::MAX - 2;

@@ -6,7 +6,9 @@
 #![cfg_attr(not(test), no_std)]
 
 pub mod bench_request;
+pub mod currents;
 pub mod loop_request;
+pub mod rotations;
 pub mod scene_codec;
 pub mod sines;
 pub mod tables;

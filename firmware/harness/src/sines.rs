@@ -24,8 +24,8 @@ pub enum Sine {
 }
 
 /// Coefficients as those of [`QUINTIC`], with the least largest error of their degree.
-const CUBIC: [f32; 2] = [6.192_264_7, -35.363_71];
-const SEPTIC: [f32; 4] = [6.283_164, -41.337_143, 81.340_77, -70.993_43];
+pub(crate) const CUBIC: [f32; 2] = [6.192_264_7, -35.363_71];
+pub(crate) const SEPTIC: [f32; 4] = [6.283_164, -41.337_143, 81.340_77, -70.993_43];
 #[expect(clippy::approx_constant, reason = "the least error is beside it, not at it")]
 const NONIC: [f32; 5] = [6.283_185, -41.341_656, 81.601_006, -76.549_78, 39.536_705];
 

@@ -36,7 +36,7 @@ pub const CURRENT_LOOP: CurrentLoop =
     CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
 
 /// What the hand feels, behind a coupling that remembers the current loop's lag.
-pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1>;
+pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
 
 /// The scene.
 pub const SCENE: Scene<Environment> = Scene {

@@ -289,8 +289,8 @@ macro_rules! certify_for {
     )*) => {$(
         certify_for! { @ [$($generics)*] $environment }
         certify_for! { @
-            [const WHOLE: usize, const LAGS: usize, $($generics)*]
-            Matched<$environment, WHOLE, LAGS>
+            [const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*]
+            Matched<$environment, WHOLE, LAGS, UPDATES>
         }
     )*};
     (@ [$($generics:tt)*] $environment:ty) => {

@@ -191,14 +191,18 @@ impl LoopIntervals {
             latency: None,
         };
         if !matches!(E::MEMORY, Memory::None) && has_latency(scene) {
-            out.add_latency(scene);
+            if E::MEMORY.has_updates() {
+                out.add_latency::<true>(scene);
+            } else {
+                out.add_latency::<false>(scene);
+            }
         }
         (out, written)
     }
 
     // In a frame of its own, which no scene without latency needs.
     #[inline(never)]
-    const fn add_latency(&mut self, scene: &Scene) {
+    const fn add_latency<const UPDATES: bool>(&mut self, scene: &Scene) {
         let latency = scene.latency;
         let mut lagging = Lagging { latency, matched: None, limit: None };
         if self.misses_updates {
@@ -206,14 +210,16 @@ impl LoopIntervals {
         } else if self.is_matched {
             let passivity = scene.device.passivity();
             let period = scene.timing.period;
-            lagging.matched = MatchedCoupling::of(period, passivity, &latency, self.format);
+            lagging.matched =
+                MatchedCoupling::of_kind::<UPDATES>(period, passivity, &latency, self.format);
             if let Some(matched) = &lagging.matched {
                 lagging.limit = Some(matched.limit);
                 self.compliance = Interval::exact(matched.compliance);
             }
         } else if self.coupling.is_some() {
             let (period, delta) = (self.period, self.delta);
-            lagging.limit = limit_behind_spring(period, delta, self.compliance, &latency);
+            lagging.limit =
+                limit_behind_spring::<UPDATES>(period, delta, self.compliance, &latency);
         }
         self.latency = Some(lagging);
     }

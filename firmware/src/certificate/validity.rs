@@ -365,7 +365,7 @@ const fn updates_conflict(scene: &Scene) -> Option<InvalidParameter> {
         Some(worst) if worst != period => {
             (Parameter::WorstPeriod, worst, BESIDE_UPDATES[0], Some(period))
         }
-        _ if !(latency.actuator_lag.least > 0.0) => {
+        _ if latency.actuator_lag.least <= 0.0 => {
             (Parameter::ActuatorLag, latency.actuator_lag.least, BESIDE_UPDATES[1], None)
         }
         _ if !latency.sensor_lag.is_zero() => {

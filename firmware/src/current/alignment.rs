@@ -91,6 +91,17 @@ pub enum AlignmentError {
 }
 
 impl AlignmentError {
+    /// The error in one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::NotNeeded => "alignment-not-needed",
+            Self::Blocked { .. } => "alignment-blocked",
+            Self::PolePairs { .. } => "alignment-pole-pairs",
+            Self::NotReturned { .. } => "alignment-not-returned",
+            Self::Uneven { .. } => "alignment-uneven",
+        }
+    }
+
     /// The error as a code and its two numbers, beside those of [`Fault`](crate::fault::Fault).
     pub(super) const fn encode(self) -> (u32, [u32; 2]) {
         let (code, [a, b]) = match self {

@@ -90,7 +90,7 @@ impl PowerFault {
             Self::IndexMismatch { .. } => "index-mismatch",
             Self::CurrentInterruptLate { .. } => "current-interrupt-late",
             Self::NotAligned => "not-aligned",
-            Self::Alignment(_) => "alignment",
+            Self::Alignment(error) => error.as_str(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! One current and its model: feed-forward and feedback (theory, equations 51 to 53).
+//! One current and its model: feed-forward and feedback (theory, sections 15.1 and 15.2).
 
 use super::current_loop::Law;
 

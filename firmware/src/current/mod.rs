@@ -31,6 +31,7 @@ mod program;
 mod reading;
 mod resolution;
 mod sample;
+mod sine_table;
 mod speed;
 mod supervision;
 mod thermistor;
@@ -48,6 +49,7 @@ pub use phase::PhaseAlignment;
 pub use power_stage::{B_G431B_ESC1, PowerStage};
 pub use resolution::CurrentResolution;
 pub use sample::{Duties, Sample};
+pub use sine_table::sine_and_cosine;
 pub use thermistor::Thermistor;
 pub use timing::PwmTiming;
 

@@ -15,9 +15,6 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// A quarter of a turn.
-    pub(super) const QUARTER: u32 = 1 << 30;
-
     /// At the count 0 of an encoder with so many of them a turn.
     pub(super) const fn new(counts: u32, pole_pairs: u16) -> Self {
         let whole = (pole_pairs as u128) << 64;

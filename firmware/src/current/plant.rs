@@ -1,4 +1,5 @@
-//! The winding, the reference model and the feedback, as numbers of one instant (theory, equations 51 to 53).
+//! The winding, the reference model and the feedback, as numbers of one instant (theory, sections 15.1
+//! and 15.2).
 
 use core::f64::consts::TAU;
 

@@ -64,7 +64,7 @@ impl Quanta {
     }
 
     /// Largest current in A of a voltage that is off by up to a volt, in any way: the sum of its impulse response
-    /// (theory, equation 55).
+    /// (theory, section 15.3).
     const fn admittance(&self) -> f64 {
         let part = (1.0 - self.plant.decay) / self.plant.feedback;
         2.0 / self.resistance * part.min(1.0)

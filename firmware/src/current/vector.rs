@@ -4,10 +4,8 @@
 
 use core::hint::cold_path;
 
-use crate::excitation::sine::{QUINTIC, sine};
-
-use super::phase::Turn;
 use super::sample::Duties;
+use super::sine_table::sine_and_cosine;
 use super::timing::PwmTiming;
 
 const ROOT_3: f32 = 1.732_050_8;
@@ -27,10 +25,11 @@ pub(super) struct Rotation {
 }
 
 impl Rotation {
-    /// Of parts of a turn of 2^32. The polynomial is off by 7e-5, a seventh of a code at full scale.
+    /// Of parts of a turn of 2^32.
     #[inline(always)]
-    pub(super) const fn of(angle: u32) -> Self {
-        Self { cosine: sine_of(angle.wrapping_add(Turn::QUARTER)), sine: sine_of(angle) }
+    pub(super) fn of(angle: u32) -> Self {
+        let [sine, cosine] = sine_and_cosine(angle);
+        Self { cosine, sine }
     }
 
     /// The same, further by a small angle in rad.
@@ -42,13 +41,6 @@ impl Rotation {
             sine: self.sine * cosine + self.cosine * sine,
         }
     }
-}
-
-#[inline(always)]
-const fn sine_of(angle: u32) -> f32 {
-    const TURN: f32 = (1 << 24) as f32;
-    // Exact in 24 bits.
-    sine((angle >> 8) as f32 * (1.0 / TURN), &QUINTIC)
 }
 
 impl Vector {

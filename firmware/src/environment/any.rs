@@ -366,7 +366,7 @@ impl<N: Number> Discretize<N> for Environment {
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         let memory = match setting.coupling {
             Coupling::Matched => {
-                let coupling = setting.matched(N::FORMAT)?;
+                let coupling = setting.matched::<true>(N::FORMAT)?;
                 let torques = VariableDelay::at_rest(coupling.whole)?;
                 Some(CouplingMemory::new(&coupling, torques)?)
             }

@@ -48,11 +48,14 @@ delayed!(@ Environment, Rational,);
 pub trait SupportsTiming<M: OutputMode> {}
 
 impl<W: Delayed, P: Delayed> Delayed for WallAndProfile<W, P> {}
-impl<E: Delayed, const WHOLE: usize, const LAGS: usize> Delayed for Matched<E, WHOLE, LAGS> {}
+impl<E: Delayed, const WHOLE: usize, const LAGS: usize, const UPDATES: bool> Delayed
+    for Matched<E, WHOLE, LAGS, UPDATES>
+{
+}
 
 impl<E> SupportsTiming<Simultaneous> for E {}
-impl<E, const WHOLE: usize, const LAGS: usize, const NANOSECONDS: u32>
-    SupportsTiming<AtPhase<NANOSECONDS>> for Matched<E, WHOLE, LAGS>
+impl<E, const WHOLE: usize, const LAGS: usize, const UPDATES: bool, const NANOSECONDS: u32>
+    SupportsTiming<AtPhase<NANOSECONDS>> for Matched<E, WHOLE, LAGS, UPDATES>
 {
 }
 impl<const NANOSECONDS: u32> SupportsTiming<AtPhase<NANOSECONDS>> for Environment {}

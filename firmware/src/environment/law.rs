@@ -66,12 +66,16 @@ pub trait Discretize<N: Number> {
 }
 
 impl LawContext {
-    /// The matched coupling in a number format.
+    /// The matched coupling in a number format; without `UPDATES` of an amplifier that is not updated in the
+    /// period.
     ///
     /// # Errors
     /// Where it does not exist.
-    pub(crate) fn matched(&self, format: Format) -> Result<MatchedCoupling, BuildError> {
-        MatchedCoupling::of(self.period, self.passivity, &self.latency, format)
+    pub(crate) fn matched<const UPDATES: bool>(
+        &self,
+        format: Format,
+    ) -> Result<MatchedCoupling, BuildError> {
+        MatchedCoupling::of_kind::<UPDATES>(self.period, self.passivity, &self.latency, format)
             .ok_or(BuildError::NoMatchedCoupling)
     }
 }

@@ -12,15 +12,16 @@ use crate::parameter::{NamedParameters, Parameter};
 /// An environment behind [`Coupling::Matched`]: the coupling's memory is part of the type, so that a scene
 /// without latency has none.
 ///
-/// `WHOLE` is the whole samples in the scene's output delay, `LAGS` how many of amplifier and sensor lag.
+/// `WHOLE` is the whole samples in the scene's output delay, `LAGS` how many of amplifier and sensor lag,
+/// `UPDATES` whether the amplifier is updated some times in a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0> {
+pub struct Matched<E, const WHOLE: usize = 0, const LAGS: usize = 0, const UPDATES: bool = false> {
     /// The environment.
     pub environment: E,
 }
 
-impl<E: NamedParameters, const WHOLE: usize, const LAGS: usize> NamedParameters
-    for Matched<E, WHOLE, LAGS>
+impl<E: NamedParameters, const WHOLE: usize, const LAGS: usize, const UPDATES: bool> NamedParameters
+    for Matched<E, WHOLE, LAGS, UPDATES>
 {
     fn value(&mut self, parameter: Parameter) -> Option<&mut f64> {
         self.environment.value(parameter)
@@ -192,14 +193,14 @@ impl<N: Number, L: Law<N>, D: DelayLine<N>, const LAGS: usize> Law<N>
     }
 }
 
-impl<N: Number, E: Discretize<N>, const WHOLE: usize, const LAGS: usize> Discretize<N>
-    for Matched<E, WHOLE, LAGS>
+impl<N: Number, E: Discretize<N>, const WHOLE: usize, const LAGS: usize, const UPDATES: bool>
+    Discretize<N> for Matched<E, WHOLE, LAGS, UPDATES>
 {
     type Law = MatchedLaw<N, E::Law, FixedDelay<N, WHOLE>, LAGS>;
 
     fn law(&self, setting: &LawContext) -> Result<Self::Law, BuildError> {
         let coupling = match setting.coupling {
-            Coupling::Matched => setting.matched(N::FORMAT)?,
+            Coupling::Matched => setting.matched::<UPDATES>(N::FORMAT)?,
             _ => return Err(BuildError::CouplingMemory),
         };
         if coupling.whole != WHOLE {

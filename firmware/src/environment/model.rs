@@ -35,6 +35,8 @@ pub enum Memory {
         whole: usize,
         /// How many of amplifier and sensor lag.
         lags: usize,
+        /// Whether the amplifier is updated some times in a period.
+        updates: bool,
     },
     /// Whatever the scene asks for.
     Any,
@@ -47,13 +49,23 @@ impl Memory {
         match self {
             Self::None => !is_matched,
             Self::Any => true,
-            Self::Of { whole, lags } => {
-                let needed = (latency.torque_delay().middle() / period) as usize;
+            Self::Of { whole, lags, updates } => {
+                let needed = match latency.actuator_updates {
+                    0 => (latency.torque_delay().middle() / period) as usize,
+                    updates => latency.nearest_update(period) as usize / updates as usize,
+                };
                 let lagging = !latency.actuator_lag.is_zero() as usize
                     + !latency.sensor_lag.is_zero() as usize;
-                is_matched && needed == whole && lagging == lags
+                let is_updated = latency.actuator_updates != 0;
+                is_matched && needed == whole && lagging == lags && is_updated == updates
             }
         }
+    }
+
+    /// Whether the amplifier may be updated some times in a period. If not, the program omits the code that
+    /// such a coupling is computed by.
+    pub const fn has_updates(self) -> bool {
+        matches!(self, Self::Any | Self::Of { updates: true, .. })
     }
 }
 
@@ -154,25 +166,25 @@ macro_rules! known_models {
         [$($generics:tt)*] $environment:ty:
         $cancels:literal, $memory:ident, $profile:expr;
     )*) => {$(
-        impl<const WHOLE: usize, const LAGS: usize, $($generics)*> sealed::Sealed
-            for Matched<$environment, WHOLE, LAGS>
+        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*> sealed::Sealed
+            for Matched<$environment, WHOLE, LAGS, UPDATES>
         {
         }
 
-        impl<const WHOLE: usize, const LAGS: usize, $($generics)*> EnvironmentModel
-            for Matched<$environment, WHOLE, LAGS>
+        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*> EnvironmentModel
+            for Matched<$environment, WHOLE, LAGS, UPDATES>
         {
             const CANCELS_DAMPING: bool = $cancels;
             const PROFILE: ProfileUse = $profile;
-            const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS };
+            const MEMORY: Memory = Memory::Of { whole: WHOLE, lags: LAGS, updates: UPDATES };
 
             fn as_data(&self, _: &LawContext) -> Environment {
                 Self::as_data(self)
             }
         }
 
-        impl<const WHOLE: usize, const LAGS: usize, $($generics)*>
-            Matched<$environment, WHOLE, LAGS>
+        impl<const WHOLE: usize, const LAGS: usize, const UPDATES: bool, $($generics)*>
+            Matched<$environment, WHOLE, LAGS, UPDATES>
         {
             /// The environment as data.
             pub const fn as_data(&self) -> Environment {

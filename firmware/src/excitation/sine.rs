@@ -9,7 +9,7 @@ pub const QUINTIC: [f32; 3] = [6.281_28, -41.095_24, 73.585_51];
 /// In turns, and not in rad, the nearest zero is found by three exact subtractions. The polynomial
 /// is computed by sums and products in `f32`, which are the same on every machine.
 #[inline(always)]
-pub const fn sine<const N: usize>(turn: f32, coefficients: &[f32; N]) -> f32 {
+pub fn sine<const N: usize>(turn: f32, coefficients: &[f32; N]) -> f32 {
     // From the zero in the middle, where the sine falls.
     let from_middle = 0.5 - turn;
     let to_zero = 0.25 - (from_middle.abs() - 0.25).abs();

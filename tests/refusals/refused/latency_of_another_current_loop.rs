@@ -14,7 +14,7 @@ const SLOWER: CurrentLoop = CurrentLoop::checked(
     0.001,
 );
 
-type Environment = Matched<DelayedSpring<1>, 0, 1>;
+type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
 
 const SCENE: Scene<Environment> = Scene {
     coupling: Coupling::Matched,

@@ -35,7 +35,7 @@ use tests::vectors;
 /// Ticks of each run.
 const TICKS: usize = 5_000;
 
-static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
+pub static TOOLCHAIN: LazyLock<Toolchain> = LazyLock::new(|| {
     prepare(Tools::CompilerAndEmulator, |step| eprintln!("{step}"))
         .unwrap_or_else(|error| panic!("{error}"))
 });

@@ -8,6 +8,7 @@ mod closed_forms;
 mod composed;
 mod contact;
 mod continuous;
+mod current;
 mod decision;
 mod documents;
 mod emulated;

@@ -60,7 +60,7 @@ fn lagging(drawn: &Loop, jw: Complex<f64>) -> Complex<f64> {
     let between = 1.0 / f64::from(drawn.updates);
     let left = (-between / drawn.actuator_lag).exp();
     let step = (one - (-jw * between).exp()) / (jw * between);
-    let steps = (0..4000).map(|n| f64::from(n));
+    let steps = (0..4000).map(f64::from);
     let weight = |n: f64| (1.0 - left) * left.powf(n);
     let steps = steps.take_while(|&n| n < 1.0 || weight(n) > 1e-14);
     steps.map(|n| (-jw * between * n).exp() * step * weight(n)).sum()

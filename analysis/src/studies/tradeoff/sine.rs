@@ -1,8 +1,18 @@
-//! The sine of a sweep: what each means takes on the emulated board, and how far off it is.
+//! The sine of a sweep, and sine and cosine of a motor's phase: what each means takes on the emulated board, and
+//! how far off it is.
+//!
+//! Two cases: of the sine of a sweep, which is of a part of a turn in `f32`, the error is that of the sine; of a
+//! phase, which is one in 32 bits, that of the torque ([`torque_error`]).
+//!
+//! The G4's CORDIC unit is not among the measured ones, since no emulator has it. A model of its arithmetic is
+//! in the tests: with 16 iterations its angle is off by up to 2^-15, which no torque shows. It would take a dozen
+//! instructions in place of the table's 31, and wait for as long as these take; but what runs would not be the
+//! code that tests run, and on no board but those with the unit.
 
 use std::f64::consts::TAU;
 
 use firmware_harness::bench_request::{BenchRequest, Output};
+use firmware_harness::rotations::{Rotation, unpacked};
 use firmware_harness::sines::Sine;
 
 use super::{Axis, Comparison, Method, NUMBER, Tradeoff, TradeoffError};
@@ -11,7 +21,7 @@ use crate::table::Column;
 /// The comparison.
 pub static COMPARISON: Comparison = Comparison {
     name: "sine",
-    title: "Sine of a sweep, of a part of a turn in f32, on the emulated Cortex-M4",
+    title: "Sine of a sweep, and sine and cosine of a phase, on the emulated Cortex-M4",
     cost: Axis::least(&["instructions"], "most instructions"),
     errors: &[Axis::least(&["error"], "largest error (1)")],
     others: &[Column { names: &["mean_instructions"], bound: NUMBER }],
@@ -56,21 +66,63 @@ pub fn measure() -> Result<Tradeoff, TradeoffError> {
     for sine in Sine::ALL {
         methods.push(row(sine, &board.compute(&BenchRequest::Sine(sine), &inputs)?));
     }
+    for rotation in Rotation::ALL {
+        let outputs = board.compute(&BenchRequest::Rotation(rotation), &angles())?;
+        methods.push(phase_row(rotation, &outputs));
+    }
     board.finish()?;
     Ok(Tradeoff { comparison: &COMPARISON, methods })
 }
 
 fn row(sine: Sine, outputs: &[Output]) -> Method {
-    let instructions = outputs.iter().map(|output| f64::from(output.instructions));
-    let most = instructions.clone().fold(0.0, f64::max);
-    let mean = instructions.sum::<f64>() / outputs.len() as f64;
+    let [most, mean] = instructions(outputs);
     let family = match sine {
         Sine::Micromath => "micromath",
         Sine::Libm | Sine::LibmDouble => "libm",
-        _ => "polynomials of our own",
+        _ => POLYNOMIALS,
     };
     let error = error(outputs.iter().map(|output| output.value));
     Method::new("sine", family, sine.name(), &[most, error, mean])
+}
+
+fn phase_row(rotation: Rotation, outputs: &[Output]) -> Method {
+    let [most, mean] = instructions(outputs);
+    let family = match rotation {
+        Rotation::Micromath => "micromath",
+        Rotation::Libm => "libm",
+        Rotation::Table => "table",
+        Rotation::Cubic | Rotation::Quintic | Rotation::Septic => POLYNOMIALS,
+    };
+    let pairs = angles().into_iter().zip(outputs.iter().map(|output| unpacked(output.value)));
+    let error = pairs.fold(0.0, |most, (angle, pair)| torque_error(angle, pair).max(most));
+    Method::new(PHASE, family, rotation.name(), &[most, error, mean])
+}
+
+const POLYNOMIALS: &str = "polynomials of our own";
+
+/// The case of a motor's phase.
+const PHASE: &str = "phase";
+
+/// Most instructions, and their mean.
+fn instructions(outputs: &[Output]) -> [f64; 2] {
+    let instructions = outputs.iter().map(|output| f64::from(output.instructions));
+    let most = instructions.clone().fold(0.0, f64::max);
+    [most, instructions.sum::<f64>() / outputs.len() as f64]
+}
+
+/// The phases that are tried: spread over a turn, at no regular distance from a table's entries.
+fn angles() -> Vec<u32> {
+    (0..TURNS).map(|k| k.wrapping_mul(2_654_435_769)).collect()
+}
+
+/// Relative error of the torque of a current loop with this sine and cosine of an angle: it makes a current that is
+/// the commanded one, across the magnets, as it sees it. With an error of the angle `x` and one of the magnitude
+/// `y` it is `cos x/(1 + y) - 1`.
+fn torque_error(angle: u32, [sine, cosine]: [f32; 2]) -> f64 {
+    let [sine, cosine] = [sine, cosine].map(f64::from);
+    let exact = TAU * f64::from(angle) / 2_f64.powi(32);
+    let seen = sine * sine + cosine * cosine;
+    ((sine * exact.sin() + cosine * exact.cos()) / seen - 1.0).abs()
 }
 
 #[cfg(test)]
@@ -131,7 +183,7 @@ mod tests {
     #[test]
     fn the_kept_errors_are_those_to_a_sine_of_forty_digits() {
         let kept = kept();
-        assert_eq!(kept.methods.len(), Sine::ALL.len());
+        assert_eq!(kept.methods.len(), Sine::ALL.len() + Rotation::ALL.len());
         let truth: Vec<_> = turns().into_iter().map(series).collect();
         for (sine, kept) in Sine::ALL.into_iter().zip(&kept.methods) {
             let off = turns().into_iter().zip(&truth);
@@ -152,5 +204,63 @@ mod tests {
         let front = kept.front("sine", 0);
         let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
         assert_eq!(enough.name, Sine::Quintic.name());
+    }
+
+    /// The kept errors of the torque are those of the same code here.
+    #[test]
+    fn the_kept_errors_of_a_phase_are_those_of_the_host() {
+        let kept = kept();
+        for (rotation, kept) in Rotation::ALL.into_iter().zip(&kept.methods[Sine::ALL.len()..]) {
+            let here = angles()
+                .into_iter()
+                .fold(0.0, |most, angle| torque_error(angle, rotation.of_angle(angle)).max(most));
+            let there = kept.error(0).unwrap();
+            assert_eq!((rotation.name(), PHASE), (&*kept.name, &*kept.case));
+            assert!((here / there - 1.0).abs() < 1e-5, "{}: {here}, {there}", rotation.name());
+        }
+    }
+
+    /// The unit of the G4 by its manual (RM0440): in each of its cycles four iterations, which turn a vector of
+    /// 24 bits by arc tangents of falling powers of two. Its tables say 2^-15 for 16 of them, 2^-19 for 24.
+    fn cordic(angle: u32, iterations: u32) -> [f32; 2] {
+        const BITS: i32 = 24;
+        let scale = 2_f64.powi(BITS);
+        // To the half turn about zero, where the iterations converge.
+        let from_zero = f64::from(angle.cast_signed()) / 2_f64.powi(32);
+        let is_far = from_zero.abs() > 0.25;
+        let near = if is_far { from_zero - 0.5 * from_zero.signum() } else { from_zero };
+        let gain: f64 =
+            (0..iterations).map(|k| 1.0 / (1.0 + 0.25_f64.powi(k as i32)).sqrt()).product();
+        let (mut x, mut y, mut left) = ((gain * scale) as i64, 0_i64, (near * scale) as i64);
+        for k in 0..iterations {
+            let turn = (0.5_f64.powi(k as i32).atan() / TAU * scale).round() as i64;
+            let sign = if left < 0 { -1 } else { 1 };
+            (x, y, left) = (x - sign * (y >> k), y + sign * (x >> k), left - sign * turn);
+        }
+        let sign = if is_far { -1.0 } else { 1.0 };
+        [y, x].map(|part| (sign * part as f64 / scale) as f32)
+    }
+
+    #[test]
+    fn the_unit_of_the_g4_would_be_as_good() {
+        for (iterations, off) in [(16, 2_f64.powi(-14)), (24, 2_f64.powi(-18))] {
+            for angle in angles() {
+                let [sine, cosine] = cordic(angle, iterations).map(f64::from);
+                let exact = TAU * f64::from(angle) / 2_f64.powi(32);
+                let error = (sine - exact.sin()).abs().max((cosine - exact.cos()).abs());
+                assert!(error < off, "{iterations}, {angle}: {error}");
+                assert!(torque_error(angle, cordic(angle, iterations)) < off);
+            }
+        }
+    }
+
+    /// As for the sweep: half a code at full scale.
+    #[test]
+    fn a_phase_has_the_cheapest_sine_that_no_code_shows() {
+        let kept = kept();
+        let code = 0.5 / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+        let front = kept.front(PHASE, 0);
+        let enough = front.iter().find(|method| method.error(0).unwrap() < code).unwrap();
+        assert_eq!(enough.name, Rotation::Table.name());
     }
 }

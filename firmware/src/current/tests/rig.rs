@@ -81,7 +81,7 @@ impl Rig {
         let counts = f64::from(BRUSHED.timer_counts());
         let [u, v, w] = self.loaded.0.map(f64::from);
         assert!(w == (counts / 2.0).floor() && u <= counts && v <= counts, "{:?}", self.loaded);
-        let mut edges = vec![0.0, counts - u, counts - v, counts + u, counts + v, 2.0 * counts];
+        let mut edges = [0.0, counts - u, counts - v, counts + u, counts + v, 2.0 * counts];
         edges.sort_by(f64::total_cmp);
         self.extremes = (self.current, self.current);
         for edge in edges.windows(2) {

@@ -20,8 +20,7 @@ use super::transfer::Transfer;
 
 mod sampled;
 
-use sampled::unspread;
-pub use sampled::{delay_of_updates, held_back};
+pub use sampled::{SampledLag, delay_of_updates};
 
 /// Delay and lags in periods, as far as they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,8 +85,10 @@ impl Decay {
     // In a frame of its own, which no continuous lag needs.
     #[inline(never)]
     const fn sampled(tau: Interval, part: Interval, updates: u16) -> Self {
-        let (held, unspread) = (held_back(updates, tau), unspread(updates, tau));
-        Self { held, unspread, ..Self::of(tau, part) }
+        let over = Interval::ONE.sub(part);
+        let lag = SampledLag::of(updates, tau);
+        let (tick, rest) = (lag.after(Interval::ONE), lag.after(over));
+        Self { tau, held: lag.held(), unspread: lag.unspread(), tick, rest, over }
     }
 
     /// `(1 - rest) z + (rest - tick)`

@@ -17,25 +17,50 @@ pub const fn delay_of_updates(update: u32, updates: u16) -> Interval {
     Interval::exact(update as f64).div(Interval::exact(updates as f64))
 }
 
-/// Time between two updates in periods, and what is left of a step after it.
-const fn over_an_update(updates: u16, tau: Interval) -> (Interval, Interval) {
-    let between = Interval::ONE.div(Interval::exact(updates as f64));
-    (between, left(between, tau))
+/// A lag at the updates, straight lines between them.
+#[derive(Clone, Copy)]
+pub struct SampledLag {
+    updates: f64,
+    /// `p`, what is left of a step an update later.
+    left: Interval,
 }
 
-/// The integral of what is left of a step in periods, `(h / 2) (1 + p) / (1 - p)`, of a time constant in
-/// periods. With `p` once, of which it is a rising function.
-pub const fn held_back(updates: u16, tau: Interval) -> Interval {
-    let (between, p) = over_an_update(updates, tau);
-    let sum = Interval::ONE.div(Interval::ONE.sub(p));
-    between.mul(sum.sub(Interval::ONE.half()))
-}
+impl SampledLag {
+    /// Of a time constant in periods, with so many updates in each.
+    #[inline(never)]
+    pub const fn of(updates: u16, tau: Interval) -> Self {
+        let updates = updates as f64;
+        Self { updates, left: left(Interval::ONE.div(Interval::exact(updates)), tau) }
+    }
 
-/// The same less the integral of its square, `(h / 6) (1 + 4 p + p^2) / (1 - p^2)`: in partial fractions, of
-/// which each rises with `p`.
-pub(super) const fn unspread(updates: u16, tau: Interval) -> Interval {
-    let (between, p) = over_an_update(updates, tau);
-    let near = Interval::exact(3.0).div(Interval::ONE.sub(p));
-    let far = Interval::ONE.div(Interval::ONE.add(p));
-    between.mul(near.sub(far).sub(Interval::ONE)).div(Interval::exact(6.0))
+    /// The integral of what is left of a step in periods, `(h / 2) (1 + p) / (1 - p)`. With `p` once, of which
+    /// it is a rising function.
+    #[inline(never)]
+    pub const fn held(&self) -> Interval {
+        let sum = Interval::ONE.div(Interval::ONE.sub(self.left));
+        sum.sub(Interval::ONE.half()).div(Interval::exact(self.updates))
+    }
+
+    /// The same less the integral of its square, `(h / 6) (1 + 4 p + p^2) / (1 - p^2)`: in partial fractions,
+    /// of which each rises with `p`.
+    pub(super) const fn unspread(&self) -> Interval {
+        let near = Interval::exact(3.0).div(Interval::ONE.sub(self.left));
+        let far = Interval::ONE.div(Interval::ONE.add(self.left));
+        near.sub(far).sub(Interval::ONE).div(Interval::exact(6.0 * self.updates))
+    }
+
+    /// What is left of a step after a time in periods that is a whole number of updates.
+    #[inline(never)]
+    pub const fn after(&self, time: Interval) -> Interval {
+        let mut updates = (time.midpoint() * self.updates + 0.5) as u32;
+        let (mut power, mut square) = (Interval::ONE, self.left);
+        while updates > 0 {
+            if updates & 1 == 1 {
+                power = power.mul(square);
+            }
+            square = square.mul(square);
+            updates >>= 1;
+        }
+        power
+    }
 }

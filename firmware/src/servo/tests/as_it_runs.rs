@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::certificate::{LoopTransfers, QuantizationBound, Resolution};
+use crate::latency::TimeRange;
 use crate::matched::MatchedCoupling;
 use crate::number::{Format, OutOfRange, Rounding};
 use crate::passivity::polynomial::{Polynomial, UnitRoot};
@@ -251,7 +252,9 @@ fn lagging_scenes() -> impl Iterator<Item = Scene> {
     let latencies = delays
         .into_iter()
         .flat_map(move |delay| lags.map(|lag| Latency::delayed(delay).with_actuator_lag(lag)));
-    latencies.flat_map(|latency| {
+    let in_updates = Latency::sampled(4, 3e-4, 1e-3);
+    let later = Latency { output_delay: TimeRange::exactly(2.25e-3), ..in_updates };
+    latencies.chain([in_updates, later]).flat_map(|latency| {
         let lagging =
             move |environment| Scene { coupling: Coupling::Matched, latency, ..scene(environment) };
         environments().map(lagging)
@@ -302,4 +305,11 @@ fn the_largest_deflection_is_that_of_a_torque_that_stays() {
         let found = coupling.largest_deflection();
         assert!((found * 2.0 * 0.022 / total - 1.0).abs() < 1e-12, "{found} {latency:?}");
     }
+    // An amplifier in updates is later by what its straight lines are.
+    let in_updates = Latency::sampled(4, 3e-4, 1e-3);
+    let coupling = MatchedCoupling::of(1e-3, 0.022, &in_updates, Format::F64).unwrap();
+    let left = f64::exp(-2.5e-4 / 3e-4);
+    let total = 1e-3 + 2.5e-4 + 1.25e-4 * (1.0 + left) / (1.0 - left);
+    let found = coupling.largest_deflection();
+    assert!((found * 2.0 * 0.022 / total - 1.0).abs() < 1e-12, "{found}");
 }

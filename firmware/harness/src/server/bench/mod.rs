@@ -11,6 +11,7 @@ use core::hint::black_box;
 use core::marker::PhantomData;
 
 use firmware::board::qemu::{EXIT_DONE, EXIT_REFUSED, lockstep, meter, tick_timer};
+use firmware::current::{CurrentController, Duties};
 use firmware::encoder::RawCount;
 use firmware::environment::Discretize;
 use firmware::number::{InEach, Number};
@@ -20,6 +21,8 @@ use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
 use crate::bench_request::{BLOCK, BenchRequest, Inputs, Output, Outputs, READY, REFUSED};
+use crate::currents::{CurrentBench, Input};
+use crate::rotations::{self, Rotation};
 use crate::sines::Sine;
 
 /// The types of environments of which a program has servos. A servo of data would have instructions
@@ -66,6 +69,8 @@ impl Host {
                     arithmetic.choose(ServoBench::<K> { job, scenes: PhantomData })?;
                 }
                 BenchRequest::Sine(sine) => self.sine(sine)?,
+                BenchRequest::Rotation(rotation) => self.rotation(rotation)?,
+                BenchRequest::Current(bench) => self.current(bench)?,
             }
         }
         Ok(())
@@ -134,6 +139,41 @@ impl Host {
         Ok(())
     }
 
+    /// Sines and cosines, as long as there are angles.
+    fn rotation(&mut self, rotation: Rotation) -> Result<(), HostClosed> {
+        self.answer(&[READY])?;
+        while let Some(angles) = self.inputs()? {
+            let mut outputs = [Output::default(); BLOCK];
+            for (angle, output) in angles.into_iter().zip(&mut outputs) {
+                let (pair, time) = timed_rotation(rotation, angle);
+                let instructions = self.scale.measured(time);
+                *output = Output { value: rotations::packed(pair), code: 0, instructions };
+            }
+            self.outputs(&outputs)?;
+        }
+        Ok(())
+    }
+
+    /// Instants of a current loop, as long as there are samples.
+    fn current(&mut self, bench: CurrentBench) -> Result<(), HostClosed> {
+        let (mut controller, mut instant) = (bench.started(), 0);
+        self.answer(&[READY])?;
+        while let Some(inputs) = self.inputs()? {
+            let mut outputs = [Output::default(); BLOCK];
+            for (input, output) in inputs.into_iter().zip(&mut outputs) {
+                instant += 1;
+                let ([u, code], time) = timed_instant(black_box(&mut controller), input, instant);
+                let instructions = self.scale.measured(time);
+                *output = Output { value: u.into(), code, instructions };
+                if u == 0 {
+                    controller = bench.started();
+                }
+            }
+            self.outputs(&outputs)?;
+        }
+        Ok(())
+    }
+
     /// Sines, as long as there are parts of a turn.
     fn sine(&mut self, sine: Sine) -> Result<(), HostClosed> {
         self.answer(&[READY])?;
@@ -150,8 +190,46 @@ impl Host {
     }
 }
 
+/// Sine and cosine of an angle, and the time that they took.
+#[inline(never)]
+fn timed_rotation(rotation: Rotation, angle: u32) -> ([f32; 2], u32) {
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match rotation {
+                $(Rotation::$kind => {
+                    let mut bits = [0; 2];
+                    let time = meter::measure(angle, |angle| {
+                        bits = Rotation::$kind.of_angle(angle).map(f32::to_bits);
+                        (bits[0], bits[1])
+                    });
+                    (bits.map(f32::from_bits), time)
+                })*
+            }
+        };
+    }
+    each!(Micromath, Libm, Cubic, Quintic, Septic, Table)
+}
+
+/// An instant of a current loop, and the time that it took. A fault, after which the loop begins anew, has no
+/// compare values.
+#[inline(never)]
+fn timed_instant(controller: &mut CurrentController, input: u32, instant: u32) -> ([u16; 2], u32) {
+    let mut compare = [0; 2];
+    let time = meter::measure(input, |input| {
+        let (sample, code) = Input(input).at(instant);
+        if let Ok(Duties([u, v, w])) = controller.step(&sample, code) {
+            compare = [u, v];
+            (u32::from(u) | u32::from(v) << 16, w.into())
+        } else {
+            (0, 0)
+        }
+    });
+    (compare, time)
+}
+
 /// The sine of the bits of a part of a turn, and the time that it took. The choice is outside of the
 /// measured stretch.
+#[inline(never)]
 fn timed(sine: Sine, turn: u32) -> (f32, u32) {
     macro_rules! each {
         ($($kind:ident),*) => {

@@ -1,0 +1,54 @@
+//! What an instant of the current loop takes on the emulated board, and that it computes as the host does.
+
+use analysis::emulator::BenchClient;
+use firmware::current::{Duties, Winding};
+use firmware_harness::bench_request::BenchRequest;
+use firmware_harness::currents::{CurrentBench, Input, OFFSET};
+
+use crate::emulated::TOOLCHAIN;
+
+/// Steps of the code, with currents of the phases U and V that follow it, or not: then voltage and circle are
+/// at their limits.
+fn inputs() -> Vec<u32> {
+    let input = |instant: u32| {
+        let code = if instant / 100 % 2 == 0 { 1700 } else { -1700 };
+        let noise = (instant.wrapping_mul(2_654_435_761) >> 27) as u16;
+        let amps = if instant % 100 < 12 { 120 } else { 0 };
+        let (u, v) = (OFFSET - 16 + noise + amps, OFFSET + 16 - noise - amps);
+        Input::new(u, v, code * i16::from(instant % 100 < 40)).0
+    };
+    (0..4000_u32).map(|instant| input(instant.wrapping_add(1))).collect()
+}
+
+#[test]
+fn an_instant_is_within_its_budget_and_is_the_hosts() {
+    let elf = TOOLCHAIN.build_bench_programs().unwrap_or_else(|error| panic!("{error}"));
+    let mut board = BenchClient::boot(&elf).unwrap();
+    for bench in CurrentBench::ALL {
+        let outputs = board.compute(&BenchRequest::Current(bench), &inputs()).unwrap();
+        let mut controller = bench.started();
+        let mut faults = 0;
+        for (instant, (input, output)) in (1..).zip(inputs().into_iter().zip(&outputs)) {
+            let (sample, code) = Input(input).at(instant);
+            let here = controller.step(&sample, code);
+            let compare = here.map_or([0; 2], |Duties([u, v, _])| [u, v]);
+            assert_eq!(
+                (output.value, output.code),
+                (compare[0].into(), compare[1]),
+                "{instant}: {here:?}"
+            );
+            if here.is_err() {
+                (controller, faults) = (bench.started(), faults + 1);
+            }
+        }
+        let usual = outputs.iter().map(|output| output.instructions).min().unwrap();
+        let most = outputs.iter().map(|output| output.instructions).max().unwrap();
+        println!("{bench:?}: {usual} to {most} instructions, {faults} faults");
+        let budget = match bench.design().winding() {
+            Winding::Brushed => 250,
+            Winding::Brushless { .. } => 450,
+        };
+        assert!(most <= budget && faults < 40, "{bench:?}: {most} of {budget}, {faults}");
+    }
+    board.finish().unwrap();
+}
