@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use analysis::toolchain::TorqueOutput;
-use firmware::current::Winding;
+use firmware::current::{Drive, Winding};
 use virtual_board::board::{Board, BusAccess};
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::device::Device;
@@ -18,15 +18,20 @@ use crate::bench::{Bench, build_for};
 /// Core clocks in a period of the modulation.
 pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
 
-/// The program's file. It is built when it is first asked for.
-fn program() -> &'static PathBuf {
-    static FILE: OnceLock<PathBuf> = OnceLock::new();
-    FILE.get_or_init(|| build_for(&B_G431B_ESC1, TorqueOutput::Bridge, &["bridge_wall"]).remove(0))
+/// The programs that drive the bridge.
+const PROGRAMS: [&str; 2] = ["bridge_wall", "brushless_wall"];
+
+/// A program's file. All of them are built when the first is asked for.
+fn program(name: &str) -> &'static PathBuf {
+    static FILES: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    let files = FILES.get_or_init(|| build_for(&B_G431B_ESC1, TorqueOutput::Bridge, &PROGRAMS));
+    let place = PROGRAMS.iter().position(|known| *known == name);
+    &files[place.expect("it drives the bridge")]
 }
 
-/// The motor that the program is for.
-pub fn motor() -> Motor {
-    let firmware::current::Motor { winding, resistance, inductance, torque_constant } = DRIVE.motor;
+/// The motor that a program is for.
+pub fn motor(drive: &Drive) -> Motor {
+    let firmware::current::Motor { winding, resistance, inductance, torque_constant } = drive.motor;
     let winding = match winding {
         Winding::Brushed => motor::Winding::Brushed,
         Winding::Brushless { pole_pairs } => {
@@ -36,13 +41,18 @@ pub fn motor() -> Motor {
     Motor::new(winding, resistance, inductance, torque_constant)
 }
 
-/// A bench with that motor, whose gates are recorded.
+/// A bench with the motor of `bridge_wall`, whose gates are recorded.
 pub fn boot(device: impl Device + Send + 'static) -> Bench {
-    let mut bench = Bench::boot_file(&B_G431B_ESC1, program(), device);
-    let board = bench.machine.board_mut();
-    board.gates = Some(Vec::new());
+    let mut bench = boot_program("bridge_wall", motor(&DRIVE), device);
+    bench.machine.board_mut().gates = Some(Vec::new());
+    bench
+}
+
+/// A bench with a program and a motor.
+pub fn boot_program(name: &str, motor: Motor, device: impl Device + Send + 'static) -> Bench {
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, program(name), device);
     let circuit = circuit(&mut bench);
-    circuit.motor = Some(motor());
+    circuit.motor = Some(motor);
     circuit.supply = Supply::stiff(24.0);
     bench
 }
