@@ -113,12 +113,9 @@ fn the_current_interrupt_computes_what_the_host_computes() {
         if is_on {
             let duties = host.step(&sample, reference).unwrap();
             let expected = duties.0.map(|duty| u32::from(CURRENT_LOOP.timer_counts() - duty));
-            for phase in 0..CURRENT_LOOP.phases() {
-                assert_eq!(
-                    instant.compare[phase],
-                    Some(expected[phase]),
-                    "{compared}: {instant:?}"
-                );
+            let pairs = instant.compare.into_iter().zip(expected.map(Some));
+            for (written, expected) in pairs.take(CURRENT_LOOP.phases()) {
+                assert_eq!(written, expected, "{compared}: {instant:?}");
             }
             compared += 1;
             moved += usize::from(reference != 0);
