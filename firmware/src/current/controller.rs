@@ -120,8 +120,25 @@ impl CurrentController {
     #[inline(always)]
     pub fn step(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         match self.design.winding {
-            Winding::Brushed => self.step_brushed(sample, code_offset),
-            Winding::Brushless { .. } => self.step_brushless(sample, code_offset),
+            Winding::Brushed => self.step_of::<false>(sample, code_offset),
+            Winding::Brushless { .. } => self.step_of::<true>(sample, code_offset),
+        }
+    }
+
+    /// The same where the type says whether the motor is brushless, so that there is no code for the other.
+    ///
+    /// # Errors
+    /// As for [`CurrentController::step`].
+    #[inline(always)]
+    pub fn step_of<const BRUSHLESS: bool>(
+        &mut self,
+        sample: &Sample,
+        code_offset: i16,
+    ) -> Result<Duties, PowerFault> {
+        if BRUSHLESS {
+            self.step_brushless(sample, code_offset)
+        } else {
+            self.step_brushed(sample, code_offset)
         }
     }
 

@@ -94,12 +94,14 @@ impl CurrentLoop {
         }
     }
 
+    /// Whether the motor has three phases and magnets.
+    pub const fn is_brushless(&self) -> bool {
+        matches!(self.winding(), Winding::Brushless { .. })
+    }
+
     /// Phases that the motor is wired to.
     pub const fn phases(&self) -> usize {
-        match self.winding() {
-            Winding::Brushed => 2,
-            Winding::Brushless { .. } => 3,
-        }
+        if self.is_brushless() { 3 } else { 2 }
     }
 
     /// Clock counts in a period of the servo: the timer counts up and down in each instant.

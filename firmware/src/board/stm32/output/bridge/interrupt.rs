@@ -13,8 +13,8 @@ use crate::current::{
 use crate::dac::DacCode;
 use crate::output_timing::OutputTiming;
 
-/// State of the current interrupt.
-pub struct CurrentIsr {
+/// State of the current interrupt, of a motor that is brushless or is not: a program has no code for the other.
+pub struct CurrentIsr<const BRUSHLESS: bool> {
     controller: CurrentController,
     current_loop: &'static CurrentLoop,
     /// Instants in a period of the servo.
@@ -29,7 +29,7 @@ pub struct CurrentIsr {
     reference: i16,
 }
 
-impl CurrentIsr {
+impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     /// Before the first instant, which is one PWM period after the counter's start.
     pub fn new(current_loop: &'static CurrentLoop, timing: OutputTiming) -> Self {
         Self {
@@ -85,7 +85,7 @@ impl CurrentIsr {
             cold_path();
             return stop(self.controller.over_current(sample));
         }
-        match self.controller.step(sample, self.reference) {
+        match self.controller.step_of::<BRUSHLESS>(sample, self.reference) {
             Ok(duties) => pwm::set(self.current_loop, duties),
             Err(fault) => return stop(fault),
         }
@@ -104,7 +104,7 @@ impl CurrentIsr {
     #[inline(never)]
     fn otherwise(&mut self, sample: &Sample) {
         let state = STATE.load(Ordering::Relaxed);
-        if state == State::Aligning as u8 {
+        if BRUSHLESS && state == State::Aligning as u8 {
             return self.align(sample);
         }
         // With the gates low: the offsets of the amplifiers.
@@ -112,7 +112,7 @@ impl CurrentIsr {
         pwm::set(self.current_loop, self.current_loop.no_voltage());
         let started = if state == State::Starting as u8 {
             self.controller.start().map(|()| State::On)
-        } else if state == State::StartingAlignment as u8 {
+        } else if BRUSHLESS && state == State::StartingAlignment as u8 {
             self.controller.start_alignment().map(|alignment| {
                 self.alignment = Some(alignment);
                 State::Aligning

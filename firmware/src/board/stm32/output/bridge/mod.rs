@@ -36,22 +36,23 @@ pub use pace::Pace;
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{AlignmentError, CurrentLoop, PowerFault, Winding};
+use crate::current::{AlignmentError, CurrentLoop, PowerFault};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
 use crate::torque_output::TorqueOutput;
 
 /// Where the current interrupt finds its state.
-pub type CurrentCell = IsrCell<CurrentIsr>;
+pub type CurrentCell<const BRUSHLESS: bool> = IsrCell<CurrentIsr<BRUSHLESS>>;
 
 /// What this output has to know of a program.
 #[derive(Clone, Copy)]
 pub struct Setup {
     /// The current loop of the program's motor.
     pub current_loop: &'static CurrentLoop,
-    /// The place of its interrupt's state.
-    pub cell: &'static CurrentCell,
+    /// Fills the place of its interrupt's state, whose type says which motor it is. That interrupt must not be
+    /// enabled yet.
+    pub fill: fn(OutputTiming),
 }
 
 /// The code that the servo gave last.
@@ -83,7 +84,7 @@ enum State {
 /// The bridge, for the servo's interrupt.
 #[derive(Debug)]
 pub struct Output {
-    is_brushed: bool,
+    is_brushless: bool,
 }
 
 impl Output {
@@ -98,11 +99,10 @@ impl Output {
         over_current::prepare(current_loop.over_current_counts());
         sense::prepare();
         latest::of(current_loop);
-        // SAFETY: the interrupt that uses the place is not enabled yet.
-        unsafe { setup.cell.init(CurrentIsr::new(current_loop, timing)) };
+        (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
-        let is_brushed = matches!(current_loop.winding(), Winding::Brushed);
-        Ok((Self { is_brushed }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
+        let is_brushless = current_loop.is_brushless();
+        Ok((Self { is_brushless }, Pace::new(counts, 2 * u32::from(current_loop.timer_counts()))))
     }
 
     /// Lets the current interrupt begin, with the gates low.
@@ -133,7 +133,7 @@ impl TorqueOutput for Output {
     }
 
     fn align(&mut self) -> Result<(), Fault> {
-        if self.is_brushed {
+        if !self.is_brushless {
             return Err(Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)));
         }
         if STATE.load(Ordering::Relaxed) == State::Off as u8 {
@@ -196,13 +196,20 @@ macro_rules! board_output {
         );
     };
     ([$current_loop:ident]) => {
-        static CURRENT: $crate::board::stm32::output::bridge::CurrentCell =
-            $crate::board::isr_cell::IsrCell::empty();
+        static CURRENT: $crate::board::stm32::output::bridge::CurrentCell<
+            { $current_loop.is_brushless() },
+        > = $crate::board::isr_cell::IsrCell::empty();
+
+        fn fill_current(timing: $crate::output_timing::OutputTiming) {
+            let state = $crate::board::stm32::output::bridge::CurrentIsr::new(&$current_loop, timing);
+            // SAFETY: called before the interrupt that uses the place is enabled.
+            unsafe { CURRENT.init(state) };
+        }
 
         /// What the bridge has to know of this program.
         const OUTPUT: $crate::board::stm32::output::Setup = $crate::board::stm32::output::Setup {
             current_loop: &$current_loop,
-            cell: &CURRENT,
+            fill: fill_current,
         };
 
         $crate::in_fast_memory! {
