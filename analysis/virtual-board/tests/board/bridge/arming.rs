@@ -116,3 +116,27 @@ fn a_hand_that_holds_the_paddle_feels_the_torque_of_the_code() {
     println!("{made:.5} N m of {wanted:.5}");
     assert!((made - wanted).abs() < 0.005, "{made} N m of {wanted}");
 }
+
+/// Swings back, and then into the wall.
+fn strikes(time: f64) -> f64 {
+    if time < 0.3 { -0.35 } else { 0.35 }
+}
+
+/// What the wall brakes goes into the supply's capacitor: the gates are off before that is much above what is
+/// allowed, and what is left of the motion does not lift it further.
+#[test]
+fn a_supply_that_takes_nothing_back_is_not_lifted_far() {
+    let mut bench = boot(Paddle::new(strikes, 0.0));
+    circuit(&mut bench).supply = Supply { volts: 24.0, capacitance: Some(2e-5), source: 24.0 };
+    armed(&mut bench);
+    let mut highest: f64 = 24.0;
+    for _ in 0..900 {
+        bench.run(1);
+        highest = highest.max(circuit(&mut bench).supply.volts);
+    }
+    let told = bench.status().fault.and_then(FaultCode::fault);
+    println!("{highest:.2} V, {told:?}");
+    assert_eq!(told.map(|told| told.as_str()), Some("over-voltage"));
+    assert!(highest > 25.2 && highest < 26.5, "{highest} V");
+    assert!(!bench.machine.board().power_stage.timer.is_on());
+}

@@ -6,8 +6,9 @@ use super::bench::{armed, boot, circuit};
 use super::bridge_wall::{SCENE, TRANSDUCERS};
 use super::paddle::Paddle;
 
-/// Torque of the hand in N m.
+/// Torque of the hand and Coulomb friction in N m.
 const TORQUE: f64 = 0.9;
+const FRICTION: f64 = 0.01;
 
 /// Leans against the wall from a quarter of a second on, and lets go at 1.2 s.
 fn leans(time: f64) -> f64 {
@@ -17,7 +18,7 @@ fn leans(time: f64) -> f64 {
 /// With some friction it stands still where the wall's stiffness has it, and the motor's torque is the hand's.
 #[test]
 fn a_hand_that_leans_against_the_wall_comes_to_rest() {
-    let mut bench = boot(Paddle::new(leans, 0.01));
+    let mut bench = boot(Paddle::new(leans, FRICTION));
     let armed = armed(&mut bench);
     bench.run(1000);
     let torque = circuit(&mut bench).mean_torque();
@@ -32,4 +33,9 @@ fn a_hand_that_leans_against_the_wall_comes_to_rest() {
     println!("free: {:?} {:?}", free.iter().min(), free.iter().max());
     assert!(SCENE.torque_limit.is_some_and(|limit| limit > TORQUE));
     assert!(spread <= 1);
+    // What is left is friction's.
+    assert!((torque + TORQUE).abs() <= FRICTION, "{torque} N m");
+    let (out, last) = (free.iter().max(), free.last());
+    assert!(out < Some(&0) && free.iter().all(|count| Some(count) == last), "{out:?}");
+    assert!(bench.machine.board().power_stage.timer.is_on());
 }
