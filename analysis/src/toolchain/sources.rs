@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 /// The call that makes a scene's file a program; a file without it is another program.
 const SCENE: &str = "scene_program!";
+/// The one that makes a program of a sweep.
+const SWEEP: &str = "sweep_program!";
 
 /// The folder of the programs' files.
 #[derive(Clone, Debug)]
@@ -178,16 +180,16 @@ impl Sources {
         self.folder.join(format!("{name}.rs"))
     }
 
-    /// Whether the program of that name renders a scene with the latency of a board's bridge: the call that
-    /// makes it a program then has a line for its current loop. No program of that name has none.
+    /// Whether the program of that name is for a board's bridge: the call that makes it a program then names its
+    /// current loop. No program of that name is for none.
     ///
     /// # Errors
     /// Where its file cannot be read.
     pub fn is_for_bridge(&self, name: &str) -> Result<bool, SourcesError> {
         let path = self.file(name);
         match fs::read_to_string(&path) {
-            Ok(text) => Ok(text.split_once(SCENE).is_some_and(|(_, call)| {
-                call.lines().any(|line| line.trim_start().starts_with("bridge:"))
+            Ok(text) => Ok([SCENE, SWEEP].into_iter().any(|program| {
+                text.split_once(program).is_some_and(|(_, call)| call.contains("bridge:"))
             })),
             Err(source) if source.kind() == io::ErrorKind::NotFound => Ok(false),
             Err(source) => Err(SourcesError::File { path, source }),

@@ -142,6 +142,12 @@ impl CurrentController {
         }
     }
 
+    /// Counts of the phases U and V without a current, as the last start took them over.
+    pub const fn offsets(&self) -> [u16; 2] {
+        // The casts round positive numbers down.
+        [self.offset[0] as u16, self.offset[1] as u16]
+    }
+
     /// The fault of a comparator that has taken the gates away, with the larger of the two currents of the
     /// instant after it.
     #[cold]

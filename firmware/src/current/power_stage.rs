@@ -67,11 +67,6 @@ impl PowerStage {
         // The cast rounds a positive number down, and gives the nearest of what does not fit.
         (self.dead_time * self.clock + (1.0 - 1e-6)) as u8
     }
-
-    /// The count without a current of an amplifier in the middle of its range.
-    pub const fn no_current(&self) -> u16 {
-        (self.offset_counts.0 + self.offset_counts.1) / 2
-    }
 }
 
 // Longer ones are not linear in the timer's register.

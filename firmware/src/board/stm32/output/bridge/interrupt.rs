@@ -6,7 +6,7 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, latest, off, pace, pwm, sense, tell};
+use super::{STATE, State, WAITING, latest, off, over_current, pace, pwm, sense, tell};
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
 };
@@ -122,6 +122,8 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         };
         match started {
             Ok(state) => {
+                let zero = self.controller.offsets();
+                over_current::set(zero, self.current_loop.over_current_counts());
                 STATE.store(state as u8, Ordering::Relaxed);
                 pwm::on();
             }

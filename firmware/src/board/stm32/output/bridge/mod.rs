@@ -96,7 +96,7 @@ impl Output {
         let current_loop = setup.current_loop;
         pwm::prepare(current_loop);
         GATES.connect(current_loop.phases());
-        over_current::prepare(current_loop.over_current_counts());
+        over_current::prepare();
         sense::prepare();
         latest::of(current_loop);
         (setup.fill)(timing);

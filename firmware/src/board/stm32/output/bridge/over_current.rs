@@ -7,7 +7,6 @@ use embassy_stm32::pac::dac::vals::Mode;
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
-use crate::board::stm32::wiring::POWER_STAGE;
 use crate::current::PowerStage;
 
 /// Gain of the shunts' amplifiers, whose inputs the comparators are at.
@@ -21,8 +20,11 @@ const COMPARATORS: [pac::comp::Comp; 3] = [pac::COMP1, pac::COMP2, pac::COMP4];
 /// is sampled in the middle of the low side has the ripple's mean, and a comparator sees its peak.
 const ABOVE: (u16, u16) = (6, 5);
 
-/// Sets the comparators up, for an over-current of this many counts of the converters.
-pub fn prepare(counts: u16) {
+/// The least that they do, in counts of DAC3: noise and switching shall not be a short.
+const LEAST: u16 = 2;
+
+/// Sets the comparators up. Until [`set`] they trip at the amplifiers' largest output, at which none of them is.
+pub fn prepare() {
     rcc::enable_and_reset::<peripherals::DAC3>();
     let dac = pac::DAC3;
     dac.mcr().write(|w| {
@@ -32,12 +34,8 @@ pub fn prepare(counts: u16) {
             w.set_mode(channel, Mode::NORMAL_INT_BUFDIS);
         }
     });
-    // The shunts' voltages are those behind their amplifiers, by the gain. Rounded down: never later than
-    // it says.
-    let counts = POWER_STAGE.no_current() + counts / ABOVE.1 * ABOVE.0;
-    let threshold = counts.min(PowerStage::LARGEST_COUNT) / AMPLIFIER_GAIN;
     for channel in 0..2 {
-        dac.dhr12r(channel).write(|w| w.set_dhr(threshold));
+        write(channel, PowerStage::LARGEST_COUNT / AMPLIFIER_GAIN);
     }
     dac.cr().write(|w| {
         w.set_en(0, true);
@@ -51,4 +49,20 @@ pub fn prepare(counts: u16) {
             w.set_en(true);
         });
     }
+}
+
+/// Has the comparators trip at an over-current of this many counts of the converters, above the counts of the
+/// phases U and V without a current. Phase W, whose amplifier no converter reads, has that of phase V.
+///
+/// The shunts' voltages are those behind their amplifiers, by the gain. Rounded down: never later than it says
+/// by more than the least.
+pub fn set(zero: [u16; 2], counts: u16) {
+    let above = (counts / ABOVE.1 * ABOVE.0).max(LEAST * AMPLIFIER_GAIN);
+    for (channel, zero) in zero.into_iter().enumerate() {
+        write(channel, (zero + above).min(PowerStage::LARGEST_COUNT) / AMPLIFIER_GAIN);
+    }
+}
+
+fn write(channel: usize, threshold: u16) {
+    pac::DAC3.dhr12r(channel).write(|w| w.set_dhr(threshold));
 }

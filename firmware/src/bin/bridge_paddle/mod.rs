@@ -1,0 +1,41 @@
+//! The paddle with a brushed motor on a motor board: what `bridge_wall` renders with and `bridge_identify`
+//! measures. A device of your own has its numbers here, or in a module like this.
+
+// A crate that includes several programs has this module in each.
+#![allow(dead_code, clippy::duplicate_mod)]
+
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, Motor, Supply, Winding};
+use firmware::encoder::CounterWidth;
+use firmware::scene::Device;
+use firmware::servo::Transducers;
+
+/// Period of the servo in s, 40 of the current loop.
+pub const PERIOD: f64 = 0.001;
+
+/// What the hand holds: inertia in kg m^2, damping in N m s/rad.
+pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+
+/// Its encoder, and its motor at the handle, behind a capstan of 1 to 10.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 61_440.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 1.0,
+    largest_speed: 25.0,
+};
+
+/// The motor between the outputs U and V, and its supply.
+pub const DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushed,
+        resistance: 0.6,
+        inductance: 0.12e-3,
+        torque_constant: 0.29,
+    },
+    supply: Supply { lowest: 23.0, highest: 25.2 },
+    bandwidth: 2000.0,
+    largest_temperature: 80.0,
+};
+
+/// Its current loop on the board's power stage: a motor that it cannot drive stops the compiler here.
+pub const CURRENT_LOOP: CurrentLoop =
+    CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD);
