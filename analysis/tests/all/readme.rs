@@ -24,6 +24,7 @@ const DOCUMENTS: [&str; 19] = [
     "firmware/PROTOCOL.md",
     "firmware/THEORY.md",
     "firmware/TROUBLESHOOTING.md",
+    "analysis/virtual-board/bridge-faults.md",
     "analysis/virtual-board/faults.md",
 ];
 

@@ -2,11 +2,13 @@
 
 mod bus;
 
-use crate::chip::{Chip, TICK_INTERRUPT, TORQUE};
+use crate::chip::{
+    BREAKS, CONVERSION_INTERRUPT, Chip, LOCK_UP_BREAKS, PWM_INTERRUPTS, TICK_INTERRUPT, TORQUE,
+};
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::device::{Device, FixedDevice};
-use crate::error::NotModelled;
+use crate::error::{AccessError, NotModelled};
 use crate::meter::Meter;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::clock::{Cause, Clock};
@@ -16,6 +18,7 @@ use crate::peripheral::inert_registers::InertRegisters;
 use crate::peripheral::pins::{Level, Pins};
 use crate::peripheral::serial::Serial;
 use crate::peripheral::watchdog::Watchdog;
+use crate::power_stage::{Gates, Outcome, PowerStage, Surroundings};
 
 /// What happened on the board's pins, with the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +27,22 @@ pub enum Event {
     Torque(Option<u16>),
     /// The amplifier's line changed.
     Amplifier(Level),
+}
+
+/// The converters' first registers.
+const CONVERTERS: [u32; 2] = [0x5000_0000, 0x5000_0100];
+
+/// An access of the program to a peripheral.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BusAccess {
+    /// When.
+    pub at: u64,
+    /// Where.
+    pub address: u32,
+    /// Whether it wrote.
+    pub writes: bool,
+    /// What it read or wrote.
+    pub value: u32,
 }
 
 /// The board.
@@ -44,6 +63,8 @@ pub struct Board {
     pub dac: Dac,
     /// The serial port.
     pub serial: Serial,
+    /// The power stage, on a board that has one.
+    pub power_stage: PowerStage,
     /// What is wired to the motor and the encoder.
     pub device: Box<dyn Device + Send>,
     /// Instructions of the servo's interrupt.
@@ -54,6 +75,10 @@ pub struct Board {
     pub broken: Option<u32>,
     /// Events of the pins, if they are recorded.
     pub events: Option<Vec<(u64, Event)>>,
+    /// Changes of the power stage's gates, if they are recorded.
+    pub gates: Option<Vec<(u64, Gates)>>,
+    /// Accesses of the program to peripherals, if they are recorded.
+    pub accesses: Option<Vec<BusAccess>>,
     pub(crate) stopped: Option<NotModelled>,
     chip: &'static Chip,
     free_clock: Counter,
@@ -83,11 +108,14 @@ impl Board {
             encoder: Counter::new(chip.counter),
             dac: Dac::new(chip.dac),
             serial: Serial::new(chip.usart),
+            power_stage: PowerStage::default(),
             device,
             meter: Meter::default(),
             samples: 0,
             broken: None,
             events: None,
+            gates: None,
+            accesses: None,
             stopped: None,
             chip,
             free_clock: Counter::new(32),
@@ -110,6 +138,7 @@ impl Board {
     /// Every unit as out of reset; memory, time and the device stay, and with them the option bytes and
     /// what a debugger has set.
     pub fn reset(&mut self, cause: Cause) {
+        self.advance_power_stage();
         let device = std::mem::replace(&mut self.device, Box::new(FixedDevice));
         let mut fresh = Self::new(self.chip, device);
         fresh.flash = self.flash_after_reset();
@@ -120,10 +149,14 @@ impl Board {
             samples: self.samples,
             broken: self.broken,
             events: self.events.take(),
+            gates: self.gates.take(),
+            accesses: self.accesses.take(),
+            power_stage: self.power_stage.after_reset(),
             clock: self.clock.after_reset(cause),
             seen: self.seen,
             ..fresh
         };
+        self.power_stage_changed();
         self.record_pin_events();
     }
 
@@ -162,7 +195,7 @@ impl Board {
         let timers = [self.tick_timer.due(), self.phase_timer.due(), self.system.systick.due()];
         timers
             .into_iter()
-            .chain([self.serial.due(), self.watchdog.due()])
+            .chain([self.serial.due(), self.watchdog.due(), self.power_stage.due()])
             .flatten()
             .min()
             .unwrap_or(u64::MAX)
@@ -171,6 +204,7 @@ impl Board {
     /// Does what is due; whether the watchdog resets the board.
     pub fn advance(&mut self) -> bool {
         let now = self.now;
+        self.advance_power_stage();
         let divider = self.clock.timer_divider();
         if self.tick_timer.advance(now, divider) {
             self.sample();
@@ -191,11 +225,74 @@ impl Board {
     /// begins the next one. What is put out then is the code that the sample ends with; a device whose
     /// codes have a phase knows from when on it is there.
     fn sample(&mut self) {
-        self.samples += 1;
-        let counts = self.device.sample(self.torque(), self.amplifier() == Level::High);
-        self.turn_encoder(counts);
+        self.end_sample();
         if self.tick_timer.triggers() {
             self.dac.trigger(Trigger::Tim6);
+        }
+    }
+
+    /// A sample ends: with an update of the pacing timer, or with the servo's interrupt that the program asks
+    /// for itself.
+    fn end_sample(&mut self) {
+        self.samples += 1;
+        let is_on = self.amplifier() == Level::High || self.power_stage.timer.is_on();
+        let counts = self.device.sample(self.torque(), is_on);
+        self.turn_encoder(counts);
+    }
+
+    /// The power stage goes on to now.
+    fn advance_power_stage(&mut self) {
+        let Self { power_stage, device, ports, chip, clock, now, .. } = self;
+        if chip.gates.is_none() {
+            return;
+        }
+        let around = Surroundings { chip, ports, core: clock.core() };
+        let outcome = power_stage.advance(*now, &around, &mut **device);
+        self.take(outcome);
+    }
+
+    /// The program, or a test, has changed something that the power stage depends on.
+    pub fn power_stage_changed(&mut self) {
+        let Self { power_stage, ports, chip, clock, .. } = self;
+        if chip.gates.is_none() {
+            return;
+        }
+        let mut outcome = Outcome::default();
+        let around = Surroundings { chip, ports, core: clock.core() };
+        power_stage.changed(&around, &mut outcome);
+        self.take(outcome);
+    }
+
+    /// A break of the power stage by the chip itself: its clock has failed.
+    pub(crate) fn break_power_stage(&mut self) {
+        self.advance_power_stage();
+        self.power_stage.break_by_system();
+        self.power_stage_changed();
+    }
+
+    /// The core is locked up, which breaks the power stage where the program has asked for that.
+    pub(crate) fn lock_up(&mut self) {
+        if self.chip.gates.is_some() && self.configuration.get(BREAKS) & LOCK_UP_BREAKS != 0 {
+            self.break_power_stage();
+        }
+    }
+
+    fn take(&mut self, outcome: Outcome) {
+        let Outcome { turns, gates, floating } = outcome;
+        for (counts, triggers) in turns {
+            self.turn_encoder(counts);
+            if triggers {
+                self.encoder.capture();
+            }
+        }
+        if let Some(recorded) = &mut self.gates {
+            recorded.extend(gates);
+        }
+        if let Some(number) = floating {
+            let address = CONVERTERS[number];
+            let unit = self.chip.at(address).map(|map_entry| map_entry.name);
+            let (register, written, why) = (None, None, AccessError::Floating);
+            self.stopped.get_or_insert(NotModelled { unit, register, address, written, why });
         }
     }
 
@@ -224,6 +321,13 @@ impl Board {
         let exceptions = &mut self.system.exceptions;
         exceptions.set_line(FIRST_INTERRUPT + TICK_INTERRUPT, self.tick_timer.line());
         exceptions.set_line(FIRST_INTERRUPT + self.chip.serial_interrupt, self.serial.line());
+        if self.chip.gates.is_some() {
+            let line = self.power_stage.conversion_line();
+            exceptions.set_line(FIRST_INTERRUPT + CONVERSION_INTERRUPT, line);
+            for (number, line) in PWM_INTERRUPTS.into_iter().zip(self.power_stage.timer.lines()) {
+                exceptions.set_line(FIRST_INTERRUPT + number, line);
+            }
+        }
     }
 
     /// Records the events of pins that have changed.

@@ -53,6 +53,9 @@ pub struct Chip {
     pub counter: u32,
     /// The pin that switches the amplifier on, as port and number; high is on, on every board.
     pub amplifier: (usize, u32),
+    /// The gates of its power stage, where it has one: high sides, then low sides of the phases U, V and W,
+    /// each with the alternate function that is TIM1.
+    pub gates: Option<&'static [((usize, u32), u32); 6]>,
     /// The encoder's two pins and the alternate function that is its timer.
     pub encoder: ([(usize, u32); 2], u32),
     /// The serial port's two pins and the alternate function that is that port.
@@ -83,6 +86,10 @@ pub struct Chip {
 
 /// TIM6 with the DAC's underrun: the servo's interrupt.
 pub const TICK_INTERRUPT: u16 = 54;
+/// ADC1 and ADC2: the current loop's interrupt.
+pub const CONVERSION_INTERRUPT: u16 = 18;
+/// TIM1's breaks and its updates.
+pub const PWM_INTERRUPTS: [u16; 2] = [24, 25];
 /// The pin that the DAC drives: PA4 on both.
 pub const TORQUE: (usize, u32) = (0, 4);
 
@@ -106,6 +113,12 @@ const fn ungated(base: u32, name: &'static str, unit: Unit) -> MapEntry {
 pub const WATCHDOG_FREEZES: u32 = 1 << 12;
 /// Place of that register in the unit for debugging.
 pub const FREEZE: u32 = 0x08;
+
+/// Place of the G4's CFGR2 in the system configuration, one of whose bits has a core that is locked up
+/// break the outputs of TIM1 (RM0440, 10.2.8).
+pub const BREAKS: u32 = 0x1C;
+/// That bit.
+pub const LOCK_UP_BREAKS: u32 = 1;
 
 /// The unit for debugging: which chip it is, and what is clocked while the core sleeps.
 static DEBUG_G4: &[(u32, u32, u32)] =
@@ -142,6 +155,28 @@ const fn g4_map([first, second]: [MapEntry; 2]) -> [MapEntry; 19] {
     ]
 }
 
+/// The units of a power stage on an STM32G4.
+const POWER_STAGE: [MapEntry; 7] = [
+    map_entry(0x4001_0200, "COMP", Unit::Comparators, 0x60, 0x40, 0),
+    map_entry(0x4001_0300, "OPAMP", Unit::OpAmps, 0x60, 0x40, 0),
+    map_entry(0x4001_2C00, "TIM1", Unit::PwmTimer, 0x60, 0x40, 11),
+    map_entry(0x5000_0000, "ADC1", Unit::Adc(0), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0100, "ADC2", Unit::Adc(1), 0x4C, 0x2C, 13),
+    map_entry(0x5000_0300, "ADC12", Unit::AdcCommon, 0x4C, 0x2C, 13),
+    map_entry(0x5000_1000, "DAC3", Unit::ThresholdDac, 0x4C, 0x2C, 18),
+];
+
+/// A map with those of a power stage.
+const fn with_power_stage(map: [MapEntry; 19]) -> [MapEntry; 26] {
+    let mut all = [POWER_STAGE[0]; 26];
+    let mut i = 0;
+    while i < all.len() {
+        all[i] = if i < map.len() { map[i] } else { POWER_STAGE[i - map.len()] };
+        i += 1;
+    }
+    all
+}
+
 /// STM32G474RE on a NUCLEO-G474RE.
 pub static NUCLEO_G474RE: Chip = Chip {
     name: "nucleo-g474re",
@@ -156,6 +191,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     ]),
     counter: 32,
     amplifier: (1, 10),
+    gates: None,
     // TIM2_CH1 and TIM2_CH2.
     encoder: ([(0, 0), (0, 1)], 1),
     // USART2_TX and USART2_RX.
@@ -169,7 +205,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     flash_interface: flash::g4,
     options: 0x20,
     // CFGR2, with the flag of a wrong parity.
-    configuration: || InertRegisters::new(&[(0x1C, 0, 0)]),
+    configuration: || InertRegisters::new(&[(BREAKS, 0, 0)]),
     debug: || InertRegisters::new(DEBUG_G4),
     ports: |port| match port {
         // The debug port's pins are not analog out of reset; A's and B's differ.
@@ -186,12 +222,23 @@ pub static B_G431B_ESC1: Chip = Chip {
     ram: 22 << 10,
     coupled: (10 << 10, true),
     crystal: 8_000_000,
-    map: &g4_map([
+    map: &with_power_stage(g4_map([
         map_entry(0x4000_0000, "TIM2", Unit::FreeClock, 0x58, 0x38, 0),
         map_entry(0x4000_0800, "TIM4", Unit::Encoder, 0x58, 0x38, 2),
-    ]),
+    ])),
     counter: 16,
     amplifier: (0, 15),
+    // TIM1_CH1 to CH3 and TIM1_CH1N to CH3N.
+    gates: Some(&[
+        ((0, 8), 6),
+        ((0, 9), 6),
+        ((0, 10), 6),
+        ((2, 13), 4),
+        ((0, 12), 6),
+        ((1, 15), 4),
+    ]),
+    // CFGR2 as above, and whether a core that is locked up breaks TIM1's outputs.
+    configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
     // USART2_TX and USART2_RX.
@@ -232,6 +279,7 @@ pub static STM32F405: Chip = Chip {
     ],
     counter: 16,
     amplifier: (1, 6),
+    gates: None,
     // TIM3_CH1 and TIM3_CH2.
     encoder: ([(2, 6), (2, 7)], 2),
     // USART3_TX and USART3_RX.
@@ -273,11 +321,12 @@ impl Chip {
         Self::BOARDS.into_iter().find(|chip| chip.name == name)
     }
 
-    /// The unit at an address.
+    /// The unit at an address: of those that share a span, the last that begins before it.
     pub fn at(&self, address: u32) -> Option<&'static MapEntry> {
-        let map_entry = |chip: &'static [MapEntry]| {
-            chip.iter().find(|map_entry| address & !(SPAN - 1) == map_entry.base)
-        };
-        map_entry(self.map)
+        let span = address & !(SPAN - 1);
+        let map: &'static [MapEntry] = self.map;
+        map.iter()
+            .filter(|map_entry| map_entry.base & !(SPAN - 1) == span && map_entry.base <= address)
+            .max_by_key(|map_entry| map_entry.base)
     }
 }

@@ -36,6 +36,14 @@ pub enum BoardError {
         /// Where.
         address: u32,
     },
+    /// Both switches of a leg of the power stage were on.
+    #[error("both switches of leg {leg} of the power stage were on; instruction {now}")]
+    ShootThrough {
+        /// When.
+        now: u64,
+        /// Which: 0 is phase U.
+        leg: usize,
+    },
     /// The clock stands still, and there is no watchdog.
     #[error("the core's clock has stopped, and there is no watchdog; instruction {now}")]
     NoClock {
@@ -107,6 +115,8 @@ pub enum AccessError {
     Stopped,
     /// Such an access (by bytes) is not.
     Width,
+    /// A converter has sampled a channel that nothing drives.
+    Floating,
 }
 
 impl fmt::Display for NotModelled {
@@ -127,6 +137,7 @@ impl fmt::Display for NotModelled {
                 write!(f, "the bits {bits:#010x} are not modelled in that register")
             }
             AccessError::Stopped => f.write_str("its clock is off, or it is held in reset"),
+            AccessError::Floating => f.write_str("it has sampled a channel that nothing drives"),
             AccessError::Width => f.write_str("an access of that width is not modelled"),
         }
     }

@@ -9,6 +9,7 @@
 //! - [`chip`]: the chips: their memory maps, and the pins that the boards use; [`unit`](mod@unit): what a
 //!   peripheral is for.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
+//! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
 //! - [`device`]: what is wired to the board.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile; [`halt`]:
@@ -31,8 +32,10 @@ pub mod image;
 mod it_block;
 pub mod machine;
 pub mod meter;
+pub mod motor;
 mod names;
 pub mod peripheral;
+pub mod power_stage;
 pub mod processor;
 mod rtt;
 pub mod semihosting;

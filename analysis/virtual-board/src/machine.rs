@@ -169,6 +169,7 @@ impl Machine {
         let board = self.core.board_mut();
         if board.clock.notice_failure() {
             board.system.exceptions.pend(NON_MASKABLE);
+            board.break_power_stage();
         }
         if board.clock.has_stopped() {
             return self.stand_still();
@@ -195,6 +196,9 @@ impl Machine {
         let at = self.core.last_address();
         if let Some(what) = self.core.board().stopped.clone() {
             return Err(BoardError::NotModelled { what, now: self.board().now, address: at });
+        }
+        if let Some((now, leg)) = self.core.board().power_stage.shoot_through() {
+            return Err(BoardError::ShootThrough { now, leg });
         }
         if let Some(address) = self.core.board_mut().bus_error.take() {
             // The access has failed; the instruction is the one that made it.

@@ -11,6 +11,32 @@ const TIMER: Row = &[
     "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC", "ARR",
     "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR",
 ];
+/// The advanced timer.
+const PWM_TIMER: Row = &[
+    "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC", "ARR",
+    "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR", "CCR5", "CCR6", "CCMR3", "DTR2", "ECR", "TISEL",
+    "AF1", "AF2",
+];
+/// A converter of the G4.
+const ADC_G4: Row = &[
+    "ISR", "IER", "CR", "CFGR", "CFGR2", "SMPR1", "SMPR2", "", "TR1", "TR2", "TR3", "", "SQR1",
+    "SQR2", "SQR3", "SQR4", "DR", "", "", "JSQR", "", "", "", "", "OFR1", "OFR2", "OFR3", "OFR4",
+    "", "", "", "", "JDR1", "JDR2", "JDR3", "JDR4", "", "", "", "", "AWD2CR", "AWD3CR", "", "",
+    "DIFSEL", "CALFACT", "", "", "GCOMP",
+];
+const ADC_COMMON_G4: Row = &["CSR", "", "CCR", "CDR"];
+const COMPARATORS_G4: Row = &["COMP1_CSR", "COMP2_CSR", "COMP3_CSR", "COMP4_CSR"];
+const OP_AMPS_G4: Row = &[
+    "OPAMP1_CSR",
+    "OPAMP2_CSR",
+    "OPAMP3_CSR",
+    "",
+    "",
+    "",
+    "OPAMP1_TCMR",
+    "OPAMP2_TCMR",
+    "OPAMP3_TCMR",
+];
 /// Ports of pins.
 const PINS: Row =
     &["MODER", "OTYPER", "OSPEEDR", "PUPDR", "IDR", "ODR", "BSRR", "LCKR", "AFRL", "AFRH", "BRR"];
@@ -127,6 +153,10 @@ pub fn g4(unit: Unit, offset: u32) -> Option<&'static str> {
         Unit::Flash => FLASH_G4,
         Unit::Configuration => CONFIGURATION_G4,
         Unit::Serial => SERIAL_G4,
+        Unit::Adc(_) => ADC_G4,
+        Unit::AdcCommon => ADC_COMMON_G4,
+        Unit::Comparators => COMPARATORS_G4,
+        Unit::OpAmps => OP_AMPS_G4,
         other => common(other),
     };
     at(row, offset)
@@ -150,10 +180,12 @@ fn common(unit: Unit) -> Row {
     match unit {
         Unit::TickTimer | Unit::PhaseTimer | Unit::FreeClock | Unit::Encoder => TIMER,
         Unit::Pins(_) => PINS,
-        Unit::Dac => DAC,
+        Unit::PwmTimer => PWM_TIMER,
+        Unit::Dac | Unit::ThresholdDac => DAC,
         Unit::Watchdog => WATCHDOG,
         Unit::Debug => DEBUG,
         Unit::Clock | Unit::Power | Unit::Flash | Unit::Configuration | Unit::Serial => &[],
+        Unit::Adc(_) | Unit::AdcCommon | Unit::Comparators | Unit::OpAmps => &[],
     }
 }
 
@@ -177,6 +209,14 @@ mod tests {
             (Unit::Serial, 0x24, "RDR"),
             (Unit::Pins(1), 0x18, "BSRR"),
             (Unit::Power, 0x80, "CR5"),
+            (Unit::PwmTimer, 0x44, "BDTR"),
+            (Unit::PwmTimer, 0x64, "AF2"),
+            (Unit::Adc(0), 0x30, "SQR1"),
+            (Unit::Adc(0), 0x4C, "JSQR"),
+            (Unit::Adc(1), 0x80, "JDR1"),
+            (Unit::Adc(1), 0xC0, "GCOMP"),
+            (Unit::OpAmps, 0x18, "OPAMP1_TCMR"),
+            (Unit::ThresholdDac, 0x14, "DHR12R2"),
         ] {
             assert_eq!(g4(unit, offset), Some(name));
         }

@@ -29,4 +29,31 @@ pub enum Unit {
     Serial,
     /// The independent watchdog.
     Watchdog,
+    /// TIM1, the power stage's modulator.
+    PwmTimer,
+    /// ADC1 or ADC2: 0 is the first.
+    Adc(usize),
+    /// What both converters share.
+    AdcCommon,
+    /// The comparators.
+    Comparators,
+    /// The operational amplifiers.
+    OpAmps,
+    /// DAC3, the comparators' thresholds.
+    ThresholdDac,
+}
+
+impl Unit {
+    /// Whether it is one of a power stage's.
+    pub(crate) fn is_of_power_stage(self) -> bool {
+        matches!(
+            self,
+            Self::PwmTimer
+                | Self::Adc(_)
+                | Self::AdcCommon
+                | Self::Comparators
+                | Self::OpAmps
+                | Self::ThresholdDac
+        )
+    }
 }

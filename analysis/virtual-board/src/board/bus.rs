@@ -1,16 +1,17 @@
 //! The board's bus: what a program reads and writes there, or why there is no answer.
 
-use super::Board;
-use crate::chip::MapEntry;
+use super::{Board, BusAccess};
+use crate::chip::{MapEntry, TICK_INTERRUPT};
 use crate::core::System;
 use crate::core::exceptions::Number;
-use crate::core::system::{SYSTEM, WATCH};
+use crate::core::system::{SYSTEM, WATCH, pends};
 use crate::error::{AccessError, NotModelled};
 use crate::peripheral::Access;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
 use crate::peripheral::serial::Serial;
+use crate::power_stage::Surroundings;
 use crate::unit::Unit;
 
 /// What an address leads to; where that is registers, with the place behind the first one.
@@ -44,10 +45,12 @@ impl Board {
         if self.has_bus_error(address) {
             return 0;
         }
-        self.try_read(address, size).unwrap_or_else(|fault| {
+        let value = self.try_read(address, size).unwrap_or_else(|fault| {
             self.stop(fault, address, None);
             0
-        })
+        });
+        self.record_access(address, false, value);
+        value
     }
 
     /// Writes for the program.
@@ -55,12 +58,20 @@ impl Board {
         if self.has_bus_error(address) {
             return;
         }
+        self.record_access(address, true, value);
         if let Err(fault) = self.try_write(address, size, value) {
             self.stop(fault, address, Some(value));
         }
         self.serial.advance(self.now, self.clock.bus_divider());
         self.update_interrupt_lines();
         self.record_pin_events();
+    }
+
+    fn record_access(&mut self, address: u32, writes: bool, value: u32) {
+        let at = self.now;
+        if let Some(accesses) = &mut self.accesses {
+            accesses.push(BusAccess { at, address, writes, value });
+        }
     }
 
     /// Whether the bus gives an error there, which is kept for the core.
@@ -96,7 +107,12 @@ impl Board {
                 }
                 Ok(())
             }
-            Target::System(offset) => self.system.write(offset, value, self.now),
+            Target::System(offset) => {
+                if pends(offset, value, TICK_INTERRUPT) {
+                    self.end_sample();
+                }
+                self.system.write(offset, value, self.now)
+            }
             Target::Watch(offset) => self.system.write_watch(offset, value, self.now),
             Target::Unit(map_entry, offset) => self.write_unit(map_entry.unit, offset, value),
         };
@@ -152,10 +168,36 @@ impl Board {
             Unit::Dac => self.dac.read(offset),
             Unit::Serial => self.serial.read(offset),
             Unit::Watchdog => self.watchdog.read(offset),
+            Unit::PwmTimer
+            | Unit::Adc(_)
+            | Unit::AdcCommon
+            | Unit::Comparators
+            | Unit::OpAmps
+            | Unit::ThresholdDac => {
+                self.advance_power_stage();
+                // The comparators' levels are those of now.
+                if unit == Unit::Comparators {
+                    self.power_stage_changed();
+                }
+                self.power_stage.read(unit, offset)
+            }
         }
     }
 
     fn write_unit(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {
+        let changes_power_stage = unit.is_of_power_stage()
+            || matches!(unit, Unit::Pins(_) | Unit::Clock) && self.chip.gates.is_some();
+        if changes_power_stage {
+            self.advance_power_stage();
+        }
+        self.write_registers(unit, offset, value)?;
+        if changes_power_stage {
+            self.power_stage_changed();
+        }
+        Ok(())
+    }
+
+    fn write_registers(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {
         let (now, divider) = (self.now, self.clock.timer_divider());
         match unit {
             Unit::Clock => {
@@ -178,6 +220,19 @@ impl Board {
             }
             Unit::Serial => self.serial.write(offset, value),
             Unit::Watchdog => self.watchdog.write(offset, value, now, self.clock.core()),
+            Unit::PwmTimer
+            | Unit::Adc(_)
+            | Unit::AdcCommon
+            | Unit::Comparators
+            | Unit::OpAmps
+            | Unit::ThresholdDac => {
+                let Self { power_stage, ports, chip, clock, .. } = self;
+                let around = Surroundings { chip, ports, core: clock.core() };
+                if power_stage.write(unit, offset, value, &around)? {
+                    self.encoder.capture();
+                }
+                Ok(())
+            }
         }
     }
 
@@ -207,6 +262,12 @@ impl Board {
             Unit::Encoder => self.encoder = Counter::new(self.chip.counter),
             Unit::Dac => self.dac = Dac::new(self.chip.dac),
             Unit::Serial => self.serial = Serial::new(self.chip.usart),
+            Unit::PwmTimer
+            | Unit::Adc(_)
+            | Unit::AdcCommon
+            | Unit::Comparators
+            | Unit::OpAmps
+            | Unit::ThresholdDac => self.power_stage.reset_unit(unit),
         }
     }
 

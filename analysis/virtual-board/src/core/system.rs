@@ -239,6 +239,12 @@ impl System {
     }
 }
 
+/// Whether a write asks for this interrupt: ISPR.
+pub fn pends(offset: u32, value: u32, interrupt: Number) -> bool {
+    let interrupt = u32::from(interrupt);
+    offset == 0x200 + 4 * (interrupt / 32) && value >> (interrupt % 32) & 1 != 0
+}
+
 /// The interrupts of a word of the controller's bits, lowest first; none where the chips have none.
 fn numbers(offset: u32) -> impl Iterator<Item = Option<Number>> {
     let first = usize::try_from(offset).unwrap_or(0) * 8;

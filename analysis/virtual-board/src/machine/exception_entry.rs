@@ -36,6 +36,7 @@ impl Machine {
             // The one way out that there is.
             if board.watchdog.due().is_some() {
                 self.locked_up = true;
+                board.lock_up();
                 return Ok(());
             }
             return Err(BoardError::LockedUp { now: board.now, address: self.core.last_address() });

@@ -12,6 +12,9 @@ const OWN_INPUTS: u32 = 0x0101;
 const FILTERS: u32 = 0xF0F0;
 /// CCER: both channels enabled, neither inverted.
 const CHANNELS: u32 = 0x0011;
+/// CCMR2 and CCER: channel 3 captures the count at the trigger that SMCR chooses, which is the first: TIM1's.
+const TRIGGERED_CAPTURE: u32 = 0b11;
+const CAPTURES: u32 = 1 << 8;
 
 /// The timer.
 #[derive(Clone, Debug)]
@@ -22,6 +25,9 @@ pub struct Counter {
     slave: u32,
     inputs: u32,
     channels: u32,
+    capture_mode: u32,
+    /// What channel 3 has captured.
+    captured: u32,
     prescaler: u32,
     reload: u32,
     /// What it holds, at the time when it held it.
@@ -39,6 +45,8 @@ impl Counter {
             slave: 0,
             inputs: 0,
             channels: 0,
+            capture_mode: 0,
+            captured: 0,
             prescaler: 0,
             reload: mask,
             value: 0,
@@ -51,7 +59,7 @@ impl Counter {
         self.control & ENABLE != 0
             && self.slave == BOTH_CHANNELS
             && self.inputs & OWN_INPUTS == OWN_INPUTS
-            && self.channels == CHANNELS
+            && self.channels & CHANNELS == CHANNELS
     }
 
     /// The filters of both inputs, ICxF of CCMR1.
@@ -66,6 +74,17 @@ impl Counter {
             let sum = i64::from(self.value) + i64::from(counts);
             self.value = sum.rem_euclid(modulus) as u32;
         }
+    }
+
+    /// TIM1's trigger output rises.
+    pub fn capture(&mut self) {
+        if self.captures() && self.control & ENABLE != 0 {
+            self.captured = self.value;
+        }
+    }
+
+    fn captures(&self) -> bool {
+        self.capture_mode == TRIGGERED_CAPTURE && self.channels & CAPTURES != 0
     }
 
     /// What it holds.
@@ -83,10 +102,12 @@ impl Counter {
             0x00 => Ok(self.control),
             0x08 => Ok(self.slave),
             0x18 => Ok(self.inputs),
+            0x1C => Ok(self.capture_mode),
             0x20 => Ok(self.channels),
             0x24 => Ok(self.value(now, divider)),
             0x28 => Ok(self.prescaler),
             0x2C => Ok(self.reload),
+            0x3C if self.captures() => Ok(self.captured),
             _ => Err(Unmodelled::Register),
         }
     }
@@ -113,8 +134,16 @@ impl Counter {
                 only(value, OWN_INPUTS | FILTERS)?;
                 self.inputs = value;
             }
+            0x1C => {
+                only(value, TRIGGERED_CAPTURE)?;
+                // Captures from inputs are not modelled.
+                if value != 0 && value != TRIGGERED_CAPTURE {
+                    return Err(Unmodelled::Bits(value));
+                }
+                self.capture_mode = value;
+            }
             0x20 => {
-                only(value, CHANNELS)?;
+                only(value, CHANNELS | CAPTURES)?;
                 self.channels = value;
             }
             0x24 => self.value = value & self.mask,
@@ -123,5 +152,37 @@ impl Counter {
             _ => return Err(Unmodelled::Register),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trigger_captures_the_count() {
+        let mut counter = Counter::new(16);
+        for (register, value) in [
+            (0x08, BOTH_CHANNELS),
+            (0x18, OWN_INPUTS),
+            (0x1C, TRIGGERED_CAPTURE),
+            (0x20, CHANNELS | CAPTURES),
+            (0x00, ENABLE),
+        ] {
+            counter.write(register, value, 0, 1).unwrap();
+        }
+        counter.turn(-3);
+        assert_eq!(counter.read(0x3C, 0, 1), Ok(0));
+        counter.capture();
+        counter.turn(1);
+        assert_eq!(counter.read(0x3C, 0, 1), Ok(0xFFFD));
+        assert_eq!(counter.read(0x24, 0, 1), Ok(0xFFFE));
+    }
+
+    #[test]
+    fn a_channel_that_captures_nothing_is_not_read() {
+        let mut counter = Counter::new(16);
+        assert!(counter.read(0x3C, 0, 1).is_err());
+        assert!(counter.write(0x1C, 0b01, 0, 1).is_err(), "its own input");
     }
 }

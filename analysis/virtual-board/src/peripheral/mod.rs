@@ -1,17 +1,22 @@
 //! Peripherals at register level: of each only what the programs use. What is not here is an error
 //! that names the register, never a silent zero.
 
+pub mod adc;
 pub mod basic_timer;
 pub mod clock;
 pub mod clock_f4;
 pub mod clock_g4;
+pub mod comparators;
 pub mod counter;
 pub mod dac;
 pub mod flash;
 pub mod inert_registers;
+pub mod op_amps;
 pub mod pins;
 pub mod power;
+pub mod pwm_timer;
 pub mod serial;
+pub mod threshold_dac;
 pub mod watchdog;
 
 /// Why an access is not modelled.

@@ -51,12 +51,16 @@ pub fn program(chip: &'static Chip, name: &'static str) -> &'static PathBuf {
     &files[&(chip.name, name)]
 }
 
-/// The files of some programs for any chip.
+/// The files of some programs for any chip, whose torque is the DAC's.
 pub fn build(chip: &'static Chip, names: &[&str]) -> Vec<PathBuf> {
+    build_for(chip, TorqueOutput::Dac, names)
+}
+
+/// The same with any output.
+pub fn build_for(chip: &'static Chip, output: TorqueOutput, names: &[&str]) -> Vec<PathBuf> {
     let toolchain = prepare(Tools::Compiler, |step| eprintln!("{step}"));
     let toolchain = toolchain.unwrap_or_else(|error| panic!("{error}"));
     let board = BoardName::find(chip.name).unwrap();
-    let output = TorqueOutput::Dac;
     let built = toolchain.build_for(board, output, names, NumberFormat::F32);
     built.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|built| built.path).collect()
 }

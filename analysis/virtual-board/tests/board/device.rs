@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use analysis::lockstep::PlantIo;
 use analysis::program::Program;
-use virtual_board::device::Device;
+use virtual_board::device::{Device, Motion};
 
 use crate::bench::MID_SCALE;
 
@@ -53,6 +53,13 @@ impl Device for Pins {
         self.count += turned;
         self.samples.push(Sample { code, amplifier, count: self.count });
         turned
+    }
+
+    fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
+        let motion = self.device.turn(torque, seconds);
+        let counts = if self.plugged { motion.counts } else { 0 };
+        self.count += counts;
+        Motion { counts, ..motion }
     }
 }
 

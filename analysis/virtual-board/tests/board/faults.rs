@@ -273,7 +273,7 @@ fn misses_ticks(bench: &mut Bench) -> u64 {
 }
 
 /// Sends the core into a panic of line 12, column 34. Gives when.
-fn panics(bench: &mut Bench) -> u64 {
+pub fn panics(bench: &mut Bench) -> u64 {
     // The place in the source that a panic is told, as the compiler lays it out: a file's name, line and
     // column.
     let place = 0x2000_0000 + bench.machine.board().chip().ram - 16;

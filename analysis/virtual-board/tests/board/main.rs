@@ -4,6 +4,7 @@
 mod assembly;
 mod at_rest;
 mod bench;
+mod bridge;
 mod contact;
 mod corpus;
 mod device;

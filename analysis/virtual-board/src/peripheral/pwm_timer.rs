@@ -1,0 +1,798 @@
+//! The advanced timer TIM1 as the power stage's pulse-width modulator (RM0440, 28.4): it counts up and down
+//! at the core's clock, three channels compare, each drives the two switches of a leg with a dead time
+//! between, and a break takes all six away within the period.
+
+use super::{Access, Unmodelled, only};
+use crate::peripheral::pins::Level;
+
+/// CR1: counting, updates by an overflow only set the flag, the direction, centre-aligned mode 1, and a
+/// reload value that waits for an update.
+const ENABLE: u32 = 1;
+const ONLY_OVERFLOW: u32 = 1 << 2;
+const DOWN: u32 = 1 << 4;
+const CENTRE_ALIGNED: u32 = 0b01 << 5;
+const MODES: u32 = 0b11 << 5;
+const PRELOADED: u32 = 1 << 7;
+/// CR2: the update is the trigger output.
+const TRIGGER_UPDATE: u32 = 0b010 << 4;
+/// DIER, SR and EGR: the update and the break; SR: the system's break.
+const UPDATE: u32 = 1;
+const BREAK: u32 = 1 << 7;
+const SYSTEM_BREAK: u32 = 1 << 13;
+/// CCMR1 and CCMR2, of a channel: a compare value that waits for an update, and the mode.
+const CHANNEL_PRELOADED: u32 = 1 << 3;
+const MODE: u32 = (0b111 << 4) | (1 << 16);
+/// PWM mode 2: active from the compare value on.
+const PWM_2: u32 = 0b111 << 4;
+/// CCER: the two outputs of channel 1; four bits further for each channel.
+const BOTH_OUTPUTS: u32 = 0b0101;
+/// BDTR: the dead time, the lock, the states of outputs that are off, the break and its polarity, and the
+/// main output enable.
+const DEAD_TIME: u32 = 0xFF;
+const LOCK: u32 = 0b11 << 8;
+const OFF_WHILE_IDLE: u32 = 1 << 10;
+const OFF_WHILE_RUNNING: u32 = 1 << 11;
+const BREAK_ENABLE: u32 = 1 << 12;
+const BREAK_HIGH: u32 = 1 << 13;
+/// BDTR: how long a break's input has to stay, of which only numbers of the core's clocks are modelled.
+const FILTER: u32 = 0b11 << 16;
+const MAIN_OUTPUT: u32 = 1 << 15;
+/// AF1: the break's pin, to which nothing is wired, so that its level is low; and the comparators 1, 2 and 4
+/// with their polarities.
+const BREAK_PIN: u32 = 1;
+const COMPARATORS: [(usize, u32); 3] = [(0, 1), (1, 2), (3, 4)];
+const COMPARATOR_BITS: u32 = (1 << 1) | (1 << 2) | (1 << 4);
+const POLARITY_BITS: u32 = COMPARATOR_BITS << 9;
+
+/// The two inputs of the gate driver of a leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// Of the switch to the supply: CHx.
+    pub high: Level,
+    /// Of the switch to ground: CHxN.
+    pub low: Level,
+}
+
+/// What an instant brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Instant {
+    /// The counter is at zero: a period begins.
+    pub valley: bool,
+    /// The trigger output rises.
+    pub trigger: bool,
+}
+
+/// Who asks for a break.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breaker {
+    /// A comparator.
+    Input,
+    /// The clock security system, or the core that is locked up.
+    System,
+}
+
+/// The counter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Count {
+    /// It stands still at a value.
+    Stopped(u32),
+    /// It has been at zero at this time, and whether it has been at the top since.
+    Running { valley: u64, was_at_top: bool },
+}
+
+/// A channel's reference, which is active or not, since a time.
+#[derive(Clone, Copy, Debug, Default)]
+struct Reference {
+    active: bool,
+    since: u64,
+}
+
+/// The timer.
+#[derive(Clone, Debug)]
+pub struct PwmTimer {
+    control: u32,
+    trigger: u32,
+    interrupts: u32,
+    flags: u32,
+    modes: [u32; 2],
+    channels: u32,
+    reload: u32,
+    /// The reload value that it counts with.
+    top: u32,
+    repetition: u32,
+    /// Turns of the counter that are still to come before an update.
+    left: u32,
+    compare: [u32; 3],
+    /// The compare values that are compared.
+    compared: [u32; 3],
+    break_control: u32,
+    break_inputs: u32,
+    count: Count,
+    references: [Reference; 3],
+}
+
+impl Default for PwmTimer {
+    fn default() -> Self {
+        Self {
+            control: 0,
+            trigger: 0,
+            interrupts: 0,
+            flags: 0,
+            modes: [0; 2],
+            channels: 0,
+            reload: 0xFFFF,
+            top: 0xFFFF,
+            repetition: 0,
+            left: 0,
+            compare: [0; 3],
+            compared: [0; 3],
+            break_control: 0,
+            break_inputs: BREAK_PIN,
+            count: Count::Stopped(0),
+            references: [Reference::default(); 3],
+        }
+    }
+}
+
+impl PwmTimer {
+    /// When something happens next after a time.
+    pub fn next(&self, now: u64) -> Option<u64> {
+        let dead = self.dead_time();
+        let dead_times = self.references.iter().map(|reference| reference.since + dead);
+        let counted = match self.count {
+            Count::Stopped(_) => [None; 8],
+            Count::Running { valley, .. } => self.turns_and_matches(valley).map(Some),
+        };
+        dead_times.chain(counted.into_iter().flatten()).filter(|&at| at > now).min()
+    }
+
+    /// When the counter turns around in a period, and when the channels match.
+    fn turns_and_matches(&self, valley: u64) -> [u64; 8] {
+        let top = u64::from(self.top);
+        let [u, v, w] = self.compared.map(|compared| u64::from(compared).min(top));
+        let bottom = 2 * top;
+        [top, bottom, u, v, w, bottom - u, bottom - v, bottom - w].map(|count| valley + count)
+    }
+
+    /// Does what happens at a time, which no earlier one may be skipped for.
+    pub fn advance(&mut self, now: u64) -> Instant {
+        let mut instant = Instant::default();
+        if let Count::Running { valley, was_at_top } = self.count {
+            let (top, bottom) = (valley + u64::from(self.top), valley + 2 * u64::from(self.top));
+            if now >= top && !was_at_top {
+                self.count = Count::Running { valley, was_at_top: true };
+                instant.trigger |= self.turn_around();
+            }
+            if now >= bottom {
+                self.count = Count::Running { valley: bottom, was_at_top: false };
+                instant.valley = true;
+                instant.trigger |= self.turn_around();
+            }
+        }
+        self.compare_at(now);
+        instant
+    }
+
+    /// Whether it counts.
+    pub fn runs(&self) -> bool {
+        matches!(self.count, Count::Running { .. })
+    }
+
+    /// Core clocks from valley to valley.
+    pub fn period(&self) -> u64 {
+        2 * u64::from(self.top)
+    }
+
+    /// When the present period has begun, while it counts.
+    pub fn valley(&self) -> Option<u64> {
+        match self.count {
+            Count::Running { valley, .. } => Some(valley),
+            Count::Stopped(_) => None,
+        }
+    }
+
+    /// The compare values in effect.
+    pub fn compared(&self) -> [u32; 3] {
+        self.compared
+    }
+
+    /// Whether the outputs are enabled as a whole.
+    pub fn is_on(&self) -> bool {
+        self.break_control & MAIN_OUTPUT != 0
+    }
+
+    /// Whether comparators' outputs of these levels are a break, once they have lasted for
+    /// [`Self::filter`].
+    pub fn is_broken_by(&self, levels: [bool; 4]) -> bool {
+        let is_high = self.break_control & BREAK_HIGH != 0;
+        let pin_breaks = self.break_inputs & BREAK_PIN != 0 && !is_high;
+        let breaks = |(comparator, bit): (usize, u32)| {
+            let is_inverted = self.break_inputs & (1 << (bit + 9)) != 0;
+            self.break_inputs & (1 << bit) != 0 && (levels[comparator] ^ is_inverted) == is_high
+        };
+        let is_asked = pin_breaks || COMPARATORS.into_iter().any(breaks);
+        self.break_control & BREAK_ENABLE != 0 && is_asked
+    }
+
+    /// Core clocks for which a break's input has to stay.
+    pub fn filter(&self) -> u64 {
+        match (self.break_control & FILTER) >> 16 {
+            0 => 0,
+            code => 1 << code,
+        }
+    }
+
+    /// A break: the outputs are off from here on.
+    pub fn break_off(&mut self, breaker: Breaker) {
+        if self.break_control & BREAK_ENABLE == 0 {
+            return;
+        }
+        self.break_control &= !MAIN_OUTPUT;
+        self.flags |= match breaker {
+            Breaker::Input => BREAK,
+            Breaker::System => SYSTEM_BREAK,
+        };
+    }
+
+    /// Levels of its interrupt lines: of breaks, of updates.
+    pub fn lines(&self) -> [bool; 2] {
+        let is_break = self.flags & (BREAK | SYSTEM_BREAK) != 0 && self.interrupts & BREAK != 0;
+        [is_break, self.flags & self.interrupts & UPDATE != 0]
+    }
+
+    /// What it drives the gates of a leg with.
+    pub fn outputs(&self, leg: usize, now: u64) -> Outputs {
+        let both = |level| Outputs { high: level, low: level };
+        if self.channels >> (4 * leg) & BOTH_OUTPUTS == 0 {
+            return both(Level::Floating);
+        }
+        if !self.is_on() {
+            let is_driven = self.break_control & OFF_WHILE_IDLE != 0;
+            return both(if is_driven { Level::Low } else { Level::Floating });
+        }
+        let Reference { active, since } = self.references[leg];
+        let is_over = now >= since + self.dead_time();
+        let level = |is_on| if is_on && is_over { Level::High } else { Level::Low };
+        Outputs { high: level(active), low: level(!active) }
+    }
+
+    /// Core clocks between one switch of a leg and the other.
+    pub fn dead_time(&self) -> u64 {
+        let code = u64::from(self.break_control & DEAD_TIME);
+        match code >> 5 {
+            0..=3 => code,
+            4 | 5 => (64 + (code & 0x3F)) * 2,
+            6 => (32 + (code & 0x1F)) * 8,
+            _ => (32 + (code & 0x1F)) * 16,
+        }
+    }
+
+    /// Reads.
+    pub fn read(&self, offset: u32, now: u64) -> Access<u32> {
+        match offset {
+            0x00 => Ok(self.control | self.direction(now)),
+            0x04 => Ok(self.trigger),
+            0x0C => Ok(self.interrupts),
+            0x10 => Ok(self.flags),
+            0x18 | 0x1C => Ok(self.modes[(offset as usize - 0x18) / 4]),
+            0x20 => Ok(self.channels),
+            0x24 => Ok(self.value(now)),
+            0x28 => Ok(0),
+            0x2C => Ok(self.reload),
+            0x30 => Ok(self.repetition),
+            0x34..=0x3C => Ok(self.compare[(offset as usize - 0x34) / 4]),
+            0x44 => Ok(self.break_control),
+            0x60 => Ok(self.break_inputs),
+            _ => Err(Unmodelled::Register),
+        }
+    }
+
+    /// Writes; whether the trigger output rises.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Access<bool> {
+        let mut triggers = false;
+        match offset {
+            0x00 => self.set_control(value, now)?,
+            0x04 => {
+                only(value, TRIGGER_UPDATE)?;
+                self.trigger = value;
+            }
+            0x0C => {
+                only(value, UPDATE | BREAK)?;
+                self.interrupts = value;
+            }
+            // Bits are cleared by writing zero.
+            0x10 => self.flags &= value,
+            0x14 => triggers = self.generate(value, now)?,
+            0x18 | 0x1C => self.set_modes((offset as usize - 0x18) / 4, value)?,
+            0x20 => self.set_channels(value)?,
+            0x24 => match self.count {
+                Count::Stopped(_) if value <= self.top => self.count = Count::Stopped(value),
+                _ => return Err(Unmodelled::Register),
+            },
+            // Not divided.
+            0x28 => only(value, 0)?,
+            0x2C => self.set_reload(value)?,
+            0x30 => {
+                only(value, 0xFFFF)?;
+                self.repetition = value;
+            }
+            0x34..=0x3C => self.set_compare((offset as usize - 0x34) / 4, value)?,
+            0x44 => self.set_break_control(value, now)?,
+            0x60 => self.set_break_inputs(value)?,
+            _ => return Err(Unmodelled::Register),
+        }
+        self.compare_at(now);
+        Ok(triggers)
+    }
+
+    fn set_control(&mut self, value: u32, now: u64) -> Access<()> {
+        // The direction is the timer's own.
+        let value = value & !DOWN;
+        only(value, ENABLE | ONLY_OVERFLOW | CENTRE_ALIGNED | PRELOADED)?;
+        let is_on = value & ENABLE != 0;
+        if is_on && value & MODES != CENTRE_ALIGNED {
+            return Err(Unmodelled::Bits(ENABLE));
+        }
+        if is_on != self.runs() {
+            self.count = match self.count {
+                Count::Stopped(count) => {
+                    let valley = now.checked_sub(count.into()).ok_or(Unmodelled::Bits(ENABLE))?;
+                    Count::Running { valley, was_at_top: false }
+                }
+                Count::Running { .. } => Count::Stopped(self.value(now)),
+            };
+        }
+        self.control = value;
+        Ok(())
+    }
+
+    /// EGR: an update or a break by the program.
+    fn generate(&mut self, value: u32, now: u64) -> Access<bool> {
+        only(value, UPDATE | BREAK)?;
+        if value & BREAK != 0 {
+            self.break_control &= !MAIN_OUTPUT;
+            self.flags |= BREAK;
+        }
+        if value & UPDATE == 0 {
+            return Ok(false);
+        }
+        self.count = match self.count {
+            Count::Stopped(_) => Count::Stopped(0),
+            Count::Running { .. } => Count::Running { valley: now, was_at_top: false },
+        };
+        let had_flag = self.flags & UPDATE;
+        let triggers = self.update();
+        if self.control & ONLY_OVERFLOW != 0 {
+            self.flags = self.flags & !UPDATE | had_flag;
+        }
+        Ok(triggers)
+    }
+
+    fn set_modes(&mut self, register: usize, value: u32) -> Access<()> {
+        let channel = CHANNEL_PRELOADED | MODE;
+        // The second register has channel 3 alone.
+        only(value, if register == 0 { channel | channel << 8 } else { channel })?;
+        for mode in [value & MODE, value >> 8 & MODE] {
+            if mode != 0 && mode != PWM_2 {
+                return Err(Unmodelled::Bits(mode));
+            }
+        }
+        if self.is_locked(3) && value != self.modes[register] {
+            return Err(Unmodelled::Bits(value ^ self.modes[register]));
+        }
+        self.modes[register] = value;
+        Ok(())
+    }
+
+    /// CCER: both outputs of a channel or none.
+    fn set_channels(&mut self, value: u32) -> Access<()> {
+        only(value, BOTH_OUTPUTS | BOTH_OUTPUTS << 4 | BOTH_OUTPUTS << 8)?;
+        for leg in 0..3 {
+            let outputs = value >> (4 * leg) & BOTH_OUTPUTS;
+            if outputs != 0 && outputs != BOTH_OUTPUTS {
+                return Err(Unmodelled::Bits(outputs << (4 * leg)));
+            }
+        }
+        self.channels = value;
+        Ok(())
+    }
+
+    fn set_reload(&mut self, value: u32) -> Access<()> {
+        only(value, 0xFFFF)?;
+        if self.control & PRELOADED == 0 {
+            if self.runs() {
+                return Err(Unmodelled::Bits(value));
+            }
+            self.top = value;
+        }
+        self.reload = value;
+        Ok(())
+    }
+
+    fn set_compare(&mut self, channel: usize, value: u32) -> Access<()> {
+        only(value, 0xFFFF)?;
+        self.compare[channel] = value;
+        if !self.is_preloaded(channel) {
+            self.compared[channel] = value;
+        }
+        Ok(())
+    }
+
+    /// BDTR. What the lock protects stays as it is.
+    fn set_break_control(&mut self, value: u32, now: u64) -> Access<()> {
+        let modes = OFF_WHILE_IDLE | OFF_WHILE_RUNNING;
+        let breaks = BREAK_ENABLE | BREAK_HIGH;
+        only(value, DEAD_TIME | LOCK | modes | breaks | FILTER | MAIN_OUTPUT)?;
+        let mut locked = 0;
+        if self.is_locked(1) {
+            locked |= DEAD_TIME | LOCK | breaks | FILTER;
+        }
+        if self.is_locked(2) {
+            locked |= modes;
+        }
+        let value = self.break_control & locked | value & !locked;
+        if value & MAIN_OUTPUT != 0 && !self.is_on() {
+            // A dead time comes before the first switch, too.
+            for reference in &mut self.references {
+                reference.since = now;
+            }
+        }
+        self.break_control = value;
+        Ok(())
+    }
+
+    fn set_break_inputs(&mut self, value: u32) -> Access<()> {
+        only(value, BREAK_PIN | COMPARATOR_BITS | POLARITY_BITS)?;
+        if self.is_locked(1) {
+            return Ok(());
+        }
+        self.break_inputs = value;
+        Ok(())
+    }
+
+    fn is_locked(&self, level: u32) -> bool {
+        self.break_control & LOCK >= level << 8
+    }
+
+    /// The counter is at the top or at zero: an update, unless further turns come first (RM0440, 28.3.3).
+    /// Whether the trigger output rises.
+    fn turn_around(&mut self) -> bool {
+        if self.left > 0 {
+            self.left -= 1;
+            return false;
+        }
+        self.update()
+    }
+
+    fn update(&mut self) -> bool {
+        self.left = self.repetition;
+        self.flags |= UPDATE;
+        self.compared = self.compare;
+        // At the top, the way down is that of the way up: a new one begins at zero.
+        if !matches!(self.count, Count::Running { was_at_top: true, .. }) {
+            self.top = self.reload;
+        }
+        self.trigger == TRIGGER_UPDATE
+    }
+
+    fn is_preloaded(&self, channel: usize) -> bool {
+        self.mode(channel) & CHANNEL_PRELOADED != 0
+    }
+
+    fn mode(&self, channel: usize) -> u32 {
+        let bits = self.modes[channel / 2] >> (8 * (channel % 2));
+        bits & (CHANNEL_PRELOADED | MODE)
+    }
+
+    /// Takes the references' edges down.
+    fn compare_at(&mut self, now: u64) {
+        for channel in 0..3 {
+            let active = self.mode(channel) & MODE == PWM_2 && self.is_from_on(channel, now);
+            if active != self.references[channel].active {
+                self.references[channel] = Reference { active, since: now };
+            }
+        }
+    }
+
+    /// Whether the counter is at the compare value or above; on the way down, above.
+    fn is_from_on(&self, channel: usize, now: u64) -> bool {
+        let compared = u64::from(self.compared[channel]);
+        if compared == 0 {
+            return true;
+        }
+        match self.count {
+            Count::Stopped(count) => u64::from(count) >= compared,
+            Count::Running { valley, .. } => {
+                let passed = now - valley;
+                passed >= compared && passed < (2 * u64::from(self.top)).saturating_sub(compared)
+            }
+        }
+    }
+
+    fn value(&self, now: u64) -> u32 {
+        match self.count {
+            Count::Stopped(count) => count,
+            Count::Running { valley, .. } => {
+                let (passed, top) = ((now - valley) as u32, self.top);
+                if passed <= top { passed } else { (2 * top).saturating_sub(passed) }
+            }
+        }
+    }
+
+    fn direction(&self, now: u64) -> u32 {
+        match self.count {
+            Count::Running { valley, .. } if now - valley >= u64::from(self.top) => DOWN,
+            _ => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Registers, as the program writes them.
+    const CR1: u32 = 0x00;
+    const CR2: u32 = 0x04;
+    const DIER: u32 = 0x0C;
+    const SR: u32 = 0x10;
+    const EGR: u32 = 0x14;
+    const CCMR1: u32 = 0x18;
+    const CCMR2: u32 = 0x1C;
+    const CCER: u32 = 0x20;
+    const CNT: u32 = 0x24;
+    const ARR: u32 = 0x2C;
+    const RCR: u32 = 0x30;
+    const CCR1: u32 = 0x34;
+    const CCR2: u32 = 0x38;
+    const CCR3: u32 = 0x3C;
+    const BDTR: u32 = 0x44;
+    const AF1: u32 = 0x60;
+
+    const TOP: u32 = 2125;
+    const DEAD: u32 = 100;
+    const ON: u32 =
+        DEAD | OFF_WHILE_IDLE | OFF_WHILE_RUNNING | BREAK_ENABLE | BREAK_HIGH | MAIN_OUTPUT;
+    const START: u64 = 10_000;
+
+    fn write(timer: &mut PwmTimer, now: u64, writes: &[(u32, u32)]) {
+        for &(register, value) in writes {
+            timer.write(register, value, now).unwrap();
+        }
+    }
+
+    /// Set up, with the compare values 500, 1000 and one above the top, and started at 10,000.
+    fn started() -> PwmTimer {
+        let mut timer = PwmTimer::default();
+        let mode = PWM_2 | CHANNEL_PRELOADED;
+        write(
+            &mut timer,
+            0,
+            &[
+                (CR1, CENTRE_ALIGNED | PRELOADED | ONLY_OVERFLOW),
+                (ARR, TOP),
+                (RCR, 1),
+                (CCMR1, mode | mode << 8),
+                (CCMR2, mode),
+                (CCR1, 500),
+                (CCR2, 1000),
+                (CCR3, TOP + 1),
+                (CCER, 0x555),
+                (EGR, UPDATE),
+                (CR2, TRIGGER_UPDATE),
+                (AF1, COMPARATOR_BITS),
+                (BDTR, ON),
+                (DIER, BREAK),
+            ],
+        );
+        write(&mut timer, START, &[(CR1, CENTRE_ALIGNED | PRELOADED | ONLY_OVERFLOW | ENABLE)]);
+        timer
+    }
+
+    /// Advances to a time, from event to event; gives when the trigger output rose.
+    fn run(timer: &mut PwmTimer, from: u64, to: u64) -> Vec<u64> {
+        let (mut now, mut triggers) = (from, Vec::new());
+        while let Some(next) = timer.next(now).filter(|&next| next <= to) {
+            now = next;
+            if timer.advance(now).trigger {
+                triggers.push(now);
+            }
+        }
+        triggers
+    }
+
+    fn levels(timer: &PwmTimer, leg: usize, now: u64) -> (bool, bool) {
+        let Outputs { high, low } = timer.outputs(leg, now);
+        (high == Level::High, low == Level::High)
+    }
+
+    #[test]
+    fn an_update_comes_once_a_period_at_the_valley() {
+        let mut timer = started();
+        let period = 2 * u64::from(TOP);
+        let triggers = run(&mut timer, START, START + 3 * period + 5);
+        assert_eq!(triggers, [1, 2, 3].map(|periods| START + periods * period));
+        assert_eq!(timer.period(), period);
+    }
+
+    /// As the manual has it: the repetition counter counts turns, and began with the one behind the write.
+    #[test]
+    fn a_repetition_that_is_written_late_puts_the_update_at_the_peak() {
+        let mut timer = started();
+        write(&mut timer, START, &[(RCR, 0), (EGR, UPDATE), (RCR, 1)]);
+        let triggers = run(&mut timer, START, START + 3 * 2 * u64::from(TOP));
+        let top = u64::from(TOP);
+        assert_eq!(triggers, [1, 3, 5].map(|turns| START + turns * top));
+    }
+
+    #[test]
+    fn the_counter_goes_up_and_down() {
+        let timer = started();
+        let top = u64::from(TOP);
+        for (passed, count, down) in
+            [(0, 0, 0), (700, 700, 0), (top, TOP, DOWN), (top + 25, TOP - 25, DOWN)]
+        {
+            assert_eq!(timer.read(CNT, START + passed), Ok(count));
+            assert_eq!(timer.read(CR1, START + passed).unwrap() & DOWN, down);
+        }
+    }
+
+    /// The high side conducts around the peak, the low side around the valley, and between them neither,
+    /// for the dead time.
+    #[test]
+    fn a_leg_switches_at_its_compare_value_with_a_dead_time() {
+        let mut timer = started();
+        let (compare, top, dead) = (500, u64::from(TOP), u64::from(DEAD));
+        let mut now = START;
+        for (passed, expected) in [
+            (0, (false, true)),
+            (compare - 1, (false, true)),
+            (compare, (false, false)),
+            (compare + dead - 1, (false, false)),
+            (compare + dead, (true, false)),
+            (2 * top - compare - 1, (true, false)),
+            (2 * top - compare, (false, false)),
+            (2 * top - compare + dead, (false, true)),
+            (2 * top + compare - 1, (false, true)),
+        ] {
+            run(&mut timer, now, START + passed);
+            now = START + passed;
+            assert_eq!(levels(&timer, 0, now), expected, "at {passed}");
+        }
+        // A compare value above the top is never reached.
+        assert_eq!(levels(&timer, 2, START + top), (false, true));
+    }
+
+    #[test]
+    fn a_compare_value_of_zero_is_always_active() {
+        let mut timer = started();
+        write(&mut timer, START, &[(CCR1, 0)]);
+        let period = 2 * u64::from(TOP);
+        run(&mut timer, START, START + period + 200);
+        for now in [START + period + 200, START + 2 * period - 1, START + 2 * period] {
+            run(&mut timer, START + period + 200, now);
+            assert_eq!(levels(&timer, 0, now), (true, false));
+        }
+    }
+
+    #[test]
+    fn a_compare_value_waits_for_the_update() {
+        let mut timer = started();
+        let period = 2 * u64::from(TOP);
+        write(&mut timer, START + 10, &[(CCR1, 1500)]);
+        run(&mut timer, START + 10, START + period - 1);
+        assert_eq!(timer.compared()[0], 500);
+        assert_eq!(timer.read(CCR1, START + 20), Ok(1500));
+        run(&mut timer, START + period - 1, START + period);
+        assert_eq!(timer.compared()[0], 1500);
+    }
+
+    #[test]
+    fn a_break_takes_all_outputs_away_at_once_and_for_good() {
+        let mut timer = started();
+        let now = START + 700;
+        run(&mut timer, START, now);
+        assert_eq!(levels(&timer, 0, now), (true, false));
+        assert!(!timer.is_broken_by([false, false, true, false]), "no input");
+        assert!(timer.is_broken_by([false, false, false, true]));
+        timer.break_off(Breaker::Input);
+        for leg in 0..3 {
+            let low = Outputs { high: Level::Low, low: Level::Low };
+            assert_eq!(timer.outputs(leg, now), low);
+        }
+        assert_eq!(timer.lines(), [true, false]);
+        assert_eq!(timer.read(SR, now).unwrap() & BREAK, BREAK);
+        run(&mut timer, now, now + 10_000);
+        assert!(!timer.is_on());
+        write(&mut timer, now + 10_000, &[(SR, 0)]);
+        assert_eq!(timer.lines(), [false, false]);
+    }
+
+    /// It is low, which is a break where the break is active low.
+    #[test]
+    fn the_break_s_pin_is_open() {
+        for (polarity, breaks) in [(BREAK_HIGH, false), (0, true)] {
+            let mut timer = PwmTimer::default();
+            write(&mut timer, 0, &[(BDTR, BREAK_ENABLE | polarity | 0b11 << 16)]);
+            assert_eq!(timer.is_broken_by([false; 4]), breaks);
+            assert_eq!(timer.filter(), 8);
+        }
+    }
+
+    /// Both polarities of both places that have one.
+    #[test]
+    fn polarities_of_the_break_and_of_its_input_cancel() {
+        for (break_high, inverted) in [(false, false), (false, true), (true, false), (true, true)] {
+            let mut timer = PwmTimer::default();
+            let polarity = if inverted { 1 << 10 } else { 0 };
+            let control = BREAK_ENABLE | if break_high { BREAK_HIGH } else { 0 };
+            write(&mut timer, 0, &[(AF1, 1 << 1 | polarity), (BDTR, control)]);
+            for level in [false, true] {
+                let expected = level ^ inverted == break_high;
+                assert_eq!(timer.is_broken_by([level, false, false, false]), expected);
+            }
+        }
+    }
+
+    #[test]
+    fn the_main_output_begins_with_a_dead_time() {
+        let mut timer = started();
+        let now = START + 300;
+        run(&mut timer, START, now);
+        write(&mut timer, now, &[(EGR, BREAK)]);
+        assert_eq!(levels(&timer, 0, now), (false, false));
+        write(&mut timer, now, &[(SR, 0), (BDTR, ON)]);
+        assert_eq!(levels(&timer, 0, now), (false, false));
+        assert_eq!(timer.next(now), Some(now + u64::from(DEAD)));
+        assert_eq!(levels(&timer, 0, now + u64::from(DEAD)), (false, true));
+    }
+
+    #[test]
+    fn outputs_that_are_off_float_unless_they_are_asked_to_be_driven() {
+        let mut timer = started();
+        write(&mut timer, START, &[(BDTR, ON & !MAIN_OUTPUT & !OFF_WHILE_IDLE)]);
+        let floating = Outputs { high: Level::Floating, low: Level::Floating };
+        assert_eq!(timer.outputs(0, START), floating);
+        write(&mut timer, START, &[(BDTR, ON), (CCER, 0)]);
+        assert_eq!(timer.outputs(0, START), floating);
+    }
+
+    #[test]
+    fn dead_times_are_the_manual_s() {
+        for (code, clocks) in [(0x7F, 127), (0x80, 128), (0xBF, 254), (0xC0, 256), (0xFF, 1008)] {
+            let mut timer = PwmTimer::default();
+            write(&mut timer, 0, &[(BDTR, code)]);
+            assert_eq!(timer.dead_time(), clocks);
+        }
+    }
+
+    #[test]
+    fn a_lock_keeps_the_break_and_the_dead_time() {
+        let mut timer = started();
+        let locked = ON | 0b10 << 8;
+        write(&mut timer, START, &[(BDTR, locked), (BDTR, 0), (AF1, 0)]);
+        assert_eq!(timer.read(BDTR, START), Ok(locked & !MAIN_OUTPUT));
+        assert_eq!(timer.read(AF1, START), Ok(COMPARATOR_BITS));
+    }
+
+    #[test]
+    fn what_is_not_modelled_is_refused() {
+        let mut timer = started();
+        for (register, value) in [
+            (CR1, ENABLE),
+            (CR1, 0b10 << 5),
+            (CR2, 1 << 8),
+            (CCMR1, 0b110 << 4),
+            (CCER, 1),
+            (CCER, 1 << 12),
+            (BDTR, 1 << 14),
+            (AF1, 1 << 3),
+            (BDTR, 1 << 18),
+            (0x28, 1),
+            (0x40, 1),
+            (0x48, 1),
+        ] {
+            assert!(timer.write(register, value, START).is_err(), "{register:#x}: {value:#x}");
+        }
+    }
+}

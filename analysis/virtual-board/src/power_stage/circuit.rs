@@ -1,0 +1,144 @@
+//! What is wired to the power stage's chip on a B-G431B-ESC1 (UM2516 and the schematic of MB1419): the motor,
+//! the supply, the shunts, and the sensors.
+
+use super::REFERENCE;
+use crate::device::{Device, Motion};
+use crate::motor::{Leg, Motor};
+
+/// A shunt in Ω, between each low side and ground.
+const SHUNT: f64 = 0.003;
+/// What the network between a shunt and an amplifier leaves of its voltage.
+const DIVIDED: f64 = 4.0 / 7.0;
+/// The amplifiers' gain.
+const GAIN: f64 = 16.0;
+/// The divider of the supply.
+const SUPPLY_DIVIDER: f64 = 18.0 / (169.0 + 18.0);
+/// The thermistor: its resistance in Ω at 25 °C, its constant in K, and the resistor to ground in Ω.
+const THERMISTOR: (f64, f64, f64) = (10e3, 3455.0, 4.7e3);
+const ZERO_CELSIUS: f64 = 273.15;
+
+/// The supply at the bridge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Supply {
+    /// Volts.
+    pub volts: f64,
+    /// Capacitance in F of a supply that takes nothing back: what the motor gives it stays there. None
+    /// of one that keeps its voltage.
+    pub capacitance: Option<f64>,
+    /// Volts that it does not fall below.
+    pub source: f64,
+}
+
+impl Supply {
+    /// A supply that keeps its voltage.
+    pub fn stiff(volts: f64) -> Self {
+        Self { volts, capacitance: None, source: volts }
+    }
+
+    fn deliver(&mut self, charge: f64) {
+        if let Some(capacitance) = self.capacitance {
+            self.volts = (self.volts - charge / capacitance).max(self.source);
+        }
+    }
+}
+
+/// The circuit around the chip.
+#[derive(Clone, Copy, Debug)]
+pub struct Circuit {
+    /// The motor, where one is wired.
+    pub motor: Option<Motor>,
+    /// The supply.
+    pub supply: Supply,
+    /// Temperature in °C at the board's sensor.
+    pub temperature: f64,
+    /// What is wrong with each amplifier's output, in V.
+    pub amplifier_errors: [f64; 3],
+    /// Whether the encoder's two wires are swapped.
+    pub encoder_is_reversed: bool,
+    /// Whether the motor's shaft is held.
+    pub is_blocked: bool,
+    /// How the device moved last.
+    pub(super) motion: Motion,
+    /// Integral of the torque since the device's last step, in N m s.
+    torque: f64,
+    /// Mean of the torque in the device's last step, in N m.
+    mean: f64,
+}
+
+impl Default for Circuit {
+    fn default() -> Self {
+        Self {
+            motor: None,
+            supply: Supply::stiff(24.0),
+            temperature: 25.0,
+            amplifier_errors: [0.0; 3],
+            encoder_is_reversed: false,
+            is_blocked: false,
+            motion: Motion::default(),
+            torque: 0.0,
+            mean: 0.0,
+        }
+    }
+}
+
+impl Circuit {
+    /// Mean of the torque in the last step of the device, in N m.
+    pub fn mean_torque(&self) -> f64 {
+        self.mean
+    }
+
+    /// Currents into the motor, in A.
+    pub fn currents(&self) -> [f64; 3] {
+        self.motor.map_or([0.0; 3], |motor| motor.currents())
+    }
+
+    /// Time passes, in s.
+    pub(super) fn advance(&mut self, legs: [Leg; 3], seconds: f64) {
+        if let Some(motor) = &mut self.motor {
+            let totals = motor.advance(legs, self.supply.volts, seconds);
+            self.supply.deliver(totals.charge);
+            self.torque += totals.torque;
+        }
+    }
+
+    /// The device goes on by the time since the last step, in s; the counts that the encoder shows of it.
+    pub(super) fn step(&mut self, device: &mut dyn Device, seconds: f64) -> i32 {
+        let Some(motor) = &mut self.motor else { return 0 };
+        self.mean = if seconds > 0.0 { self.torque / seconds } else { 0.0 };
+        self.torque = 0.0;
+        if self.is_blocked {
+            self.motion = Motion { counts: 0, speed: 0.0, ..self.motion };
+        } else {
+            self.motion = device.turn(self.mean, seconds);
+        }
+        // The angle in the middle of the period to come.
+        motor.turn(self.motion.angle + 0.5 * seconds * self.motion.speed, self.motion.speed);
+        let counts = self.motion.counts;
+        if self.encoder_is_reversed { -counts } else { counts }
+    }
+
+    /// Voltage at a shunt's pin of the chip: a current into the motor pulls it down.
+    pub(super) fn shunt(&self, phase: usize, leg: Leg) -> f64 {
+        let current = self.motor.map_or(0.0, |motor| motor.low_side_current(phase, leg));
+        0.5 * REFERENCE / GAIN - DIVIDED * SHUNT * current
+    }
+
+    /// Voltage at its amplifier's output, which ends at the rails.
+    pub(super) fn amplified(&self, phase: usize, leg: Leg) -> f64 {
+        let volts = GAIN * self.shunt(phase, leg) + self.amplifier_errors[phase];
+        volts.clamp(0.0, REFERENCE)
+    }
+
+    /// Voltage of the thermistor against its resistor to ground.
+    pub(super) fn thermistor(&self) -> f64 {
+        let (resistance, beta, to_ground) = THERMISTOR;
+        let inverse = |celsius: f64| 1.0 / (celsius + ZERO_CELSIUS);
+        let resistance = resistance * (beta * (inverse(self.temperature) - inverse(25.0))).exp();
+        REFERENCE * to_ground / (to_ground + resistance)
+    }
+
+    /// Voltage of the supply's divider.
+    pub(super) fn divided(&self) -> f64 {
+        (self.supply.volts * SUPPLY_DIVIDER).min(REFERENCE)
+    }
+}

@@ -1,0 +1,142 @@
+//! What keeps the gates from being switched on, and what does not keep the motor from its torque.
+
+use firmware::wire::message::{FaultCode, Outcome};
+use virtual_board::power_stage::gate_log::{any_high, off_since};
+use virtual_board::power_stage::{Circuit, Supply};
+
+use super::bench::{INSTANT, armed, boot, circuit, gates, run_to_valley, running};
+use super::bridge_wall::{SCENE, TRANSDUCERS};
+use super::gates::{INTO, pushing};
+use super::paddle::Paddle;
+use crate::stub::{Masks, hold_up};
+
+/// No gate is high in any of them, not for a clock.
+#[test]
+fn a_stage_that_is_not_in_order_is_never_switched_on() {
+    type Cause = (&'static str, fn(&mut Circuit));
+    let causes: [Cause; 5] = [
+        ("over-voltage", |circuit| circuit.supply = Supply::stiff(27.0)),
+        ("under-voltage", |circuit| circuit.supply = Supply::stiff(12.0)),
+        ("over-temperature", |circuit| circuit.temperature = 95.0),
+        ("current-offset", |circuit| circuit.amplifier_errors[0] = 0.3),
+        ("current-offset", |circuit| circuit.amplifier_errors[1] = -1.6),
+    ];
+    for (fault, cause) in causes {
+        let mut bench = boot(Paddle::still());
+        cause(circuit(&mut bench));
+        bench.run(20);
+        let outcome = bench.arm();
+        bench.run(20);
+        let told = bench.status().fault.and_then(FaultCode::fault);
+        println!("{fault}: {outcome:?}, {told:?}");
+        assert_eq!(told.map(|told| told.as_str()), Some(fault));
+        assert!(!any_high(gates(&bench), 0, bench.machine.board().now), "{fault}");
+        // And once it is in order again, it is switched on.
+        circuit(&mut bench).supply = Supply::stiff(24.0);
+        (circuit(&mut bench).temperature, circuit(&mut bench).amplifier_errors) = (25.0, [0.0; 3]);
+        bench.run(20);
+        assert_eq!(bench.arm(), Outcome::Done, "{fault}");
+        bench.run(2);
+        assert!(bench.machine.board().power_stage.timer.is_on(), "{fault}");
+    }
+}
+
+/// The comparators need no program.
+#[test]
+fn a_short_is_broken_while_all_interrupts_are_masked() {
+    let mut bench = pushing();
+    hold_up(&mut bench, 40 * INSTANT, Masks::All);
+    run_to_valley(&mut bench);
+    let began = bench.machine.board().now;
+    circuit(&mut bench).motor.as_mut().unwrap().short = Some((0.01, 0.5e-6));
+    bench.run_for(INSTANT);
+    let off = off_since(gates(&bench)).expect("no gate is high");
+    println!("{} clocks behind the short", off - began);
+    assert!(off - began < INSTANT);
+    bench.run(10);
+    assert_eq!(off_since(gates(&bench)), Some(off), "and it stays so");
+    assert!(bench.status().fault.is_some());
+}
+
+/// Resistance and inductance of 40 % more and less: the feedback makes the same torque of the same count.
+#[test]
+fn a_motor_whose_winding_is_another_makes_the_same_torque() {
+    let torque = |resistance: f64, inductance: f64| {
+        let mut bench = pushing();
+        let motor = circuit(&mut bench).motor.as_mut().unwrap();
+        motor.resistance *= resistance;
+        motor.inductance *= inductance;
+        bench.run(50);
+        assert!(bench.machine.board().power_stage.timer.is_on());
+        circuit(&mut bench).mean_torque()
+    };
+    let wanted = torque(1.0, 1.0);
+    for (resistance, inductance) in [(1.4, 0.7), (0.7, 1.3), (1.4, 1.4)] {
+        let made = torque(resistance, inductance);
+        println!("{made:.4} N m in place of {wanted:.4}");
+        assert!((made / wanted - 1.0).abs() < 0.02);
+    }
+}
+
+/// Nothing tells it from a device that is pushed: the torque has the wrong sign, and its limit holds.
+#[test]
+fn swapped_wires_and_a_reversed_encoder_push_no_harder_than_the_limit() {
+    for swaps_wires in [false, true] {
+        let mut bench = boot(Paddle::still());
+        if swaps_wires {
+            circuit(&mut bench).motor.as_mut().unwrap().wires = [1, 0, 2];
+        } else {
+            circuit(&mut bench).encoder_is_reversed = true;
+        }
+        armed(&mut bench);
+        bench.run(110);
+        bench.pins().turns.push_back(INTO);
+        let limit = SCENE.torque_limit.unwrap_or(TRANSDUCERS.full_scale_torque);
+        let mut largest: f64 = 0.0;
+        for _ in 0..400 {
+            bench.run(1);
+            largest = largest.max(circuit(&mut bench).mean_torque().abs());
+        }
+        println!("at most {largest:.3} N m, {:?}", bench.status().fault);
+        assert!(largest <= 1.05 * limit, "{largest} N m");
+    }
+}
+
+#[test]
+fn a_hand_that_holds_the_paddle_feels_the_torque_of_the_code() {
+    let mut bench = running(Paddle::still());
+    circuit(&mut bench).is_blocked = true;
+    bench.pins().turns.push_back(INTO);
+    bench.run(200);
+    let code = super::bench::code(&mut bench);
+    let step =
+        TRANSDUCERS.full_scale_torque / f64::from(firmware::dac::DacCode::CODES_TO_FULL_SCALE);
+    let wanted = (f64::from(code) - 2048.0) * step;
+    let made = circuit(&mut bench).mean_torque();
+    println!("{made:.5} N m of {wanted:.5}");
+    assert!((made - wanted).abs() < 0.005, "{made} N m of {wanted}");
+}
+
+/// Swings back, and then into the wall.
+fn strikes(time: f64) -> f64 {
+    if time < 0.3 { -0.35 } else { 0.35 }
+}
+
+/// What the wall brakes goes into the supply's capacitor: the gates are off before that is much above what is
+/// allowed, and what is left of the motion does not lift it further.
+#[test]
+fn a_supply_that_takes_nothing_back_is_not_lifted_far() {
+    let mut bench = boot(Paddle::new(strikes, 0.0));
+    circuit(&mut bench).supply = Supply { volts: 24.0, capacitance: Some(2e-5), source: 24.0 };
+    armed(&mut bench);
+    let mut highest: f64 = 24.0;
+    for _ in 0..900 {
+        bench.run(1);
+        highest = highest.max(circuit(&mut bench).supply.volts);
+    }
+    let told = bench.status().fault.and_then(FaultCode::fault);
+    println!("{highest:.2} V, {told:?}");
+    assert_eq!(told.map(|told| told.as_str()), Some("over-voltage"));
+    assert!(highest > 25.2 && highest < 26.5, "{highest} V");
+    assert!(!bench.machine.board().power_stage.timer.is_on());
+}

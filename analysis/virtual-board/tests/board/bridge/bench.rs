@@ -1,0 +1,113 @@
+//! A virtual board with a motor at its bridge.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use analysis::toolchain::TorqueOutput;
+use firmware::current::{Drive, Winding};
+use virtual_board::board::{Board, BusAccess};
+use virtual_board::chip::B_G431B_ESC1;
+use virtual_board::device::Device;
+use virtual_board::motor::{self, Motor};
+use virtual_board::peripheral::pins::Level;
+use virtual_board::power_stage::{Circuit, Gates, Supply};
+
+use super::bridge_wall::{CURRENT_LOOP, DRIVE};
+use crate::bench::{Bench, build_for};
+
+/// Core clocks in a period of the modulation.
+pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
+
+/// The programs that drive the bridge.
+const PROGRAMS: [&str; 2] = ["bridge_wall", "brushless_wall"];
+
+/// A program's file. All of them are built when the first is asked for.
+fn program(name: &str) -> &'static PathBuf {
+    static FILES: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    let files = FILES.get_or_init(|| build_for(&B_G431B_ESC1, TorqueOutput::Bridge, &PROGRAMS));
+    let place = PROGRAMS.iter().position(|known| *known == name);
+    &files[place.expect("it drives the bridge")]
+}
+
+/// The motor that a program is for.
+pub fn motor(drive: &Drive) -> Motor {
+    let firmware::current::Motor { winding, resistance, inductance, torque_constant } = drive.motor;
+    let winding = match winding {
+        Winding::Brushed => motor::Winding::Brushed,
+        Winding::Brushless { pole_pairs } => {
+            motor::Winding::Brushless { pole_pairs: pole_pairs.into(), offset: 0.0 }
+        }
+    };
+    Motor::new(winding, resistance, inductance, torque_constant)
+}
+
+/// A bench with the motor of `bridge_wall`, whose gates are recorded.
+pub fn boot(device: impl Device + Send + 'static) -> Bench {
+    let mut bench = boot_program("bridge_wall", motor(&DRIVE), device);
+    bench.machine.board_mut().gates = Some(Vec::new());
+    bench
+}
+
+/// A bench with a program and a motor.
+pub fn boot_program(name: &str, motor: Motor, device: impl Device + Send + 'static) -> Bench {
+    let mut bench = Bench::boot_file(&B_G431B_ESC1, program(name), device);
+    let circuit = circuit(&mut bench);
+    circuit.motor = Some(motor);
+    circuit.supply = Supply::stiff(24.0);
+    bench
+}
+
+/// The same, armed and run until the scene is felt.
+pub fn running(device: impl Device + Send + 'static) -> Bench {
+    /// More than the tenth of a second in which the clamp opens.
+    const OPEN: u64 = 110;
+    let mut bench = boot(device);
+    armed(&mut bench);
+    bench.run(OPEN);
+    bench
+}
+
+/// Has the gates switched on, once the amplifiers' offsets are known; gives the tick in which they were.
+pub fn armed(bench: &mut Bench) -> usize {
+    /// More than the 256 instants of which the offsets are the mean.
+    const MEASURED: u64 = 10;
+    bench.run(MEASURED);
+    bench.armed()
+}
+
+/// What is wired to the power stage.
+pub fn circuit(bench: &mut Bench) -> &mut Circuit {
+    &mut bench.machine.board_mut().power_stage.circuit
+}
+
+/// The changes of the gates so far.
+pub fn gates(bench: &Bench) -> &[(u64, Gates)] {
+    bench.machine.board().gates.as_deref().unwrap()
+}
+
+/// Whether any gate is high now.
+pub fn has_high_gate(board: &Board) -> bool {
+    board.power_stage.gates().contains(&Level::High)
+}
+
+/// The accesses to peripherals since the last time.
+pub fn take_accesses(bench: &mut Bench) -> Vec<BusAccess> {
+    bench.machine.board_mut().accesses.replace(Vec::new()).unwrap_or_default()
+}
+
+/// The code that the servo gave last.
+pub fn code(bench: &mut Bench) -> u16 {
+    const NAMES: [&str; 2] = ["6bridge7WAITING.0", "6bridge7WAITING"];
+    let image = bench.machine.image();
+    let found = NAMES.iter().find_map(|name| image.symbol_ending(name));
+    let (place, _) = found.expect("the bridge's waiting code has a place");
+    let word = bench.machine.core_mut().word(place & !3).unwrap();
+    (word >> (8 * (place & 3))) as u16
+}
+
+/// Runs to the next valley of the modulation.
+pub fn run_to_valley(bench: &mut Bench) {
+    let board = bench.machine.board();
+    let valley = board.power_stage.timer.valley().expect("the counter runs");
+    bench.run_for(valley + INSTANT - board.now);
+}

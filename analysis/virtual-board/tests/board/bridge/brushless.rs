@@ -1,0 +1,138 @@
+//! A brushless motor: aligned on request, whichever way its wires and its encoder are, or refused; and then with
+//! the torque of the code.
+
+use std::sync::{Arc, Mutex};
+
+use firmware::dac::DacCode;
+use firmware::fault::Fault;
+use firmware::servo_loop::State;
+use firmware::wire::message::{FaultCode, Outcome, ToBoard};
+use virtual_board::motor::{Motor, Winding};
+use virtual_board::power_stage::Circuit;
+use virtual_board::power_stage::gate_log::any_high;
+
+use super::bench::{boot_program, circuit, code, motor};
+use super::brushless_wall::{DRIVE, TRANSDUCERS};
+use super::paddle::Paddle;
+use crate::bench::{Bench, MID_SCALE};
+use analysis::link::Message;
+
+/// Samples within which an alignment ends: ten seconds.
+const LONGEST: u64 = 100_000;
+/// Torque of the hand in N m that leans against the wall.
+const LEANS: f64 = 0.07;
+
+/// A bench with a hand at the shaft.
+struct Held {
+    bench: Bench,
+    hand: Arc<Mutex<f64>>,
+}
+
+impl Held {
+    fn new(motor: Motor) -> Self {
+        let hand = Arc::<Mutex<f64>>::default();
+        let bench = boot_program("brushless_wall", motor, Paddle::shaft(hand.clone()));
+        Self { bench, hand }
+    }
+}
+
+/// The program's motor, with its magnets anywhere and its wires in this order.
+fn wired(wires: [usize; 3], offset: f64) -> Motor {
+    let mut motor = motor(&DRIVE);
+    if let Winding::Brushless { pole_pairs, .. } = motor.winding {
+        motor.winding = Winding::Brushless { pole_pairs, offset };
+    }
+    motor.wires = wires;
+    motor
+}
+
+/// Has the motor aligned in a circuit; gives the bench and what the board says of it.
+fn aligned(motor: Motor, change: fn(&mut Circuit)) -> (Held, Option<Fault>) {
+    const ID: u16 = 9;
+    let mut held = Held::new(motor);
+    let bench = &mut held.bench;
+    change(circuit(bench));
+    bench.run(200);
+    let outcome = bench.ask(&ToBoard::Align { id: ID }, |message| match message {
+        Message::Answer { id: ID, outcome } => Some(outcome),
+        _ => None,
+    });
+    assert_eq!(outcome, Outcome::Done);
+    let mut samples = 0;
+    while bench.status().state == State::Aligning {
+        bench.run(2000);
+        samples += 2000;
+        assert!(samples < LONGEST, "it does not end");
+    }
+    let fault = bench.status().fault.and_then(FaultCode::fault);
+    assert!(!bench.machine.board().power_stage.timer.is_on());
+    println!("{samples} samples, {fault:?}");
+    (held, fault)
+}
+
+/// A hand that leans against the wall comes to rest: the torque is that of the code, and the hand's.
+fn check_torque(held: &mut Held, what: &str) {
+    let Held { bench, hand } = held;
+    assert_eq!(bench.arm(), Outcome::Done, "{what}");
+    // Into the wall as the encoder has it.
+    let direction = if circuit(bench).encoder_is_reversed { -1.0 } else { 1.0 };
+    *hand.lock().unwrap() = direction * LEANS;
+    bench.run(8000);
+    let step = TRANSDUCERS.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+    let wanted = (f64::from(code(bench)) - f64::from(MID_SCALE)) * step;
+    let made = direction * circuit(bench).mean_torque();
+    println!("{what}: {made:.5} N m of {wanted:.5}, {:?}", bench.status().fault);
+    assert!((made / wanted - 1.0).abs() < 0.03, "{what}: {made} N m of {wanted}");
+    assert!((made + LEANS).abs() < 0.004, "{what}: {made} N m against {LEANS}");
+}
+
+#[test]
+fn a_motor_is_aligned_whatever_the_order_of_its_wires() {
+    for (wires, offset) in [([0, 1, 2], 1.3), ([1, 0, 2], -2.0)] {
+        let (mut held, fault) = aligned(wired(wires, offset), |_| {});
+        assert_eq!(fault, None, "{wires:?}");
+        check_torque(&mut held, &format!("{wires:?}"));
+    }
+}
+
+#[test]
+fn a_motor_is_aligned_with_its_encoder_reversed() {
+    let wires = [2, 0, 1];
+    let (mut held, fault) =
+        aligned(wired(wires, 0.4), |circuit| circuit.encoder_is_reversed = true);
+    assert_eq!(fault, None);
+    check_torque(&mut held, "reversed");
+}
+
+#[test]
+fn what_cannot_be_aligned_is_refused() {
+    type Cause = (&'static str, fn(&mut Circuit));
+    let causes: [Cause; 2] = [
+        ("alignment-blocked", |circuit| circuit.is_blocked = true),
+        ("alignment-pole-pairs", |circuit| {
+            let winding = Winding::Brushless { pole_pairs: 5, offset: 0.0 };
+            circuit.motor.as_mut().unwrap().winding = winding;
+        }),
+    ];
+    for (expected, cause) in causes {
+        let (mut held, fault) = aligned(wired([0, 1, 2], 0.7), cause);
+        assert_eq!(fault.map(Fault::as_str), Some(expected));
+        check_stays_off(&mut held.bench);
+    }
+}
+
+/// It is asked to be armed, and no gate is high for it.
+fn check_stays_off(bench: &mut Bench) {
+    bench.machine.board_mut().gates = Some(Vec::new());
+    bench.arm();
+    bench.run(50);
+    assert!(bench.status().fault.is_some());
+    assert!(!any_high(bench.machine.board().gates.as_deref().unwrap(), 0, u64::MAX));
+}
+
+#[test]
+fn a_motor_that_is_not_aligned_is_not_driven() {
+    let mut held = Held::new(wired([0, 1, 2], 0.7));
+    held.bench.run(300);
+    check_stays_off(&mut held.bench);
+}

@@ -1,0 +1,251 @@
+//! Every fault of the bridge and of what surrounds it, provoked from outside, and how soon no gate is high.
+
+use firmware::servo_loop::State;
+use firmware::wire::message::FaultCode;
+use unicorn_engine::RegisterARM;
+use virtual_board::chip::{BREAKS, CONVERSION_INTERRUPT, LOCK_UP_BREAKS, TICK_INTERRUPT};
+use virtual_board::core::exceptions::{FIRST_INTERRUPT, NON_MASKABLE};
+use virtual_board::power_stage::Supply;
+use virtual_board::power_stage::gate_log::off_since;
+
+use super::bench::{INSTANT, circuit, gates, run_to_valley};
+use super::bridge_wall::CURRENT_LOOP;
+use super::gates::pushing;
+use crate::bench::Bench;
+use crate::faults::panics;
+use crate::stub::{Masks, hold_up};
+
+/// Registers that the current interrupt uses.
+const CAPTURED_COUNT: u32 = 0x4000_083C;
+const CURRENT_OF_U: u32 = 0x5000_0080;
+const COMPARE_OF_U: u32 = 0x4001_2C34;
+const BREAK_CONTROL: u32 = 0x4001_2C44;
+
+/// Periods of the modulation in one of the servo.
+const SERVO: f64 = CURRENT_LOOP.updates() as f64;
+
+/// A way to provoke a fault.
+struct Case {
+    fault: &'static str,
+    cause: &'static str,
+    /// Periods of the modulation from the cause within which no gate is high any more.
+    bound: f64,
+    provoke: fn(&mut Bench),
+    /// Whether the watchdog has to reset the board, which then says what it was.
+    resets: bool,
+}
+
+const CASES: &[Case] = &[
+    Case {
+        fault: "over-current",
+        cause: "a short between the motor's wires",
+        bound: 1.0,
+        provoke: |bench| motor(bench).short = Some((0.01, 0.5e-6)),
+        resets: false,
+    },
+    Case {
+        fault: "over-voltage",
+        cause: "the supply rises to 27 V",
+        bound: 3.0,
+        provoke: |bench| circuit(bench).supply = Supply::stiff(27.0),
+        resets: false,
+    },
+    Case {
+        fault: "under-voltage",
+        cause: "the supply falls to 15 V",
+        bound: 3.0,
+        provoke: |bench| circuit(bench).supply = Supply::stiff(15.0),
+        resets: false,
+    },
+    Case {
+        fault: "over-temperature",
+        cause: "the power stage is at 95 degrees",
+        bound: 3.0,
+        provoke: |bench| circuit(bench).temperature = 95.0,
+        resets: false,
+    },
+    Case {
+        fault: "current-not-following",
+        cause: "a wire of the motor breaks while it has current",
+        bound: 2.0 * SERVO,
+        provoke: |bench| motor(bench).open[0] = true,
+        resets: false,
+    },
+    Case {
+        fault: "over-current",
+        cause: "an amplifier's output goes to its rail",
+        bound: 2.0,
+        provoke: |bench| circuit(bench).amplifier_errors[0] = 3.3,
+        resets: false,
+    },
+    Case {
+        fault: "encoder-jump",
+        cause: "the encoder jumps by more than the device's largest speed",
+        bound: 2.0 * SERVO,
+        provoke: |bench| bench.pins().turns.push_back(20_000),
+        resets: false,
+    },
+    Case {
+        fault: "late-tick",
+        cause: "all interrupts are masked for two periods of the modulation",
+        bound: 2.0 * SERVO,
+        provoke: |bench| {
+            hold_up(bench, 2 * INSTANT, Masks::All);
+        },
+        resets: false,
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the servo's interrupt is disabled",
+        bound: 9.0 * SERVO,
+        provoke: |bench| {
+            let exceptions = &mut bench.machine.board_mut().system.exceptions;
+            exceptions.enable(FIRST_INTERRUPT + TICK_INTERRUPT, false);
+        },
+        resets: true,
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the current loop's interrupt is disabled",
+        bound: 9.0 * SERVO,
+        provoke: |bench| {
+            let exceptions = &mut bench.machine.board_mut().system.exceptions;
+            exceptions.enable(FIRST_INTERRUPT + CONVERSION_INTERRUPT, false);
+        },
+        resets: true,
+    },
+    Case {
+        fault: "non-maskable",
+        cause: "a non-maskable interrupt comes of which the chip says nothing",
+        bound: 1.0,
+        provoke: |bench| bench.machine.board_mut().system.exceptions.pend(NON_MASKABLE),
+        resets: true,
+    },
+    Case {
+        fault: "clock-lost",
+        cause: "the crystal stops",
+        bound: 1.0,
+        provoke: |bench| bench.machine.board_mut().clock.crystal_runs = false,
+        resets: true,
+    },
+    Case {
+        fault: "panic",
+        cause: "the core is sent into a panic of line 12, column 34",
+        bound: 1.0,
+        provoke: |bench| {
+            panics(bench);
+        },
+        resets: true,
+    },
+    Case {
+        fault: "hard-fault",
+        cause: "the core goes to where no memory is",
+        bound: 1.0,
+        provoke: |bench| bench.machine.core_mut().set_register(RegisterARM::PC, 0x6000_0001),
+        resets: true,
+    },
+    Case {
+        fault: "hard-fault",
+        cause: "the bus has an error at the captured count",
+        bound: 2.0,
+        provoke: |bench| bench.machine.board_mut().broken = Some(CAPTURED_COUNT),
+        resets: true,
+    },
+    Case {
+        fault: "hard-fault",
+        cause: "the bus has an error at a converter",
+        bound: 2.0,
+        provoke: |bench| bench.machine.board_mut().broken = Some(CURRENT_OF_U),
+        resets: true,
+    },
+    Case {
+        fault: "hard-fault",
+        cause: "the bus has an error at a compare value",
+        bound: 2.0,
+        provoke: |bench| bench.machine.board_mut().broken = Some(COMPARE_OF_U),
+        resets: true,
+    },
+    Case {
+        fault: "watchdog",
+        cause: "the core is locked up: the handler of a fault has a fault",
+        bound: 9.0 * SERVO,
+        provoke: locks_up,
+        resets: true,
+    },
+];
+
+/// A fault whose handler has a fault: it is to write the register by which the gates are taken away.
+fn locks_up(bench: &mut Bench) {
+    bench.machine.board_mut().broken = Some(BREAK_CONTROL);
+    bench.machine.core_mut().set_register(RegisterARM::PC, 0x6000_0001);
+}
+
+fn motor(bench: &mut Bench) -> &mut virtual_board::motor::Motor {
+    circuit(bench).motor.as_mut().unwrap()
+}
+
+impl Case {
+    /// Provokes it on a servo that pushes; gives the periods of the modulation until the gates were off.
+    fn run(&self) -> f64 {
+        let what = format!("{}: {}", self.fault, self.cause);
+        let mut bench = pushing();
+        run_to_valley(&mut bench);
+        let began = bench.machine.board().now;
+        (self.provoke)(&mut bench);
+        while bench.machine.board().now < began + 420 * INSTANT {
+            bench.run_for(1000);
+            if !bench.machine.resets().is_empty() {
+                // What was broken is repaired before it is used again.
+                let board = bench.machine.board_mut();
+                (board.broken, board.clock.crystal_runs) = (None, true);
+            }
+        }
+        let off = off_since(gates(&bench)).unwrap_or_else(|| panic!("{what}: a gate is high"));
+        let periods = off.saturating_sub(began) as f64 / INSTANT as f64;
+        assert!(periods <= self.bound, "{what}: {periods} periods");
+        assert_eq!(circuit(&mut bench).currents(), [0.0; 3], "{what}");
+        self.check_told(&mut bench, &what);
+        periods
+    }
+
+    fn check_told(&self, bench: &mut Bench, what: &str) {
+        bench.run(50);
+        assert_eq!(!bench.machine.resets().is_empty(), self.resets, "{what}");
+        let status = bench.status();
+        let told = status.fault.and_then(FaultCode::fault).unwrap_or_else(|| panic!("{what}"));
+        assert_eq!(told.as_str(), self.fault, "{what}: {told}");
+        let state = if self.resets { State::Disarmed } else { State::Faulted };
+        assert_eq!(status.state, state, "{what}");
+    }
+}
+
+/// The table of what was measured, in periods of the modulation, rounded up to tenths.
+fn table(measured: &[f64]) -> String {
+    let mut table =
+        String::from("| fault | provoked by | promised | measured |\n|---|---|---|---|\n");
+    for (Case { fault, cause, bound, .. }, periods) in CASES.iter().zip(measured) {
+        table +=
+            &format!("| {fault} | {cause} | {bound} | {:.1} |\n", (periods * 10.0).ceil() / 10.0);
+    }
+    table
+}
+
+#[test]
+fn every_fault_takes_the_gates_away_in_time_and_is_told() {
+    let measured: Vec<_> = CASES.iter().map(Case::run).collect();
+    let (table, kept) = (table(&measured), include_str!("../../../bridge-faults.md"));
+    assert!(kept.ends_with(&table), "bridge-faults.md has another table than\n{table}");
+}
+
+/// Where the chip is asked to, it breaks the outputs by itself: no handler, and no watchdog, has to.
+#[test]
+fn a_core_that_is_locked_up_can_break_the_gates_by_hardware() {
+    let mut bench = pushing();
+    bench.machine.board_mut().configuration.set(BREAKS, LOCK_UP_BREAKS);
+    run_to_valley(&mut bench);
+    let began = bench.machine.board().now;
+    locks_up(&mut bench);
+    bench.run_for(2 * INSTANT);
+    let off = off_since(gates(&bench)).expect("no gate is high");
+    assert!(off - began < 2 * INSTANT, "{} clocks", off - began);
+}

@@ -1,0 +1,71 @@
+//! When the gates are high, and when never.
+
+use virtual_board::peripheral::clock::Cause;
+use virtual_board::power_stage::gate_log::{any_high, first_high, off_since, shortest_dead_time};
+
+use super::bench::{INSTANT, armed, boot, circuit, gates, has_high_gate, running};
+use super::bridge_wall::CURRENT_LOOP;
+use super::paddle::Paddle;
+use crate::bench::Bench;
+
+/// Counts into the wall.
+pub const INTO: i32 = 200;
+
+/// A servo that pushes against a paddle that is held.
+pub fn pushing() -> Bench {
+    let mut bench = running(Paddle::still());
+    circuit(&mut bench).is_blocked = true;
+    bench.pins().turns.push_back(INTO);
+    bench.run(20);
+    let torque = circuit(&mut bench).mean_torque();
+    assert!(torque < -0.2, "{torque} N m");
+    bench
+}
+
+#[test]
+fn no_gate_is_high_before_the_servo_is_armed() {
+    let mut bench = boot(Paddle::still());
+    bench.run(300);
+    let now = bench.machine.board().now;
+    assert!(!any_high(gates(&bench), 0, now));
+    armed(&mut bench);
+    bench.run(1);
+    assert!(has_high_gate(bench.machine.board()));
+    assert!(first_high(gates(&bench), 0).unwrap() > now);
+}
+
+#[test]
+fn no_two_switches_of_a_leg_are_on_within_the_dead_time() {
+    let bench = pushing();
+    // Half a microsecond, which is what the board's power stage states.
+    assert_eq!(shortest_dead_time(gates(&bench)), Some(85));
+    assert_eq!(bench.machine.board().power_stage.timer.dead_time(), 85);
+    assert_eq!(INSTANT, u64::from(CURRENT_LOOP.clock_counts()) / u64::from(CURRENT_LOOP.updates()));
+}
+
+/// Of every cause: off at that clock, and until it is armed again.
+#[test]
+fn a_reset_takes_the_gates_away_at_once() {
+    for cause in Cause::ALL {
+        let mut bench = pushing();
+        bench.machine.reset(cause);
+        let reset = bench.machine.board().now;
+        assert!(!has_high_gate(bench.machine.board()), "{cause:?}");
+        bench.run(200);
+        let off = off_since(gates(&bench)).unwrap_or_else(|| panic!("{cause:?}"));
+        assert!(off <= reset, "{cause:?}: {off} after {reset}");
+        assert_eq!(circuit(&mut bench).currents(), [0.0; 3], "{cause:?}");
+        armed(&mut bench);
+        bench.run(1);
+        assert!(has_high_gate(bench.machine.board()), "{cause:?}");
+    }
+}
+
+#[test]
+fn a_power_cycle_takes_the_gates_away_at_once() {
+    let mut bench = pushing();
+    bench.machine.power_cycle();
+    let reset = bench.machine.board().now;
+    bench.run(100);
+    assert!(off_since(gates(&bench)).is_some_and(|off| off <= reset));
+}
