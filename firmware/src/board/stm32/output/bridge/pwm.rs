@@ -34,7 +34,17 @@ const COMPARATORS: [usize; 3] = [0, 1, 3];
 pub fn prepare(current_loop: &CurrentLoop) {
     let (reload, phases) = (current_loop.timer_counts(), current_loop.phases());
     rcc::enable_and_reset::<peripherals::TIM1>();
-    // First of all: with the main output off, each gate that the timer is given is low.
+    // The comparators alone break, and a core that is locked up; no pin does. Before the break is enabled: out of
+    // reset it is the pin's.
+    TIMER.af1().write(|w| {
+        w.set_bkine(false);
+        for comparator in COMPARATORS {
+            w.set_bkcmpe(comparator, true);
+            w.set_bkcmpp(comparator, Bkinp::NOT_INVERTED);
+        }
+    });
+    pac::SYSCFG.cfgr2().modify(|w| w.set_cll(true));
+    // With the main output off, each gate that the timer is given is low.
     off();
     TIMER.cr1().write(|w| {
         w.set_cms(Cms::CENTER_ALIGNED1);
@@ -57,14 +67,6 @@ pub fn prepare(current_loop: &CurrentLoop) {
         for phase in 0..phases {
             w.set_cce(phase, true);
             w.set_ccne(phase, true);
-        }
-    });
-    // The comparators alone break; the pin of the break input is the serial port's neighbour and open.
-    TIMER.af1().write(|w| {
-        w.set_bkine(false);
-        for comparator in COMPARATORS {
-            w.set_bkcmpe(comparator, true);
-            w.set_bkcmpp(comparator, Bkinp::NOT_INVERTED);
         }
     });
     TIMER.egr().write(|w| w.set_ug(true));
@@ -134,11 +136,4 @@ pub fn set(current_loop: &CurrentLoop, duties: Duties) {
     for (phase, duty) in duties.0.into_iter().enumerate() {
         TIMER.ccr(phase).write(|w| w.set_ccr(current_loop.timer_counts().wrapping_sub(duty)));
     }
-}
-
-/// Counts of the timer since an update that has been missed, where a PWM period has so many.
-#[cold]
-pub fn counts_since_update(period: u32) -> u32 {
-    let (count, down) = (u32::from(TIMER.cnt().read().cnt()), TIMER.cr1().read().dir());
-    period + if down == Dir::DOWN { period - count } else { count }
 }
