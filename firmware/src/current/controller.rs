@@ -148,12 +148,13 @@ impl CurrentController {
         [self.offset[0] as u16, self.offset[1] as u16]
     }
 
-    /// The fault of a comparator that has taken the gates away, with the larger of the two currents of the
-    /// instant after it.
+    /// The fault of a comparator that has taken the gates away: with the larger of the two currents of the instant
+    /// after it, and at least that at which an instant would have.
     #[cold]
     pub fn over_current(&self, sample: &Sample) -> PowerFault {
         let counts = |phase: usize| (f32::from(sample.currents[phase]) - self.offset[phase]).abs();
-        self.design.limits.over_current(counts(0).max(counts(1)))
+        let tripped = f32::from(self.design.limits.over_current);
+        self.design.limits.over_current(counts(0).max(counts(1)).max(tripped))
     }
 
     /// One instant of an alignment. At its end the phase is taken over, if there is one.

@@ -23,6 +23,9 @@ pub struct CurrentIsr<const BRUSHLESS: bool> {
     instant: u32,
     /// The instant at which a code becomes the reference.
     due: u32,
+    /// Clock counts of a PWM period and a half, after which an instant is late, and the clock at the last one.
+    latest: u32,
+    last: u32,
     /// The alignment that runs.
     alignment: Option<Alignment>,
     /// The code's torque that the current follows, as [`DacCode::offset`].
@@ -38,6 +41,8 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             updates: current_loop.updates().into(),
             instant: 1 % u32::from(current_loop.updates()),
             due: current_loop.instants_in(timing),
+            latest: 3 * u32::from(current_loop.timer_counts()),
+            last: 0,
             alignment: None,
             reference: 0,
         }
@@ -47,11 +52,12 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     #[inline(always)]
     pub fn run(&mut self) {
         // Sampling.
-        let position = pace::captured();
+        let (position, now) = (pace::captured(), pace::now());
         let begins = self.instant == 0;
         if begins {
-            pace::begin_period(position);
+            pace::begin_period(position, now);
         }
+        let since_last = now.wrapping_sub(core::mem::replace(&mut self.last, now));
         pwm::acknowledge();
         let currents = sense::currents();
         let (bus, temperature) = sense::bus_and_temperature();
@@ -61,7 +67,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
         // Control and output.
         if STATE.load(Ordering::Relaxed) == State::On as u8 {
-            self.drive(&sample);
+            self.drive(&sample, since_last);
         } else {
             cold_path();
             self.otherwise(&sample);
@@ -80,10 +86,14 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     }
 
     #[inline(always)]
-    fn drive(&mut self, sample: &Sample) {
+    fn drive(&mut self, sample: &Sample, since_last: u32) {
         if pwm::broke() {
             cold_path();
             return stop(self.controller.over_current(sample));
+        }
+        if since_last > self.latest {
+            cold_path();
+            return stop(self.late(since_last));
         }
         match self.controller.step_of::<BRUSHLESS>(sample, self.reference) {
             Ok(duties) => pwm::set(self.current_loop, duties),
@@ -91,12 +101,14 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
         if pwm::updated() {
             cold_path();
-            let allowed = 2 * u32::from(self.current_loop.timer_counts());
-            stop(PowerFault::CurrentInterruptLate {
-                late: pwm::counts_since_update(allowed),
-                allowed,
-            });
+            stop(self.late(pace::now().wrapping_sub(self.last)));
         }
+    }
+
+    /// An instant that came or ended so many clock counts after the last one came.
+    #[cold]
+    const fn late(&self, late: u32) -> PowerFault {
+        PowerFault::CurrentInterruptLate { late, allowed: self.latest }
     }
 
     /// All instants but those of a servo that drives the motor.

@@ -37,11 +37,17 @@ pub fn captured() -> RawCount {
     RawCount::from(ENCODER.ccr(2).read().ccr())
 }
 
-/// Takes the count of a period down.
+/// The clock.
 #[inline(always)]
-pub fn begin_period(count: RawCount) {
+pub fn now() -> u32 {
+    CLOCK.cnt().read()
+}
+
+/// Takes the count of a period down, and the time.
+#[inline(always)]
+pub fn begin_period(count: RawCount, now: u32) {
     COUNT.store(count.bits(), Ordering::Relaxed);
-    TIME.store(CLOCK.cnt().read(), Ordering::Relaxed);
+    TIME.store(now, Ordering::Relaxed);
 }
 
 /// Keeps count of the periods. Belongs to the servo's interrupt.
@@ -114,6 +120,6 @@ impl Pace {
     /// Clock counts since the present period began.
     #[inline(always)]
     pub fn time_in_period(&self) -> u32 {
-        CLOCK.cnt().read().wrapping_sub(self.began)
+        now().wrapping_sub(self.began)
     }
 }

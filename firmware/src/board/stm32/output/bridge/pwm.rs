@@ -15,9 +15,7 @@
 
 use embassy_stm32::pac;
 use embassy_stm32::pac::timer::regs::BdtrAdv;
-use embassy_stm32::pac::timer::vals::{
-    Bkinp, Bkp, Cms, Dir, FilterValue, Mms, Ocm, Ossi, Ossr, Urs,
-};
+use embassy_stm32::pac::timer::vals::{Bkinp, Bkp, Cms, FilterValue, Mms, Ocm, Ossi, Ossr, Urs};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
