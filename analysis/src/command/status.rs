@@ -61,6 +61,16 @@ pub enum CommandError {
         /// The programs that there are.
         programs: String,
     },
+    /// The torque of a program is that of a bridge, which is not in lockstep with the host.
+    #[error(
+        "{program} drives a motor by the bridge of its board, whose torque follows many times in a period: a \
+         virtual board in lockstep has a DAC alone. Its codes are those of --target host and --target qemu; with \
+         the bridge it runs in the tests of the virtual board"
+    )]
+    BridgeInLockstep {
+        /// The program.
+        program: String,
+    },
     /// A scene file has no program for a simulated board.
     #[error(
         "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \

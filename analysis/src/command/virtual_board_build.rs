@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::status::CommandError;
 use crate::compare_run::Backend;
 use crate::progress;
-use crate::toolchain::{self, Board, NumberFormat, Tools};
+use crate::toolchain::{self, Board, NumberFormat, Tools, TorqueOutput};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// A virtual board, and the program for its flash.
@@ -22,6 +22,9 @@ impl VirtualBoardBuild {
         let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
         let spinner = progress::spinner(&format!("building {name} and the virtual board"));
         let output = toolchain.output_of(name)?;
+        if output == TorqueOutput::Bridge {
+            return Err(CommandError::BridgeInLockstep { program: name.to_owned() });
+        }
         let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
         let program = toolchain.build_virtual_board()?;
         spinner.finish_and_clear();
