@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::{answer, haptic, program, read, root};
 
 /// The documents that name commands of the program.
-const DOCUMENTS: [&str; 19] = [
+const DOCUMENTS: [&str; 20] = [
     "README.md",
     "ARCHITECTURE.md",
     "CHANGELOG.md",

@@ -79,8 +79,9 @@ impl CurrentLoop {
         let mut i = 0;
         while i < pairs.len() {
             let (name, stated, own) = pairs[i];
-            // Written so that NaN is refused.
-            if !((stated - own).abs() <= SAME * own.abs()) {
+            // NaN is not the same as anything.
+            let is_same = (stated - own).abs() <= SAME * own.abs();
+            if !is_same {
                 let mut t = Sentence::new();
                 t.push("the program's ");
                 t.push(name);
