@@ -13,7 +13,7 @@ use super::sample::{Duties, Sample};
 use super::speed::Speed;
 use super::supervision::Supervision;
 use super::surroundings::Surroundings;
-use super::vector::{Rotation, Vector};
+use super::vector::{Rotation, Vector, larger};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 
@@ -262,7 +262,7 @@ impl CurrentController {
         let goes_on = |wanted: Wanted, counts: f32| is_limited && wanted.deviation * counts > 0.0;
         self.follower.integrate(law, across.deviation, goes_on(across, counts.across));
         self.along.integrate(law, along.deviation, goes_on(along, counts.along));
-        let deviation = across.deviation.abs().max(along.deviation.abs());
+        let deviation = larger(across.deviation.abs(), along.deviation.abs());
         self.supervision.observe(limits, deviation, is_limited)?;
         // From the sample to the middle of the period in which the voltage acts.
         let rotation = rotation.ahead(1.5 * turned);

@@ -3,12 +3,13 @@
 //! Motion induces a voltage, and the feedback takes its current away an instant late. Between velocity and the
 //! torque of that current there is no more than a small lack of passivity, which comes off the device's damping.
 
-use super::motor::Motor;
+use super::motor::{Motor, Winding};
 use super::plant::Plant;
 use crate::passivity::interval::Interval;
 
-/// Most that `-v` times torque is above 0 on average for a velocity `v`, over the mean of `v^2`, in N m s/rad:
-/// `Kt Ke h/(4 sqrt(3) L)`, rounded up. Infinite where equation 53 does not hold, so that no bound is known.
+/// The most power that the current of the back-EMF gives to a motion on average, over the mean square of its
+/// velocity, in N m s/rad: `Kt Ke h/(4 sqrt(3) L)`, rounded up (equation 52). Infinite where equation 53 does not
+/// hold, so that no bound is known.
 pub(super) const fn motion_loss(motor: &Motor, plant: &Plant, instant: f64) -> f64 {
     let (resistance, inductance) =
         (Interval::decimal(motor.resistance), Interval::decimal(motor.inductance));
@@ -19,7 +20,11 @@ pub(super) const fn motion_loss(motor: &Motor, plant: &Plant, instant: f64) -> f
     if !is_positive(ratio, Interval::exact(plant.feedback), part) {
         return f64::INFINITY;
     }
-    let back_emf = Interval::decimal(motor.back_emf());
+    // `Motor::back_emf`, enclosed.
+    let back_emf = match motor.winding {
+        Winding::Brushed => torque,
+        Winding::Brushless { .. } => torque.double().div(Interval::exact(3.0)),
+    };
     torque.mul(back_emf).mul(instant).div(inductance).mul(part).hi()
 }
 

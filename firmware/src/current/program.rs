@@ -4,6 +4,7 @@ use super::current_loop::CurrentLoop;
 use super::motor::Winding;
 use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
+use crate::passivity::interval::Interval;
 use crate::scene::Device;
 use crate::text::Sentence;
 use crate::transducers::Transducers;
@@ -101,8 +102,9 @@ impl CurrentLoop {
     #[track_caller]
     const fn check_device(&self, device: &Device) {
         let (passivity, loss) = (device.passivity(), self.motion_loss());
-        // Written so that NaN is refused.
-        if passivity + loss <= device.damping {
+        // Rounded up, and written so that NaN is refused.
+        let needed = Interval::exact(passivity).add(Interval::exact(loss)).hi();
+        if needed <= device.damping {
             return;
         }
         let mut t = Sentence::new();

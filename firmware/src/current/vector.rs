@@ -113,11 +113,25 @@ impl Vector {
     pub(super) const fn duties(self, dead_time: [f32; 3], timing: PwmTiming) -> Duties {
         let [u, v, w] = self.phases();
         let (u, v, w) = (u + dead_time[0], v + dead_time[1], w + dead_time[2]);
-        let middle = 0.5 * (u.max(v).max(w) + u.min(v).min(w));
+        let highest = larger(larger(u, v), w);
+        let lowest = smaller(smaller(u, v), w);
+        let middle = 0.5 * (highest + lowest);
         // The casts round positive numbers down.
         let zero = 0.5 * timing.counts as f32 + 0.5 - middle;
         Duties([(u + zero) as u16, (v + zero) as u16, (w + zero) as u16])
     }
+}
+
+/// The larger of two numbers. `f32::max`, which sees to NaN as well, is a function call on these chips.
+#[inline(always)]
+pub(super) const fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller one.
+#[inline(always)]
+const fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// One over the root of a positive number, from below: by halving its exponent, and Newton's iteration.
