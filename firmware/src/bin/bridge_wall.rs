@@ -19,7 +19,7 @@ pub const SCENE: Scene<Environment> = Scene {
     timing: Timing { period: bridge_paddle::PERIOD, worst_period: None },
     coupling: Coupling::Matched,
     environment: Matched {
-        environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+        environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 20.0, damping: 0.009 } },
     },
     latency: CURRENT_LOOP.latency(OutputTiming::Latched),
     torque_limit: Some(1.0),

@@ -176,6 +176,7 @@ macro_rules! bridge_checked {
             &$scene.latency,
             $scene.timing.period,
             &$transducers,
+            &$scene.device,
             <$mode as $crate::servo::OutputMode>::TIMING,
         );
     };

@@ -12,7 +12,8 @@ use super::phase::{PhaseAlignment, Turn};
 use super::sample::{Duties, Sample};
 use super::speed::Speed;
 use super::supervision::Supervision;
-use super::vector::{Rotation, Vector};
+use super::surroundings::Surroundings;
+use super::vector::{Rotation, Vector, larger};
 use crate::dac::DacCode;
 use crate::encoder::RawCount;
 
@@ -32,6 +33,7 @@ pub struct CurrentController {
     phase: Option<PhaseAlignment>,
     speed: Speed,
     supervision: Supervision,
+    surroundings: Surroundings,
     /// In A, of the last sample; zero while the gates are off.
     current: f32,
 }
@@ -50,6 +52,7 @@ impl CurrentController {
             phase: None,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
+            surroundings: Surroundings::of(design.limits.bus.0),
             current: 0.0,
         }
     }
@@ -105,6 +108,7 @@ impl CurrentController {
         self.offset = self.offsets.checked(&self.design.limits)?;
         if let Some(sample) = self.last {
             self.design.limits.check_surroundings(&sample)?;
+            self.surroundings = Surroundings::of(sample.bus);
         }
         (self.follower, self.along) = (Follower::AT_REST, Follower::AT_REST);
         self.supervision = Supervision::NONE;
@@ -189,17 +193,17 @@ impl CurrentController {
     #[inline(always)]
     fn step_brushed(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
-        limits.check(sample, self.offset)?;
+        limits.check_currents(sample, self.offset)?;
+        let bus = self.surroundings.observe(limits, sample)?;
         let [u, v] = sample.currents.map(f32::from);
         // Both shunts see the current, with opposite signs; half the difference has half the step.
         let current = 0.5 * law.amps_per_count * ((u - v) - (self.offset[0] - self.offset[1]));
         self.current = current;
-        let step = self.speed.step(sample.position);
-        let back_emf = law.back_emf * self.speed.update(step);
         let reference = law.amps_per_code * f32::from(code_offset);
         let wanted = self.follower.follow(law, reference, current);
         // The supply changes from instant to instant: the only division.
-        let counts = (wanted.volts + back_emf) * (output.counts_per_volt / f32::from(sample.bus));
+        let counts = wanted.volts * (output.counts_per_volt / bus)
+            + output.dead_time(self.follower.twice_mean());
         let span = f32::from(output.span);
         let limited = counts.clamp(-span, span);
         let is_limited = limited != counts;
@@ -238,7 +242,8 @@ impl CurrentController {
         speed: f32,
     ) -> Result<Duties, PowerFault> {
         let CurrentLoop { law, output, limits, timing, .. } = &self.design;
-        limits.check(sample, self.offset)?;
+        limits.check_currents(sample, self.offset)?;
+        let bus = self.surroundings.observe(limits, sample)?;
         let [u, v] = sample.currents.map(f32::from);
         let amps = |count: f32, offset: f32| law.amps_per_count * (count - offset);
         let phases = Vector::of_two_phases(amps(u, self.offset[0]), amps(v, self.offset[1]));
@@ -250,19 +255,20 @@ impl CurrentController {
         let turned = law.radians * speed;
         let volts = Vector {
             along: along.volts - 0.5 * turned * self.follower.volts_across(law),
-            across: across.volts
-                + law.back_emf * speed
-                + 0.5 * turned * self.along.volts_across(law),
+            across: across.volts + 0.5 * turned * self.along.volts_across(law),
         };
         // The supply changes from instant to instant: the only division.
-        let counts = volts.times(output.counts_per_volt / f32::from(sample.bus));
+        let counts = volts.times(output.counts_per_volt / bus);
         let (limited, is_limited) = counts.within(output.circle);
         let goes_on = |wanted: Wanted, counts: f32| is_limited && wanted.deviation * counts > 0.0;
         self.follower.integrate(law, across.deviation, goes_on(across, counts.across));
         self.along.integrate(law, along.deviation, goes_on(along, counts.along));
-        let deviation = across.deviation.abs().max(along.deviation.abs());
+        let deviation = larger(across.deviation.abs(), along.deviation.abs());
         self.supervision.observe(limits, deviation, is_limited)?;
         // From the sample to the middle of the period in which the voltage acts.
-        Ok(limited.turned(rotation.ahead(1.5 * turned)).duties(*timing))
+        let rotation = rotation.ahead(1.5 * turned);
+        let model = Vector { along: self.along.twice_mean(), across: self.follower.twice_mean() };
+        let (limited, model) = (limited.turned(rotation), model.turned(rotation));
+        Ok(limited.duties(model.dead_time(output.dead), *timing))
     }
 }

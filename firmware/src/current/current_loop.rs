@@ -1,6 +1,7 @@
 //! The design of a current loop, at compile time: every coefficient that an instant needs, rounded once.
 
 use super::error::DriveError;
+use super::motion::motion_loss;
 use super::motor::{Drive, Winding};
 use super::phase::Turn;
 use super::plant::{Plant, lag_of};
@@ -67,6 +68,7 @@ pub struct CurrentLoop {
     torque_constant: f64,
     response: Response,
     resolution: CurrentResolution,
+    motion_loss: f64,
 }
 
 /// Coefficients of the model, of its feed-forward, and of the feedback.
@@ -86,8 +88,6 @@ pub(super) struct Law {
     pub proportional: f32,
     /// `K (1 - a)/b` in V/A.
     pub integral: f32,
-    /// Back-EMF in V of a count of the encoder in an instant.
-    pub back_emf: f32,
     /// Electrical rad of a count; none of a brushed motor.
     pub radians: f32,
 }
@@ -99,8 +99,21 @@ pub(super) struct Output {
     pub counts_per_volt: f32,
     /// Largest difference of two compare values.
     pub span: u16,
-    /// Largest amplitude of a phase in counts: that of the circle in the hexagon of that difference.
+    /// Largest amplitude of a phase in counts, without the dead time: that of the circle in the hexagon of what
+    /// it leaves of that difference.
     pub circle: f32,
+    /// What the dead time takes, in counts: from the difference of a brushed motor's two compare values, from
+    /// each of a brushless one's three.
+    pub dead: f32,
+}
+
+impl Output {
+    /// What the dead time takes from a brushed motor with this current, in counts of the difference: so that it
+    /// is added (theory, section 15.9).
+    #[inline(always)]
+    pub(super) const fn dead_time(&self, current: f32) -> f32 {
+        if current == 0.0 { 0.0 } else { self.dead.copysign(current) }
+    }
 }
 
 /// Bounds in counts, and what makes numbers for people of them.
@@ -176,6 +189,13 @@ impl CurrentLoop {
     /// How fine the torque is.
     pub const fn resolution(&self) -> CurrentResolution {
         self.resolution
+    }
+
+    /// Damping of the device in N m s/rad that motion takes through this loop, rounded up: what the device's
+    /// passivity has to be below its damping. Infinite where no bound is known: of a winding whose time constant
+    /// is far below an instant.
+    pub const fn motion_loss(&self) -> f64 {
+        self.motion_loss
     }
 
     /// Torque in N m of an ampere.
@@ -393,6 +413,7 @@ impl<'a> Design<'a> {
                 dead_time: stage.dead_time,
             }
             .resolution(drive.motor.winding),
+            motion_loss: motion_loss(&drive.motor, &self.plant, self.instant),
         }
     }
 
@@ -420,15 +441,25 @@ impl<'a> Design<'a> {
             proportional: (feedback * decay / gain) as f32,
             integral: (feedback * (1.0 - decay) / gain) as f32,
             radians: (self.pole_pairs() as f64 * radians_per_count) as f32,
-            back_emf: (self.drive.motor.back_emf() * radians_per_count / self.instant) as f32,
         }
     }
 
     const fn output(&self) -> Output {
         let counts = self.timing.counts as f64 / self.stage.volts_per_count;
         let span = self.span();
-        let circle = span as f64 / ROOT_3 * (1.0 - SINE_ERROR);
-        Output { counts_per_volt: counts as f32, span, circle: circle as f32 }
+        // The timer counts up and down: a compare value moves both edges.
+        let dead = self.stage.dead_time * self.stage.clock;
+        let circle = (span as f64 - dead) / ROOT_3 * (1.0 - SINE_ERROR);
+        let dead = match self.drive.motor.winding {
+            Winding::Brushed => dead,
+            Winding::Brushless { .. } => dead / 2.0,
+        };
+        Output {
+            counts_per_volt: counts as f32,
+            span,
+            circle: circle.max(0.0) as f32,
+            dead: dead as f32,
+        }
     }
 
     const fn limits(&self) -> Limits {
@@ -459,12 +490,12 @@ const fn check_positive(drive: &Drive, transducers: &Transducers) -> Result<(), 
         ("motor's resistance", motor.resistance),
         ("motor's inductance", motor.inductance),
         ("motor's torque constant", motor.torque_constant),
-        ("bandwidth", drive.bandwidth),
-        ("lowest supply", drive.supply.lowest),
-        ("highest supply", drive.supply.highest),
+        ("drive's bandwidth", drive.bandwidth),
+        ("drive's lowest supply", drive.supply.lowest),
+        ("drive's highest supply", drive.supply.highest),
         ("full-scale torque", transducers.full_scale_torque),
         ("largest speed", transducers.largest_speed),
-        ("counts per turn", transducers.counts_per_turn),
+        ("number of counts per turn", transducers.counts_per_turn),
     ];
     let mut i = 0;
     while i < numbers.len() {

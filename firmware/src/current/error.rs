@@ -106,7 +106,7 @@ impl DriveError {
         let mut t = DriveSentence::new();
         match self {
             Self::NotPositive { name, value } => {
-                t.push("the drive's ");
+                t.push("the ");
                 t.push(name);
                 t.push(" must be positive and finite, and is ");
                 t.push_number(*value);

@@ -15,7 +15,7 @@ pub(super) struct Follower {
 /// What a current needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted {
-    /// Voltage in V, without the back-EMF.
+    /// Voltage in V: that of the motor's motion is left to the feedback (theory, section 15.8).
     pub volts: f32,
     /// The model's current less the measured one, in A.
     pub deviation: f32,
@@ -42,6 +42,13 @@ impl Follower {
     #[inline(always)]
     pub(super) const fn volts_across(&self, law: &Law) -> f32 {
         (self.next + law.decay * self.model) * law.volts
+    }
+
+    /// Twice the model's mean current while the voltage acts, after [`follow`](Self::follow). It has no noise, so
+    /// that its sign does not flicker as a measured one's would.
+    #[inline(always)]
+    pub(super) const fn twice_mean(&self) -> f32 {
+        self.model + self.next
     }
 
     /// Goes on with the integral, unless a limit of the voltage would make it grow for nothing.

@@ -4,6 +4,8 @@ use super::current_loop::CurrentLoop;
 use super::motor::Winding;
 use crate::latency::Latency;
 use crate::output_timing::OutputTiming;
+use crate::passivity::interval::Interval;
+use crate::scene::Device;
 use crate::text::Sentence;
 use crate::transducers::Transducers;
 
@@ -45,7 +47,7 @@ impl CurrentLoop {
     }
 
     /// For constants: whether this loop is that of a program with a scene of this latency and this period in s,
-    /// with these transducers, which puts codes out like this.
+    /// with these transducers and this device, which puts codes out like this.
     ///
     /// # Panics
     /// If it is not; in a constant that is a compile error with the numbers.
@@ -55,6 +57,7 @@ impl CurrentLoop {
         latency: &Latency,
         period: f64,
         transducers: &Transducers,
+        device: &Device,
         timing: OutputTiming,
     ) {
         let own = self.latency(timing);
@@ -93,6 +96,35 @@ impl CurrentLoop {
             }
             i += 1;
         }
+        self.check_device(device);
+    }
+
+    /// Whether the device's damping is enough for its passivity and for what motion takes through this loop.
+    #[track_caller]
+    const fn check_device(&self, device: &Device) {
+        let (passivity, loss) = (device.passivity(), self.motion_loss());
+        // Rounded up, and written so that NaN is refused.
+        let needed = Interval::exact(passivity).add(Interval::exact(loss)).hi();
+        if needed <= device.damping {
+            return;
+        }
+        let mut t = Sentence::new();
+        t.push("the device's passivity of ");
+        t.push_number(passivity);
+        t.push(" N m s/rad, and the ");
+        t.push_number(loss);
+        t.push(
+            " that motion takes through the current loop, are more than the device's damping of ",
+        );
+        t.push_number(device.damping);
+        let most = device.damping - loss;
+        if most > 0.0 {
+            t.push(": declare a passivity of at most ");
+            t.push_number(most);
+        } else {
+            t.push(": take a motor with more inductance, or with a smaller torque constant");
+        }
+        panic!("{}", t.as_str())
     }
 
     /// Whether the motor has three phases and magnets.

@@ -12,7 +12,7 @@ pub struct CurrentResolution {
     /// numbers, and of offsets that are.
     pub deviation: f64,
     /// Largest deviation after the current has changed its sign, and with it the side on which the dead time
-    /// takes voltage away: beside the other, until the feedback has found it.
+    /// takes voltage away: beside the other, from an instant in which the voltage for it has the wrong sign.
     pub zero_crossing: f64,
     /// Largest ripple of the modulation, from peak to peak, at the highest supply. At the instants of the
     /// samples there is none of it.
@@ -52,13 +52,14 @@ impl Quanta {
         let counts = current * self.amps_per_count;
         let compare = voltage * self.supply / self.counts as f64;
         // A side that switches on later than the other switches off takes its voltage for that time in each
-        // period, and another sign of the current gives it: a change by twice as much.
+        // period, and another sign of the current gives it: where it is given back with the wrong sign, the
+        // voltage is off by twice as much. That is so in one instant, of whose current no more comes later.
         let crossing = 2.0 * dead * self.supply * self.dead_time / self.instant;
         CurrentResolution {
             step: self.torque_constant * self.amps_per_count
                 / if winding.is_brushed() { 2.0 } else { 1.0 },
             deviation: self.torque_constant * (counts + self.admittance() * compare),
-            zero_crossing: self.torque_constant * self.step_admittance() * crossing,
+            zero_crossing: self.torque_constant * self.plant.gain * crossing,
             ripple: self.torque_constant * swing * self.supply * self.instant / self.inductance,
         }
     }
@@ -68,11 +69,6 @@ impl Quanta {
     const fn admittance(&self) -> f64 {
         let part = (1.0 - self.plant.decay) / self.plant.feedback;
         2.0 / self.resistance * part.min(1.0)
-    }
-
-    /// Largest current in A of a voltage that steps by a volt: half of that.
-    const fn step_admittance(&self) -> f64 {
-        self.admittance() / 2.0
     }
 }
 

@@ -1,9 +1,10 @@
-//! The speed of the handle, from the encoder's counts in each instant.
+//! The speed of the handle, from the encoder's counts in each instant: how far a brushless motor's phase turns
+//! until its voltage acts.
 
 use crate::encoder::{CounterWidth, RawCount};
 
 /// Part of the last instant's counts in the mean: a time constant of 32 instants, behind which a count of
-/// a coarse encoder is a small step of the back-EMF.
+/// a coarse encoder is a small step of the phase.
 const NEWEST: f32 = 1.0 / 32.0;
 
 /// Mean of the counts in an instant.

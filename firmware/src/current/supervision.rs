@@ -48,9 +48,13 @@ impl Supervision {
 }
 
 impl Limits {
-    /// Whether a sample is one of a healthy power stage, with these offsets in counts.
+    /// Whether no phase has an over-current, with these offsets in counts.
     #[inline(always)]
-    pub(super) fn check(&self, sample: &Sample, offset: [f32; 2]) -> Result<(), PowerFault> {
+    pub(super) fn check_currents(
+        &self,
+        sample: &Sample,
+        offset: [f32; 2],
+    ) -> Result<(), PowerFault> {
         let over_current = f32::from(self.over_current);
         for (count, offset) in sample.currents.into_iter().zip(offset) {
             let counts = (f32::from(count) - offset).abs();
@@ -59,7 +63,7 @@ impl Limits {
                 return Err(self.over_current(counts));
             }
         }
-        self.check_surroundings(sample)
+        Ok(())
     }
 
     /// Whether the supply and the temperature are in their range.

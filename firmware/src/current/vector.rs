@@ -90,18 +90,48 @@ impl Vector {
         (self.times(length * one_over_root(square)), true)
     }
 
-    /// Compare values of a voltage in counts. What all three have in common is chosen so that the highest and the
-    /// lowest are as far from half.
+    /// Of the phases U, V and W.
     #[inline(always)]
-    pub(super) const fn duties(self, timing: PwmTiming) -> Duties {
+    const fn phases(self) -> [f32; 3] {
         let (u, half) = (self.along, -0.5 * self.along);
         let part = 0.5 * ROOT_3 * self.across;
-        let (v, w) = (half + part, half - part);
-        let middle = 0.5 * (u.max(v).max(w) + u.min(v).min(w));
+        [u, half + part, half - part]
+    }
+
+    /// What the dead time takes from each phase's compare value with these currents: so many counts with the
+    /// current's sign, and nothing where there is no current (theory, section 15.9).
+    #[inline(always)]
+    pub(super) const fn dead_time(self, counts: f32) -> [f32; 3] {
+        let [u, v, w] = self.phases();
+        let counts = if self.along == 0.0 && self.across == 0.0 { 0.0 } else { counts };
+        [counts.copysign(u), counts.copysign(v), counts.copysign(w)]
+    }
+
+    /// Compare values of a voltage in counts, with what the dead time takes from each of them. What all three
+    /// have in common is chosen so that the highest and the lowest are as far from half.
+    #[inline(always)]
+    pub(super) const fn duties(self, dead_time: [f32; 3], timing: PwmTiming) -> Duties {
+        let [u, v, w] = self.phases();
+        let (u, v, w) = (u + dead_time[0], v + dead_time[1], w + dead_time[2]);
+        let highest = larger(larger(u, v), w);
+        let lowest = smaller(smaller(u, v), w);
+        let middle = 0.5 * (highest + lowest);
         // The casts round positive numbers down.
         let zero = 0.5 * timing.counts as f32 + 0.5 - middle;
         Duties([(u + zero) as u16, (v + zero) as u16, (w + zero) as u16])
     }
+}
+
+/// The larger of two numbers. `f32::max`, which sees to NaN as well, is a function call on these chips.
+#[inline(always)]
+pub(super) const fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller one.
+#[inline(always)]
+const fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// One over the root of a positive number, from below: by halving its exponent, and Newton's iteration.

@@ -24,6 +24,7 @@ mod live;
 mod margin;
 mod matched;
 mod misses;
+mod motion_loss;
 mod own_environment;
 mod profile_failures;
 mod profiles;

@@ -12,8 +12,9 @@ use firmware::servo::Transducers;
 /// Period of the servo in s, 40 of the current loop.
 pub const PERIOD: f64 = 0.001;
 
-/// What the hand holds: inertia in kg m^2, damping in N m s/rad.
-pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: None };
+/// What the hand holds: inertia in kg m^2, damping in N m s/rad. Motion takes 0.00253 of the damping through
+/// the current loop (`CurrentLoop::motion_loss`), so that the passivity is less.
+pub const DEVICE: Device = Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.0194) };
 
 /// Its encoder, and its motor at the handle, behind a capstan of 1 to 10.
 pub const TRANSDUCERS: Transducers = Transducers {

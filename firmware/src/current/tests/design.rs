@@ -54,9 +54,7 @@ fn the_response_is_that_of_the_model() {
 fn refusals_name_the_value_and_its_bound() {
     for resistance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let told = refused(motor(Motor { resistance, ..DRIVE.motor }));
-        assert!(
-            told.starts_with("the drive's motor's resistance must be positive and finite, and is ")
-        );
+        assert!(told.starts_with("the motor's resistance must be positive and finite, and is "));
     }
     let inductance = 0.0;
     assert!(refused(motor(Motor { inductance, ..DRIVE.motor })).contains("inductance"));

@@ -58,6 +58,36 @@ fn does_not_start_with_a_supply_or_a_temperature_out_of_range() {
 }
 
 #[test]
+fn one_sample_of_noise_switches_nothing_off_and_two_do() {
+    let temperature = Rig::started(&BRUSHED).sample().temperature;
+    for (bus, temperature) in [(4095, temperature), (0, temperature), (2857, 4095)] {
+        let mut rig = Rig::started(&BRUSHED);
+        let good = rig.sample();
+        let bad = Sample { bus, temperature, ..good };
+        for _ in 0..20 {
+            let mut undisturbed = rig.controller;
+            let expected = undisturbed.step(&good, 500);
+            assert_eq!(rig.controller.step(&bad, 500), expected, "{bus}, {temperature}");
+            rig.controller.step(&good, 500).unwrap();
+        }
+        rig.controller.step(&bad, 0).unwrap();
+        assert!(rig.controller.step(&bad, 0).is_err(), "{bus}, {temperature}");
+    }
+}
+
+#[test]
+fn a_supply_out_of_its_range_is_found_at_the_second_sample() {
+    for (bus, is_under) in [(27.0, false), (21.0, true)] {
+        let mut rig = Rig::started(&BRUSHED);
+        rig.instant(0).unwrap();
+        rig.bus = bus;
+        let (instants, fault) = fault(&mut rig, 0, 3);
+        assert_eq!(instants, 1, "{fault:?}");
+        assert_eq!(matches!(fault, PowerFault::UnderVoltage { .. }), is_under, "{fault:?}");
+    }
+}
+
+#[test]
 fn a_short_circuit_is_over_current() {
     let mut rig = Rig::started(&BRUSHED);
     rig.motor.inductance *= 0.01;
@@ -107,7 +137,9 @@ fn every_fault_comes_back_from_its_code() {
     assert_eq!(PowerFault::decode(13, [0; 2]), None);
     assert_eq!(PowerFault::decode(23, [0; 2]), Some(PowerFault::NotAligned));
     assert_eq!(PowerFault::NotAligned.encode(), (23, [0; 2]));
-    assert_eq!(PowerFault::decode(24, [0; 2]), None);
+    // Codes from there on are those of an alignment.
+    assert!(matches!(PowerFault::decode(24, [0; 2]), Some(PowerFault::Alignment(_))));
+    assert_eq!(PowerFault::decode(29, [0; 2]), None);
 }
 
 proptest! {

@@ -81,23 +81,77 @@ impl Rig {
         let counts = f64::from(BRUSHED.timer_counts());
         let [u, v, w] = self.loaded.0.map(f64::from);
         assert!(w == (counts / 2.0).floor() && u <= counts && v <= counts, "{:?}", self.loaded);
-        let mut edges = [0.0, counts - u, counts - v, counts + u, counts + v, 2.0 * counts];
+        // A side switches on the dead time after the other has switched off.
+        let dead = self.stage.dead_time / INSTANT * 2.0 * counts;
+        let mut edges = vec![0.0, 2.0 * counts];
+        edges.extend([u, v].iter().flat_map(|compare| {
+            let (rise, fall) = (counts - compare, counts + compare);
+            [rise, rise + dead, fall, fall + dead]
+        }));
         edges.sort_by(f64::total_cmp);
         self.extremes = (self.current, self.current);
         for edge in edges.windows(2) {
             let middle = (edge[0] + edge[1]) / 2.0;
-            let is_high = |compare: f64| f64::from((middle - counts).abs() < compare);
-            let volts = self.bus * (is_high(u) - is_high(v));
-            self.pass((edge[1] - edge[0]) / (2.0 * counts) * INSTANT, volts);
+            let leg = |compare: f64| Leg::at(middle, counts - compare, counts + compare, dead);
+            self.pass((edge[1] - edge[0]) / (2.0 * counts) * INSTANT, leg(u), leg(v));
         }
         self.angle += self.speed * INSTANT;
     }
 
-    fn pass(&mut self, time: f64, volts: f64) {
-        let Motor { resistance, inductance, torque_constant, .. } = self.motor;
-        let end = (volts - torque_constant * self.speed) / resistance;
-        self.current -= (self.current - end) * -(-resistance * time / inductance).exp_m1();
+    /// A time in which nothing switches. What flows into an open phase, or out of it, flows through a diode.
+    fn pass(&mut self, time: f64, u: Leg, v: Leg) {
+        let is_open = u == Leg::Open || v == Leg::Open;
+        let back_emf = self.motor.torque_constant * self.speed;
+        let volts = |sign: f64| self.bus * (u.part(sign) - v.part(-sign)) - back_emf;
+        let sign = if self.current != 0.0 || !is_open {
+            self.current.signum()
+        } else {
+            // Where neither direction has a voltage that drives it, no current begins.
+            f64::from(volts(1.0) > 0.0) - f64::from(volts(-1.0) < 0.0)
+        };
+        if sign == 0.0 {
+            return;
+        }
+        let Motor { resistance, inductance, .. } = self.motor;
+        let end = volts(sign) / resistance;
+        let next =
+            self.current - (self.current - end) * -(-resistance * time / inductance).exp_m1();
+        // A diode lets no current turn round.
+        self.current = if is_open && next * sign < 0.0 { 0.0 } else { next };
         let (least, most) = self.extremes;
         self.extremes = (least.min(self.current), most.max(self.current));
+    }
+}
+
+/// A phase of the bridge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Leg {
+    Low,
+    High,
+    /// Both sides are off.
+    Open,
+}
+
+impl Leg {
+    /// At a time between the edges, in counts of the timer's clock.
+    pub fn at(time: f64, rise: f64, fall: f64, dead: f64) -> Self {
+        let is_open = |edge: f64| (edge..edge + dead).contains(&time);
+        if rise < fall && (is_open(rise) || is_open(fall)) {
+            Self::Open
+        } else if (rise..fall).contains(&time) {
+            Self::High
+        } else {
+            Self::Low
+        }
+    }
+
+    /// Its voltage as a part of the supply, for a current out of it of this sign: through the low side's diode,
+    /// or through the high side's.
+    pub fn part(self, sign: f64) -> f64 {
+        match self {
+            Self::Low => 0.0,
+            Self::High => 1.0,
+            Self::Open => 0.5 - 0.5 * sign,
+        }
     }
 }

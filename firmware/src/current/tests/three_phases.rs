@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::rig::Leg;
 use super::*;
 use crate::encoder::RawCount;
 
@@ -45,6 +46,11 @@ const ROOT_3: f64 = 1.732_050_807_568_877_2;
 fn phases([along, across]: [f64; 2]) -> [f64; 3] {
     let part = across * ROOT_3 / 2.0;
     [along, -along / 2.0 + part, -along / 2.0 - part]
+}
+
+/// 0 where there is none.
+fn sign(current: f64) -> f64 {
+    if current == 0.0 { 0.0 } else { current.signum() }
 }
 
 impl ThreePhases {
@@ -129,12 +135,22 @@ impl ThreePhases {
         let compare = self.loaded.0.map(f64::from);
         assert!(compare.iter().all(|&compare| compare <= counts), "{:?}", self.loaded);
         if self.edges {
+            // A side switches on the dead time after the other has switched off.
+            let dead = STAGE.dead_time / INSTANT * 2.0 * counts;
             let mut edges = vec![0.0, 2.0 * counts];
-            edges.extend(compare.iter().flat_map(|compare| [counts - compare, counts + compare]));
+            edges.extend(compare.iter().flat_map(|compare| {
+                let (rise, fall) = (counts - compare, counts + compare);
+                [rise, rise + dead, fall, fall + dead]
+            }));
             edges.sort_by(f64::total_cmp);
             for edge in edges.windows(2) {
                 let middle = (edge[0] + edge[1]) / 2.0;
-                let legs = compare.map(|compare| f64::from((middle - counts).abs() < compare));
+                let currents = phases(self.current);
+                let legs = [0, 1, 2].map(|phase| {
+                    let leg =
+                        Leg::at(middle, counts - compare[phase], counts + compare[phase], dead);
+                    leg.part(sign(currents[self.wires[phase]]))
+                });
                 self.pass((edge[1] - edge[0]) / (2.0 * counts) * INSTANT, legs);
             }
         } else {
