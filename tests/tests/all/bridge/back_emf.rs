@@ -50,23 +50,60 @@ fn damping_of_swings(machine: &Machine, frequency: f64) -> f64 {
     (first / rig.energy(all, stiffness)).ln() / time * all
 }
 
+/// A paddle on the motor of `bridge_wall`, whose short circuit damps it by six times its own damping.
+const STRONG: Machine = Machine {
+    drive: Drive { motor: bridge_wall::DRIVE.motor, ..MACHINE.drive },
+    transducers: Transducers { full_scale_torque: 1.0, ..MACHINE.transducers },
+    ..MACHINE
+};
+
+/// The most damping in N m s/rad that is taken at any frequency, by the formula.
+fn taken(machine: &Machine) -> f64 {
+    let frequencies = (1..2000).map(|step| 10.0 * f64::from(step));
+    -frequencies.map(|f| impedance(machine, TAU * f).re).fold(0.0, f64::min)
+}
+
+/// By how much the swings of a spring are more or less after a while; `None` where the current no longer follows.
+fn growth(certified: &Certified<Scene>, stiffness: f64, hand: &HandImpedance) -> Option<f64> {
+    let codes = servos::rounded(&STRONG, servos::exact(&STRONG, certified));
+    let exact = servos::exact(&STRONG, certified);
+    let mut rig = Rig::bridge(&STRONG, hand, codes, exact);
+    rig.push(6.0 * PUSH * (stiffness / held_inertia(hand)).sqrt());
+    let first = swing(&rig.run(0.02).ok()?);
+    Some(swing(last(&rig.run(SETTLES).ok()?)) / first)
+}
+
+/// The passivity that the device has beside its motor is what a certificate has to count on.
+#[test]
+fn a_strong_motor_is_certified_with_what_it_takes_off_the_passivity_and_not_without() {
+    let latency = latency(&STRONG.current_loop());
+    let all = spring(1.0, Coupling::Rigid, latency);
+    let passivity = Some(DEVICE.damping - taken(&STRONG));
+    let less = Scene { device: Device { passivity, ..DEVICE }, ..all };
+    for (scene, holds) in [(less, true), (all, false)] {
+        let stiffness = 0.99 * limit_of(&scene);
+        let environment = Environment::DelayedSpring(Wall::spring(stiffness, 1));
+        let certified = Scene { environment, ..scene }.certify().unwrap();
+        for inertia in [2e-5, 4e-5, 8e-5] {
+            let hand = HandImpedance { inertia, ..HandImpedance::default() };
+            let grown = growth(&certified, stiffness, &hand);
+            println!("{stiffness} N m/rad, {inertia} kg m^2: {grown:?}");
+            assert_eq!(grown.is_some_and(|grown| grown < 0.5), holds, "{stiffness} {grown:?}");
+        }
+    }
+}
+
 #[test]
 fn a_back_emf_that_is_fed_forward_late_takes_the_damping_of_its_formula() {
-    let strong = Machine {
-        drive: Drive { motor: bridge_wall::DRIVE.motor, ..MACHINE.drive },
-        transducers: Transducers { full_scale_torque: 1.0, ..MACHINE.transducers },
-        ..MACHINE
-    };
     for frequency in [80.0, 130.0, 190.0, 250.0] {
-        let added = damping_of_swings(&strong, frequency) - DEVICE.damping;
-        let expected = impedance(&strong, TAU * frequency).re;
+        let added = damping_of_swings(&STRONG, frequency) - DEVICE.damping;
+        let expected = impedance(&STRONG, TAU * frequency).re;
         println!("{frequency} Hz: {added} N m s/rad, by the formula {expected} N m s/rad");
         assert!((added - expected).abs() < 0.05 * expected.abs() + 2e-4, "{added} {expected}");
     }
-    for (machine, most) in [(strong, 0.0058), (MACHINE, 3e-5)] {
-        let frequencies = (1..2000).map(|step| 10.0 * f64::from(step));
-        let least = frequencies.map(|f| impedance(&machine, TAU * f).re).fold(0.0, f64::min);
-        println!("at most {} N m s/rad are taken", -least);
-        assert!(-least < most && -least > 0.5 * most, "{least}");
+    for (machine, most) in [(STRONG, 0.0058), (MACHINE, 3e-5)] {
+        let taken = taken(&machine);
+        println!("at most {taken} N m s/rad are taken");
+        assert!(taken < most && taken > 0.5 * most, "{taken}");
     }
 }
