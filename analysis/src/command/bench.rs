@@ -17,13 +17,14 @@ use crate::emulator::EmulatorReport;
 use crate::program::{self, Program, damper_wall};
 use crate::progress;
 use crate::quantity::significant;
+use crate::studies::bench::current;
 use crate::studies::bench::live::live_set;
 use crate::studies::bench::matched;
 use crate::studies::bench::parts::{self, Inventory};
 use crate::studies::bench::profile;
 use crate::studies::bench::{self, CORE_CLOCK, Figure};
 use crate::text_table::markdown_table;
-use crate::toolchain::{self, NumberFormat, Toolchain, Tools};
+use crate::toolchain::{self, Board, NumberFormat, Toolchain, Tools, TorqueOutput};
 
 /// Arguments of `haptic bench`.
 #[derive(Debug, Args)]
@@ -76,6 +77,11 @@ const C_FREE: f64 = 42.0;
 /// Most instructions of a tick of the damper wall behind the matched coupling, in contact.
 const MATCHED_BUDGET: f64 = 50.0;
 
+/// Most instructions of an instant of a bridge's current loop, of a brushed motor and of a brushless one.
+const INSTANT_BUDGETS: [(&str, f64); 2] = [("brushed", 250.0), ("brushless", 450.0)];
+/// Least bytes of a motor board's flash that a wall on its bridge has to leave.
+const FLASH_LEFT: f64 = 40.0 * 1024.0;
+
 /// Ticks of each run in the emulator.
 const DEFAULT_TICKS: usize = 5000;
 
@@ -102,6 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
     behind_matched(&toolchain, &mut figures)?;
     about_profiles(&toolchain, &mut figures)?;
+    about_bridges(&toolchain, &mut figures)?;
     arguments.answer.print(&figures, |figures| format!("{}\n", table(figures)))?;
     Ok(CommandStatus::Success)
 }
@@ -134,6 +141,56 @@ fn about_profiles(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<()
         ));
     }
     Ok(())
+}
+
+/// What a board with a bridge of its own has to do besides, and what it needs for that.
+fn about_bridges(toolchain: &Toolchain, figures: &mut Vec<Figure>) -> Result<(), CommandError> {
+    let servo = most_of_interrupts(figures);
+    let most = current::instant_instructions(&toolchain.build_bench_programs()?)?;
+    for ((motor, budget), most) in INSTANT_BUDGETS.into_iter().zip(most.map(f64::from)) {
+        let name = format!("current loop, {motor} motor: instant, sample to compare values, most");
+        figures.push(Figure::new(name, most, "instructions", Some(budget), "budget"));
+        let allowed = current::share_of_core(budget, INTERRUPT_BUDGET);
+        figures.push(Figure::new(
+            format!("current loop, {motor} motor, at 40 kHz with a servo at 10 kHz: of 170 M instructions/s"),
+            current::share_of_core(most, servo),
+            "%",
+            Some(allowed),
+            "the same of both budgets",
+        ));
+    }
+    let (board, name) = (Board::BG431bEsc1, "bridge_wall");
+    let spinner = progress::spinner("building programs");
+    let built = toolchain.build_for(board, TorqueOutput::Bridge, &[name], NumberFormat::F32)?;
+    spinner.finish_and_clear();
+    let Some(flash) = built.first().map(|program| program.sizes.flash() as f64) else {
+        return Ok(());
+    };
+    let all = board.flash() as f64;
+    figures.extend([
+        Figure::new(
+            format!("{name}, {board}: flash"),
+            flash,
+            "bytes",
+            Some(all),
+            "the board's flash",
+        ),
+        Figure::new(
+            format!("{name}, {board}: flash left"),
+            all - flash,
+            "bytes",
+            Some(FLASH_LEFT),
+            "at least",
+        ),
+    ]);
+    Ok(())
+}
+
+/// The most instructions of any program's whole interrupt that were measured so far.
+fn most_of_interrupts(figures: &[Figure]) -> f64 {
+    let interrupts =
+        figures.iter().filter(|figure| figure.name.ends_with("f32: whole interrupt, most"));
+    interrupts.map(|figure| figure.value).fold(0.0, f64::max)
 }
 
 /// What every program has.

@@ -91,6 +91,16 @@ impl Input {
         Self(counts | u32::from(code.cast_unsigned()) << 24)
     }
 
+    /// Steps of the code, with currents of the phases U and V that follow it for a while, and then do not:
+    /// voltage and circle are at their limits.
+    pub fn of_steps(instant: u32) -> Self {
+        let code = if (instant / 100).is_multiple_of(2) { 1700 } else { -1700 };
+        let noise = (instant.wrapping_mul(2_654_435_761) >> 27) as u16;
+        let amps = if instant % 100 < 12 { 120 } else { 0 };
+        let (u, v) = (OFFSET - 16 + noise + amps, OFFSET + 16 - noise - amps);
+        Self::new(u, v, code * i16::from(instant % 100 < 40))
+    }
+
     /// The sample of an instant, and its code.
     #[inline(always)]
     pub fn at(self, instant: u32) -> (Sample, i16) {

@@ -3,21 +3,12 @@
 use analysis::emulator::BenchClient;
 use firmware::current::{Duties, Winding};
 use firmware_harness::bench_request::BenchRequest;
-use firmware_harness::currents::{CurrentBench, Input, OFFSET};
+use firmware_harness::currents::{CurrentBench, Input};
 
 use crate::emulated::TOOLCHAIN;
 
-/// Steps of the code, with currents of the phases U and V that follow it, or not: then voltage and circle are
-/// at their limits.
 fn inputs() -> Vec<u32> {
-    let input = |instant: u32| {
-        let code = if (instant / 100).is_multiple_of(2) { 1700 } else { -1700 };
-        let noise = (instant.wrapping_mul(2_654_435_761) >> 27) as u16;
-        let amps = if instant % 100 < 12 { 120 } else { 0 };
-        let (u, v) = (OFFSET - 16 + noise + amps, OFFSET + 16 - noise - amps);
-        Input::new(u, v, code * i16::from(instant % 100 < 40)).0
-    };
-    (0..4000_u32).map(|instant| input(instant.wrapping_add(1))).collect()
+    (1..=4000).map(|instant| Input::of_steps(instant).0).collect()
 }
 
 #[test]

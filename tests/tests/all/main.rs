@@ -4,6 +4,7 @@
 mod actuator_response;
 mod bits;
 mod boards;
+mod bridge;
 mod closed_forms;
 mod composed;
 mod contact;

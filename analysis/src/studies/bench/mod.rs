@@ -1,6 +1,7 @@
 //! Measured cost of a certificate, a step and a tick, each with its reference.
 
 pub mod at_rest;
+pub mod current;
 pub mod live;
 pub mod matched;
 pub mod parts;
