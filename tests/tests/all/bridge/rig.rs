@@ -2,7 +2,8 @@
 //!
 //! Motor and device are one system of linear differential equations, whose exact response takes them from one
 //! instant of the current loop to the next. The voltage in between is the mean of what the bridge gives: the
-//! ripple of the modulation is not in it, which at the instants of the samples there is none of.
+//! ripple of the modulation is not in it, which at the instants of the samples there is none of, and no dead
+//! time, so that there is none in the design either.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +17,7 @@ use firmware::servo::Transducers;
 use nalgebra::{DMatrix, DVector};
 
 /// The power stage of all of these boards.
-pub const STAGE: PowerStage = B_G431B_ESC1;
+pub const STAGE: PowerStage = PowerStage { dead_time: 0.0, ..B_G431B_ESC1 };
 
 /// Count of a current sensor without a current, and the supply in V.
 const OFFSET: f64 = 2048.0;
