@@ -83,7 +83,8 @@ impl CurrentLoop {
         while i < pairs.len() {
             let (name, stated, own) = pairs[i];
             // Written so that NaN is refused.
-            if !((stated - own).abs() <= SAME * own.abs()) {
+            let is_same = (stated - own).abs() <= SAME * own.abs();
+            if !is_same {
                 let mut t = Sentence::new();
                 t.push("the program's ");
                 t.push(name);
