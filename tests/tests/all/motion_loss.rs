@@ -78,7 +78,7 @@ fn no_eigenvalue_is_below_the_bound() {
         for feedback in [0.02, 0.1, 0.25] {
             let loss = design(ratio, feedback, Winding::Brushed).motion_loss()
                 / (TORQUE_CONSTANT * TORQUE_CONSTANT * INSTANT / INDUCTANCE);
-            for theta in [1e-3, 0.03, 0.2, 0.5, 1.0, 1.5, 2.0, 2.6, 3.141] {
+            for theta in [1e-3, 0.03, 0.2, 0.5, 1.0, 1.5, 2.0, 2.6, 3.1] {
                 let least = smallest(ratio, feedback, theta);
                 assert!(least >= -loss, "{ratio}, {feedback}, {theta}: {least} of {loss}");
             }
