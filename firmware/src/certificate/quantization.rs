@@ -43,7 +43,7 @@ pub struct Resolution {
     /// no such steps.
     pub current: Option<f64>,
     /// What a current loop is off beside that where the torque changes its sign, in N m, until its feedback has
-    /// found the dead time's other side.
+    /// corrected an instant in which the dead time is given back with the wrong sign.
     pub crossing: Option<f64>,
 }
 
@@ -174,7 +174,7 @@ impl fmt::Display for QuantizationBound {
             write!(
                 f,
                 "; where the torque changes its sign, it is off by up to {crossing} N m more until the \
-                 current loop has found the dead time's other side"
+                 current loop has corrected an instant in which the dead time is given back wrongly"
             )?;
         }
         if self.in_any_motion {
