@@ -2,7 +2,7 @@
 //! how far off it is.
 //!
 //! Two cases: of the sine of a sweep, which is of a part of a turn in `f32`, the error is that of the sine; of a
-//! phase, which is one in 32 bits, that of the torque ([`torque_error`]).
+//! phase, which is one in 32 bits, that of the torque (`torque_error`).
 //!
 //! The G4's CORDIC unit is not among the measured ones, since no emulator has it. A model of its arithmetic is
 //! in the tests: with 16 iterations its angle is off by up to 2^-15, which no torque shows. It would take a dozen
