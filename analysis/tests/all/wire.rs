@@ -521,7 +521,7 @@ fn a_twin_is_a_board_to_try_things_on() {
     assert_eq!(board.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
     assert!(
-        text(&unknown.stderr).contains("the programs are damper_wall, delayed_spring"),
+        text(&unknown.stderr).contains("the programs are bridge_wall, brushless_wall, damper_wall"),
         "{unknown:?}"
     );
 }

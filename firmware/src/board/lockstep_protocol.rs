@@ -75,6 +75,6 @@ mod tests {
             assert_eq!(TickOutput::from_bytes(output.to_bytes(0xabcd)), Some((output, 0xabcd)));
         }
         assert_eq!(TickOutput::from_bytes([0, 8, 2, 0, 0, 0]), None);
-        assert_eq!(TickOutput::from_bytes([0, 8, 1, 6, 0, 0]), None);
+        assert_eq!(TickOutput::from_bytes([0, 8, 1, 7, 0, 0]), None);
     }
 }

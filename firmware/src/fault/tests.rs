@@ -1,8 +1,9 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::current::AlignmentError;
 
-const ALL: [Fault; 12] = [
+const ALL: [Fault; 27] = [
     Fault::MissedTick { missed: 3, tolerated: 1 },
     Fault::EncoderJump { counts: 5000, largest: 979 },
     Fault::NotANumber,
@@ -15,6 +16,21 @@ const ALL: [Fault; 12] = [
     Fault::FlashEcc { address: 0x1238, status: 0x8000_1238 },
     Fault::RamParity,
     Fault::NonMaskable,
+    Fault::Power(PowerFault::OverCurrent { current: 4500, largest: 4310 }),
+    Fault::Power(PowerFault::OverVoltage { voltage: 26_100, highest: 25_200 }),
+    Fault::Power(PowerFault::UnderVoltage { voltage: 17_000, lowest: 23_000 }),
+    Fault::Power(PowerFault::OverTemperature { temperature: 905, largest: 800 }),
+    Fault::Power(PowerFault::CurrentOffset { phase: 1, count: 4095 }),
+    Fault::Power(PowerFault::CurrentNotFollowing { deviation: 900, largest: 862 }),
+    Fault::Power(PowerFault::SaturatedDuty { instants: 33, allowed: 32 }),
+    Fault::Power(PowerFault::IndexMismatch { count: 7, aligned: 12 }),
+    Fault::Power(PowerFault::CurrentInterruptLate { late: 8500, allowed: 6375 }),
+    Fault::Power(PowerFault::NotAligned),
+    Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)),
+    Fault::Power(PowerFault::Alignment(AlignmentError::Blocked { moved: -3, expected: 2340 })),
+    Fault::Power(PowerFault::Alignment(AlignmentError::PolePairs { moved: -1200, expected: 2340 })),
+    Fault::Power(PowerFault::Alignment(AlignmentError::NotReturned { moved: 2340, returned: 90 })),
+    Fault::Power(PowerFault::Alignment(AlignmentError::Uneven { degrees: 41, largest: 30 })),
 ];
 
 #[test]
@@ -29,7 +45,7 @@ fn every_fault_has_a_code_and_a_word_of_its_own() {
         }
     }
     assert_eq!(Fault::decode(0, [0; 2]), None);
-    assert_eq!(Fault::decode(14, [0; 2]), None);
+    assert_eq!(Fault::decode(29, [0; 2]), None);
 }
 
 #[test]
