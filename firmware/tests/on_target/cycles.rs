@@ -5,9 +5,10 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{DWT, NVIC};
 use firmware::board::isr_cell::IsrCell;
 use firmware::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
+use firmware::board::stm32::output::Setup;
 use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::AMPLIFIER;
-use firmware::board::stm32::{Mode, init_chip, period, start_timer};
+use firmware::board::stm32::{Mode, init_chip, registers};
 use firmware::boot::Startup;
 use firmware::certificate::TimingChecked;
 use firmware::dac::DacCode;
@@ -114,7 +115,7 @@ pub fn measure() -> Result<(), Failure> {
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.DCB.enable_trace();
     core.DWT.enable_cycle_counter();
-    let hardware = Registers::new(period(SCENE.timing.period), <Mode as OutputMode>::TIMING);
+    let hardware = registers(Setup, SCENE.timing.period, <Mode as OutputMode>::TIMING);
     let Endpoints { requests, inbox, frames, mut frame_reader } = endpoints(&MAILBOX);
     let rendering = PreparedServo::new(&TIMED, &TRANSDUCERS, &RenderingOptions::DEFAULT);
     let rendering = rendering.map_err(|_| "no servo can be built of the scene")?;
@@ -122,7 +123,7 @@ pub fn measure() -> Result<(), Failure> {
     requests.arm();
     let mut hardware = Muted(hardware);
     hardware.0.zero_encoder();
-    start_timer(&mut hardware.0, <Mode as OutputMode>::TIMING);
+    hardware.0.start(<Mode as OutputMode>::TIMING);
     // SAFETY: the interrupt that uses the place is not enabled yet, and finds it filled.
     unsafe {
         ISR_STATE.init(ServoIsr { servo_loop, hardware, inbox, frames });

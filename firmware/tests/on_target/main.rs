@@ -7,10 +7,11 @@
 mod cycles;
 
 use firmware::board::input_filter::InputFilter;
+use firmware::board::stm32::output::Setup;
 use firmware::board::stm32::quadrature::Counter;
 use firmware::board::stm32::registers::Registers;
 use firmware::board::stm32::wiring::{CHIP, DAC, ENCODER, ENCODER_CLOCK};
-use firmware::board::stm32::{Mode, init_chip, period, start_timer, width};
+use firmware::board::stm32::{Mode, init_chip, registers, width};
 use firmware::boot::Startup;
 use firmware::dac::DacCode;
 use firmware::encoder::Position;
@@ -54,9 +55,9 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 /// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
-    let mut hardware = Registers::new(period(SCENE.timing.period), <Mode as OutputMode>::TIMING);
+    let mut hardware = registers(Setup, SCENE.timing.period, <Mode as OutputMode>::TIMING);
     hardware.zero_encoder();
-    start_timer(&mut hardware, <Mode as OutputMode>::TIMING);
+    hardware.start(<Mode as OutputMode>::TIMING);
     hardware
 }
 

@@ -40,7 +40,8 @@ compile_error!("this board has no bridge: --output bridge is for the b-g431b-esc
 // The logger that carries the bytes to a debug probe; it registers itself.
 use defmt_rtt as _;
 pub use start::{
-    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, run, width, with_board_counter,
+    HostLink, LinkCell, ServoCell, Statics, Task, init_chip, registers, run, width,
+    with_board_counter,
 };
 pub use sweep::{Setup, SweepCell, measure};
 

@@ -143,7 +143,7 @@ impl<E: Tunable<N> + SupportsTiming<M>, N: Number, M: OutputMode> HostLink<E, N,
 }
 
 /// The registers of the servo's interrupt for a period in s, or an end.
-pub(super) fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Registers {
+pub fn registers(setup: output::Setup, seconds: f64, timing: OutputTiming) -> Registers {
     Registers::new(setup, seconds, timing).unwrap_or_else(|_| {
         let (shortest, longest) = (periods::SHORTEST, periods::LONGEST);
         defmt::error!("the period of {} s is not between {} and {} s", seconds, shortest, longest);
