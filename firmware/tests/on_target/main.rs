@@ -55,7 +55,7 @@ static PROBE_RS_CHIP: [u8; CHIP.len()] = *CHIP;
 /// The board with its pacing timer running and nothing else: amplifier off, mid-scale, no watchdog.
 fn paced() -> Registers {
     let _ = init_chip(FILTER);
-    let mut hardware = registers(Setup, SCENE.timing.period, <Mode as OutputMode>::TIMING);
+    let mut hardware = registers(Setup::DAC, SCENE.timing.period, <Mode as OutputMode>::TIMING);
     hardware.zero_encoder();
     hardware.start(<Mode as OutputMode>::TIMING);
     hardware

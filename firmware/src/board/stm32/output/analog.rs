@@ -1,6 +1,7 @@
 //! The DAC, and the line that switches an amplifier outside of the board.
 
 use super::Pace;
+use crate::board::stm32::start::halt_with;
 use crate::board::stm32::wiring::{AMPLIFIER, DAC};
 use crate::build_error::BuildError;
 use crate::dac::DacCode;
@@ -9,9 +10,19 @@ use crate::output_timing::OutputTiming;
 use crate::power_reading::PowerReading;
 use crate::torque_output::TorqueOutput;
 
-/// What this output has to know of a program: nothing.
+/// What this output has to know of a program: whether it is for this output.
 #[derive(Clone, Copy, Debug)]
-pub struct Setup;
+pub struct Setup {
+    is_served: bool,
+}
+
+impl Setup {
+    /// Of a program whose torque is the DAC's.
+    pub const DAC: Self = Self { is_served: true };
+    /// Of one whose scene has the latency of a bridge. It does not run: cargo builds all programs beside the tests
+    /// on a board, and none of them is flashed.
+    pub const BRIDGE: Self = Self { is_served: false };
+}
 
 /// The output.
 #[derive(Debug)]
@@ -22,7 +33,14 @@ impl Output {
     ///
     /// # Errors
     /// Where the board cannot pace the period in s: see [`period`](crate::period::check).
-    pub fn new(_: Setup, period: f64, timing: OutputTiming) -> Result<(Self, Pace), BuildError> {
+    pub fn new(
+        setup: Setup,
+        period: f64,
+        timing: OutputTiming,
+    ) -> Result<(Self, Pace), BuildError> {
+        if !setup.is_served {
+            halt_with("its latency, which is that of a bridge");
+        }
         Ok((Self(()), Pace::prepare(period, timing)?))
     }
 
@@ -72,10 +90,14 @@ pub fn power_reading() -> Option<PowerReading> {
 macro_rules! board_output {
     ([]) => {
         /// What the output has to know of this program.
-        const OUTPUT: $crate::board::stm32::output::Setup = $crate::board::stm32::output::Setup;
+        const OUTPUT: $crate::board::stm32::output::Setup =
+            $crate::board::stm32::output::Setup::DAC;
     };
     ([$current_loop:ident]) => {
-        compile_error!(
+        /// What the output has to know of this program.
+        const OUTPUT: $crate::board::stm32::output::Setup =
+            $crate::board::stm32::output::Setup::BRIDGE;
+        $crate::not_for_the_dac!(
             "the latency of this scene is that of a board's own bridge, and its program drives the DAC: \
              build it for a board with a bridge (--board b-g431b-esc1 --output bridge)"
         );
@@ -89,4 +111,22 @@ macro_rules! sweep_output {
     ($bridge:tt) => {
         $crate::board_output!([]);
     };
+}
+
+/// A compile error, but for the programs that cargo builds beside the tests on a board.
+#[cfg(not(feature = "on-target"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! not_for_the_dac {
+    ($why:literal) => {
+        compile_error!($why);
+    };
+}
+
+/// Nothing beside the tests on a board: such a program ends at its start.
+#[cfg(feature = "on-target")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! not_for_the_dac {
+    ($why:literal) => {};
 }
