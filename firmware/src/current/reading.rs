@@ -32,53 +32,15 @@ fn nearest_milliamps(amps: f32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::current::{CurrentLoop, Drive, Motor, PowerStage, Supply, Thermistor, Winding};
-    use crate::encoder::CounterWidth;
+    use crate::current::tests::BRUSHED;
     use crate::power_reading::PowerReading;
-    use crate::transducers::Transducers;
-
-    const STAGE: PowerStage = PowerStage {
-        clock: 170e6,
-        amps_per_count: 0.03,
-        current_lowers_count: true,
-        volts_per_count: 0.0084,
-        largest_current: 40.0,
-        offset_counts: (1900, 2300),
-        supply: Supply { lowest: 10.0, highest: 34.0 },
-        dead_time: 0.2e-6,
-        shortest_low: 1.5e-6,
-        thermistor: Thermistor { resistance: 10e3, beta: 3380.0, to_ground: 4.7e3 },
-    };
-
-    /// Full scale, 1791 codes, is 4 A.
-    const CURRENT_LOOP: CurrentLoop = CurrentLoop::checked(
-        &Drive {
-            motor: Motor {
-                winding: Winding::Brushed,
-                resistance: 0.6,
-                inductance: 0.3e-3,
-                torque_constant: 0.05,
-            },
-            supply: Supply { lowest: 22.0, highest: 26.0 },
-            bandwidth: 1000.0,
-            largest_temperature: 90.0,
-        },
-        &STAGE,
-        &Transducers {
-            counts_per_turn: 61_440.0,
-            counter: CounterWidth::Bits16,
-            full_scale_torque: 0.2,
-            largest_speed: 100.0,
-        },
-        1e-3,
-    );
 
     /// At 25 degrees the thermistor has 10 kΩ: the divider's 4.7/14.7 of 4095 counts are 1309.3.
     const AT_25: u16 = 1309;
 
     #[test]
     fn counts_become_units() {
-        let reading = CURRENT_LOOP.power_reading(-0.4124, -1791, (2865, AT_25));
+        let reading = BRUSHED.power_reading(-0.4124, -1791, (2865, AT_25));
         let PowerReading { current, reference, voltage, temperature } = reading;
         // 2865 counts of 8.4 mV.
         assert_eq!((current, reference, voltage), (-412, -4000, 24_066));
@@ -89,7 +51,7 @@ mod tests {
     #[test]
     fn currents_are_rounded_to_the_nearest() {
         for (amps, milliamps) in [(0.0006, 1), (-0.0006, -1), (0.0004, 0), (-0.0004, 0)] {
-            assert_eq!(CURRENT_LOOP.power_reading(amps, 0, (2865, AT_25)).current, milliamps);
+            assert_eq!(BRUSHED.power_reading(amps, 0, (2865, AT_25)).current, milliamps);
         }
     }
 }

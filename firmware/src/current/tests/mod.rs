@@ -52,7 +52,8 @@ const TRANSDUCERS: Transducers = Transducers {
 const PERIOD: f64 = 1e-3;
 const INSTANT: f64 = 25e-6;
 
-const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
+/// Full scale, 1791 codes, is 4 A.
+pub(super) const BRUSHED: CurrentLoop = CurrentLoop::checked(&DRIVE, &STAGE, &TRANSDUCERS, PERIOD);
 
 /// A motor of seven pole pairs, whose phases have half of the brushed one's resistance.
 const BRUSHLESS_DRIVE: Drive = Drive {
