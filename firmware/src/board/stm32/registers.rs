@@ -77,7 +77,7 @@ impl Hardware for Registers {
 
     #[inline(always)]
     fn time_in_period(&mut self) -> u32 {
-        self.pace.time_in_period()
+        self.pace.periods().elapsed()
     }
 
     #[inline(always)]
@@ -100,7 +100,7 @@ impl Startup for Registers {
         // be halted with it.
         family::keep_watchdog_running();
         // A count more covers the cast's rounding.
-        let counts = PATIENCE * self.pace.seconds() * WATCHDOG_CLOCK + 1.0;
+        let counts = PATIENCE * self.pace.periods().seconds() * WATCHDOG_CLOCK + 1.0;
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
         pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));
         pac::IWDG.rlr().write(|w| w.set_rl(counts as u16));
@@ -115,6 +115,6 @@ impl Startup for Registers {
     }
 
     fn period(&self) -> u32 {
-        self.pace.period()
+        self.pace.periods().counts()
     }
 }

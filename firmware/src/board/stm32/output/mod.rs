@@ -12,6 +12,7 @@ pub mod bridge;
 pub mod dac;
 #[cfg(feature = "bridge")]
 pub mod gates;
+mod periods;
 pub mod pin;
 #[cfg(not(feature = "bridge"))]
 mod tick_timer;

@@ -16,7 +16,6 @@
 //! Not a compare channel: the basic timers have none, and of the others none is free on all boards
 //! that counts TIM6's clock and triggers the DACs of both families. TIM7 is, on each of them.
 
-use core::hint::cold_path;
 use core::num::NonZeroU32;
 
 use embassy_stm32::pac;
@@ -24,13 +23,14 @@ use embassy_stm32::pac::timer::vals::{Mms, Urs};
 use embassy_stm32::peripherals;
 use embassy_stm32::rcc;
 
+use super::periods::{Periods, now};
 use crate::board::stm32::quadrature::Counter;
-use crate::board::stm32::wiring::{CLOCK, ENCODER};
+use crate::board::stm32::wiring::ENCODER;
 use crate::build_error::BuildError;
 use crate::encoder::RawCount;
 use crate::output_timing::OutputTiming;
 use crate::period;
-use crate::servo_loop::{BEGAN_LATE, READ_WITHIN};
+use crate::servo_loop::READ_WITHIN;
 
 /// The pacing timer, on all boards: a timer with nothing but an update, whose trigger output all
 /// these chips' DACs can take.
@@ -109,17 +109,10 @@ const PRESCALERS: u32 = 16;
 /// Values of a 16-bit counter.
 const MOST: f64 = 65_536.0;
 
-/// Keeps count of the periods. Belongs to the servo's interrupt.
+/// What paces the servo by its DAC. Belongs to the servo's interrupt.
 #[derive(Debug)]
 pub struct TickTimer {
-    /// Clock counts in a period.
-    period: NonZeroU32,
-    /// Seconds in a period, as it is paced.
-    seconds: f64,
-    /// Clock counts after its beginning in which a tick has to begin.
-    in_time: u32,
-    /// The clock when the present period began.
-    began: u32,
+    periods: Periods,
     /// Whether the timer of a phase runs, too.
     has_phase: bool,
 }
@@ -142,25 +135,21 @@ impl TickTimer {
             // TIM7_CNT: it overflows that many counts after the start, and then once a period.
             PHASE_TIMER.cnt().write(|w| w.set_cnt(behind as u16));
         }
-        CLOCK.psc().write_value(0);
-        CLOCK.arr().write_value(u32::MAX);
-        CLOCK.egr().write(|w| w.set_ug(true));
         // The cast gives the nearest of what does not fit.
         let in_time = (period.clock * READ_WITHIN) as u32;
         let has_phase = timing.phase().is_some();
-        let (counts, seconds) = (period.clock_counts(), period.seconds());
-        Ok(Self { period: counts, seconds, in_time, began: 0, has_phase })
+        let periods = Periods::new(period.clock_counts(), period.seconds(), in_time);
+        Ok(Self { periods, has_phase })
     }
 
     /// Starts the clock and then the timer, so that no period begins before the clock's, and last that of
     /// a phase, so that no torque comes before it: later by the two accesses, some tens of nanoseconds, of
     /// which a count is read later still.
     pub fn start(&mut self) {
-        cortex_m::interrupt::free(|_| {
-            CLOCK.cnt().write_value(0);
-            CLOCK.cr1().modify(|w| w.set_cen(true));
+        let has_phase = self.has_phase;
+        self.periods.start(|| {
             TIMER.cr1().modify(|w| w.set_cen(true));
-            if self.has_phase {
+            if has_phase {
                 PHASE_TIMER.cr1().modify(|w| w.set_cen(true));
             }
         });
@@ -177,32 +166,13 @@ impl TickTimer {
     #[inline(always)]
     pub fn periods_since_last(&mut self) -> u32 {
         TIMER.sr().write(|w| w.set_uif(false));
-        let next = self.began.wrapping_add(self.period.get());
-        let late = now().wrapping_sub(next);
-        if late < self.in_time {
-            self.began = next;
-            return 1;
-        }
-        cold_path();
-        let missed = late / self.period;
-        self.began = next.wrapping_add(missed * self.period.get());
-        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+        self.periods.begun_by(now())
     }
 
-    /// Clock counts in a period.
-    pub fn period(&self) -> u32 {
-        self.period.get()
-    }
-
-    /// Seconds in a period, as it is paced.
-    pub fn seconds(&self) -> f64 {
-        self.seconds
-    }
-
-    /// Clock counts since the present period began.
+    /// What has begun, and when.
     #[inline(always)]
-    pub fn time_in_period(&self) -> u32 {
-        now().wrapping_sub(self.began)
+    pub const fn periods(&self) -> &Periods {
+        &self.periods
     }
 }
 
@@ -220,10 +190,4 @@ fn set_up(timer: pac::timer::TimBasic, period: Period) {
     timer.cr1().write(|w| w.set_urs(Urs::COUNTER_ONLY));
     timer.egr().write(|w| w.set_ug(true));
     timer.sr().write(|w| w.set_uif(false));
-}
-
-/// The clock.
-#[inline(always)]
-fn now() -> u32 {
-    CLOCK.cnt().read()
 }

@@ -7,6 +7,7 @@ use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
 use super::{STATE, State, WAITING, latest, off, over_current, pace, pwm, sense, tell};
+use crate::board::stm32::output::periods::now;
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
 };
@@ -52,7 +53,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
     #[inline(always)]
     pub fn run(&mut self) {
         // Sampling.
-        let (position, now) = (pace::captured(), pace::now());
+        let (position, now) = (pace::captured(), now());
         let begins = self.instant == 0;
         if begins {
             pace::begin_period(position, now);
@@ -101,7 +102,7 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         }
         if pwm::updated() {
             cold_path();
-            stop(self.late(pace::now().wrapping_sub(self.last)));
+            stop(self.late(now().wrapping_sub(self.last)));
         }
     }
 

@@ -5,7 +5,6 @@
 //! capture it (RM0440, general-purpose timers: channel 3 of TIM4 captures on TRC, which is TIM1's trigger
 //! output by the timers' interconnection, and encoder mode leaves that input free).
 
-use core::hint::cold_path;
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -13,9 +12,9 @@ use embassy_stm32::pac::timer::vals::{CcmrInputCcs, Ts};
 use embassy_stm32::{peripherals, rcc};
 
 use super::pwm;
-use crate::board::stm32::wiring::{CLOCK, ENCODER};
+use crate::board::stm32::output::periods::Periods;
+use crate::board::stm32::wiring::ENCODER;
 use crate::encoder::RawCount;
-use crate::servo_loop::BEGAN_LATE;
 
 /// The clock when the count of the present period was read, and that count.
 static TIME: AtomicU32 = AtomicU32::new(0);
@@ -37,12 +36,6 @@ pub fn captured() -> RawCount {
     RawCount::from(ENCODER.ccr(2).read().ccr())
 }
 
-/// The clock.
-#[inline(always)]
-pub fn now() -> u32 {
-    CLOCK.cnt().read()
-}
-
 /// Takes the count of a period down, and the time.
 #[inline(always)]
 pub fn begin_period(count: RawCount, now: u32) {
@@ -50,38 +43,24 @@ pub fn begin_period(count: RawCount, now: u32) {
     TIME.store(now, Ordering::Relaxed);
 }
 
-/// Keeps count of the periods. Belongs to the servo's interrupt.
+/// What paces the servo by its bridge. Belongs to the servo's interrupt.
 #[derive(Debug)]
 pub struct Pace {
-    /// Clock counts in a period.
-    period: NonZeroU32,
-    /// Seconds in a period.
-    seconds: f64,
-    /// Clock counts of a PWM period, after which the next count is captured over this one.
-    in_time: u32,
-    /// The clock when the present period began.
-    began: u32,
+    periods: Periods,
 }
 
 impl Pace {
-    /// A period of this many clock counts, with so many in each PWM period.
+    /// A period of this many clock counts, with so many in each PWM period, after which the next count is captured
+    /// over this one.
     pub fn new(period: NonZeroU32, in_time: u32) -> Self {
         capture_counts();
-        CLOCK.psc().write_value(0);
-        CLOCK.arr().write_value(u32::MAX);
-        CLOCK.egr().write(|w| w.set_ug(true));
         let clock = f64::from(rcc::frequency::<peripherals::TIM2>().0);
-        let seconds = f64::from(period.get()) / clock;
-        Self { period, seconds, in_time, began: 0 }
+        Self { periods: Periods::new(period, f64::from(period.get()) / clock, in_time) }
     }
 
-    /// Starts the clock and then TIM1, so that no period begins before the clock's.
+    /// Starts the clock and then TIM1.
     pub fn start(&mut self) {
-        cortex_m::interrupt::free(|_| {
-            CLOCK.cnt().write_value(0);
-            CLOCK.cr1().modify(|w| w.set_cen(true));
-            pwm::start();
-        });
+        self.periods.start(pwm::start);
     }
 
     /// The encoder's count at the beginning of the period.
@@ -95,31 +74,12 @@ impl Pace {
     /// interrupt of the current loop that missed its update.
     #[inline(always)]
     pub fn periods_since_last(&mut self) -> u32 {
-        let next = self.began.wrapping_add(self.period.get());
-        let late = TIME.load(Ordering::Relaxed).wrapping_sub(next);
-        if late < self.in_time {
-            self.began = next;
-            return 1;
-        }
-        cold_path();
-        let missed = late / self.period;
-        self.began = next.wrapping_add(missed * self.period.get());
-        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+        self.periods.begun_by(TIME.load(Ordering::Relaxed))
     }
 
-    /// Clock counts in a period.
-    pub fn period(&self) -> u32 {
-        self.period.get()
-    }
-
-    /// Seconds in a period, as it is paced.
-    pub fn seconds(&self) -> f64 {
-        self.seconds
-    }
-
-    /// Clock counts since the present period began.
+    /// What has begun, and when.
     #[inline(always)]
-    pub fn time_in_period(&self) -> u32 {
-        now().wrapping_sub(self.began)
+    pub const fn periods(&self) -> &Periods {
+        &self.periods
     }
 }
