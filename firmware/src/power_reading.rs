@@ -1,5 +1,7 @@
 //! What the power stage of a motor board measures, as the host is told.
 
+use crate::current::IndexOffset;
+
 /// The last reading of a power stage, in whole numbers of small units, as the wire has no fractions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "wire", derive(serde::Serialize, serde::Deserialize))]
@@ -13,4 +15,7 @@ pub struct PowerReading {
     pub voltage: u32,
     /// Temperature at the power stage's sensor in tenths of a degree Celsius.
     pub temperature: i32,
+    /// The phase of a brushless motor at its encoder's index, once both are known since the last reset or the last
+    /// fault of the index.
+    pub index: Option<IndexOffset>,
 }

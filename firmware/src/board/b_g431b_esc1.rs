@@ -16,6 +16,8 @@ use embassy_stm32::timer::qei::Qei;
 use embassy_stm32::usart::BufferedInterruptHandler;
 use embassy_stm32::{Config, Peripherals, bind_interrupts, pac};
 
+#[cfg(feature = "bridge")]
+use super::stm32::output::bridge::index::IndexPin;
 use super::stm32::output::dac::DacChannel;
 #[cfg(feature = "bridge")]
 use super::stm32::output::gates::{Gate, Gates};
@@ -64,6 +66,11 @@ pub const GATES: Gates = Gates([
     [Gate::new(pac::GPIOA, 9, 6), Gate::new(pac::GPIOA, 12, 6)],
     [Gate::new(pac::GPIOA, 10, 6), Gate::new(pac::GPIOB, 15, 4)],
 ]);
+
+/// The encoder's index: TIM4_CH3 on PB8, which is the pad Z+ of J8 (alternate function by DS12589). The board
+/// pulls it up like the other two.
+#[cfg(feature = "bridge")]
+pub const INDEX: IndexPin = IndexPin { port: pac::GPIOB, pin: 8, function: 2 };
 
 bind_interrupts!(struct Interrupts {
     USART2 => BufferedInterruptHandler<USART2>;

@@ -14,8 +14,7 @@ use crate::fault::Fault;
 /// None is reachable by input; this is for mistakes.
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    let (line, column) = info.location().map_or((0, 0), |at| (at.line(), at.column()));
-    end(Fault::Panic { line, column })
+    end(Fault::of_panic(info))
 }
 
 /// The processor's handler of what cannot be masked, which is a fault of the chip.

@@ -23,14 +23,13 @@ pub mod critical;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 mod fatal;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
+// Also for boards of other crates.
+#[cfg(target_os = "none")]
 #[allow(unsafe_code)]
 pub mod fault_memory;
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
 #[allow(unsafe_code)]
 pub mod isr_cell;
-#[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]
-pub mod link;
 #[cfg(all(target_os = "none", feature = "nucleo-g474re"))]
 #[allow(unsafe_code)]
 pub mod nucleo_g474re;
@@ -122,6 +121,11 @@ macro_rules! scene_program {
 
         $crate::bridge_checked!([$($current_loop)?] [$($mode)?] $scene, $transducers);
 
+        /// The current loop that makes its torques; none where a DAC and an amplifier outside do.
+        #[cfg(not(target_os = "none"))]
+        pub const BRIDGE: Option<$crate::current::CurrentLoop> =
+            $crate::current_loop_of!($($current_loop)?);
+
         // On the host both formats are judged, whichever a board will be built for.
         #[cfg(not(target_os = "none"))]
         const _: () = {
@@ -179,6 +183,18 @@ macro_rules! bridge_checked {
             &$scene.device,
             <$mode as $crate::servo::OutputMode>::TIMING,
         );
+    };
+}
+
+/// The current loop of a program, where it has one.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! current_loop_of {
+    () => {
+        None
+    };
+    ($current_loop:ident) => {
+        Some($current_loop)
     };
 }
 

@@ -4,8 +4,10 @@ use core::hint::cold_path;
 
 use super::alignment::{Alignment, AlignmentStep, Field};
 use super::current_loop::CurrentLoop;
+use super::encoder_index::IndexOffset;
 use super::fault::PowerFault;
 use super::follower::{Follower, Wanted};
+use super::index_check::IndexCheck;
 use super::motor::Winding;
 use super::offset::Offsets;
 use super::phase::{PhaseAlignment, Turn};
@@ -31,6 +33,7 @@ pub struct CurrentController {
     along: Follower,
     turn: Turn,
     phase: Option<PhaseAlignment>,
+    index: IndexCheck,
     speed: Speed,
     supervision: Supervision,
     surroundings: Surroundings,
@@ -50,6 +53,7 @@ impl CurrentController {
             along: Follower::AT_REST,
             turn: design.turn,
             phase: None,
+            index: IndexCheck::NOT_SEEN,
             speed: Speed::new(design.counter),
             supervision: Supervision::NONE,
             surroundings: Surroundings::of(design.limits.bus.0),
@@ -70,10 +74,29 @@ impl CurrentController {
         self.current
     }
 
-    /// The count of the handle in its turn, of a brushless motor: where an index is, for an
-    /// [`IndexCheck`](super::IndexCheck).
-    pub const fn count_in_turn(&self) -> u32 {
-        self.turn.count().cast_unsigned()
+    /// Takes the count at which the encoder's index came, after the sample that is nearest to it. Where no phase
+    /// is known, and the program states that of the index, the motor is aligned from here on.
+    ///
+    /// # Errors
+    /// Where the index came elsewhere before, so that counts are lost: the gates are to be switched off. The phase
+    /// is not known any more, and the next index is a first one.
+    #[cold]
+    pub fn observe_index(&mut self, captured: RawCount) -> Result<(), PowerFault> {
+        let mut at = self.turn;
+        at.move_by(self.speed.since_last(captured));
+        if let Err(fault) = self.index.observe(at) {
+            (self.phase, self.index) = (None, IndexCheck::NOT_SEEN);
+            return Err(fault);
+        }
+        if let (None, Some(offset)) = (self.phase, self.design.index_offset()) {
+            self.phase = Some(offset.phase(at));
+        }
+        Ok(())
+    }
+
+    /// The phase of the motor at the index, once it is known and the index has come: what a program may state.
+    pub fn index_offset(&self) -> Option<IndexOffset> {
+        Some(IndexOffset::of(self.phase?, self.index.reference()?))
     }
 
     /// Takes over what an alignment has found.
@@ -89,7 +112,7 @@ impl CurrentController {
     /// motor has not been aligned.
     pub fn start(&mut self) -> Result<(), PowerFault> {
         if matches!(self.design.winding, Winding::Brushless { .. }) && self.phase.is_none() {
-            return Err(PowerFault::NotAligned);
+            return Err(self.not_aligned());
         }
         self.start_at_rest()
     }
@@ -101,7 +124,13 @@ impl CurrentController {
     /// Where the offsets, the supply or the temperature of the last sample are out of range.
     pub fn start_alignment(&mut self) -> Result<Alignment, PowerFault> {
         self.start_at_rest()?;
+        // Counts that were lost before are none that this alignment loses.
+        self.index = IndexCheck::NOT_SEEN;
         Ok(Alignment::new(&self.design, self.turn))
+    }
+
+    const fn not_aligned(&self) -> PowerFault {
+        PowerFault::NotAligned { by_index: self.design.index_offset().is_some() }
     }
 
     fn start_at_rest(&mut self) -> Result<(), PowerFault> {
@@ -196,8 +225,7 @@ impl CurrentController {
         limits.check_currents(sample, self.offset)?;
         let bus = self.surroundings.observe(limits, sample)?;
         let [u, v] = sample.currents.map(f32::from);
-        // Both shunts see the current, with opposite signs; half the difference has half the step.
-        let current = 0.5 * law.amps_per_count * ((u - v) - (self.offset[0] - self.offset[1]));
+        let current = law.between_two((u - v) - (self.offset[0] - self.offset[1]));
         self.current = current;
         let reference = law.amps_per_code * f32::from(code_offset);
         let wanted = self.follower.follow(law, reference, current);
@@ -221,7 +249,7 @@ impl CurrentController {
     fn step_brushless(&mut self, sample: &Sample, code_offset: i16) -> Result<Duties, PowerFault> {
         let Some(phase) = self.phase else {
             cold_path();
-            return Err(PowerFault::NotAligned);
+            return Err(self.not_aligned());
         };
         let step = self.move_to(sample.position);
         let speed = phase.sign() * self.speed.update(step);

@@ -1,7 +1,8 @@
 //! The design of a current loop, at compile time: every coefficient that an instant needs, rounded once.
 
+use super::encoder_index::EncoderIndex;
 use super::error::DriveError;
-use super::motion::motion_loss;
+use super::motion::TorqueSource;
 use super::motor::{Drive, Winding};
 use super::phase::Turn;
 use super::plant::{Plant, lag_of};
@@ -62,13 +63,18 @@ pub struct CurrentLoop {
     pub(super) limits: Limits,
     /// At the count 0; not used by a brushed motor.
     pub(super) turn: Turn,
+    /// The index of the encoder, where the program states one.
+    pub(super) index: Option<EncoderIndex>,
     /// Period of the modulation in s.
     pub(super) instant: f64,
     amps_per_code: f64,
     torque_constant: f64,
     response: Response,
     resolution: CurrentResolution,
-    motion_loss: f64,
+    torque_source: TorqueSource,
+    /// A board has no use for it, and each of its controllers a copy of all of this.
+    #[cfg(not(target_os = "none"))]
+    drive: Drive,
 }
 
 /// Coefficients of the model, of its feed-forward, and of the feedback.
@@ -105,6 +111,15 @@ pub(super) struct Output {
     /// What the dead time takes, in counts: from the difference of a brushed motor's two compare values, from
     /// each of a brushless one's three.
     pub dead: f32,
+}
+
+impl Law {
+    /// Current in A of a brushed motor, of the difference of the counts of U and V above their offsets: both
+    /// shunts see the current, with opposite signs; half the difference has half the step.
+    #[inline(always)]
+    pub(super) const fn between_two(&self, difference: f32) -> f32 {
+        0.5 * self.amps_per_count * difference
+    }
 }
 
 impl Output {
@@ -166,6 +181,12 @@ impl CurrentLoop {
         }
     }
 
+    /// What it was designed for: the motor and the supply that a simulation needs.
+    #[cfg(not(target_os = "none"))]
+    pub const fn drive(&self) -> &Drive {
+        &self.drive
+    }
+
     /// How many phases the motor has.
     pub const fn winding(&self) -> Winding {
         self.winding
@@ -195,7 +216,12 @@ impl CurrentLoop {
     /// passivity has to be below its damping. Infinite where no bound is known: of a winding whose time constant
     /// is far below an instant.
     pub const fn motion_loss(&self) -> f64 {
-        self.motion_loss
+        self.torque_source.loss
+    }
+
+    /// What a measurement of the device finds beside it.
+    pub const fn torque_source(&self) -> &TorqueSource {
+        &self.torque_source
     }
 
     /// Torque in N m of an ampere.
@@ -389,6 +415,18 @@ impl<'a> Design<'a> {
 
     const fn current_loop(&self) -> CurrentLoop {
         let Self { drive, stage, transducers, timing, .. } = *self;
+        let resolution = Quanta {
+            plant: self.plant,
+            resistance: drive.motor.resistance,
+            inductance: drive.motor.inductance,
+            torque_constant: drive.motor.torque_constant,
+            amps_per_count: stage.amps_per_count,
+            supply: drive.supply.highest,
+            counts: timing.counts,
+            instant: self.instant,
+            dead_time: stage.dead_time,
+        }
+        .resolution(drive.motor.winding);
         CurrentLoop {
             winding: drive.motor.winding,
             timing,
@@ -397,23 +435,15 @@ impl<'a> Design<'a> {
             output: self.output(),
             limits: self.limits(),
             turn: self.turn(),
+            index: None,
             instant: self.instant,
             amps_per_code: self.amps_per_code(),
             torque_constant: drive.motor.torque_constant,
             response: Response { delay: self.instant, lag: self.lag, updates: timing.updates },
-            resolution: Quanta {
-                plant: self.plant,
-                resistance: drive.motor.resistance,
-                inductance: drive.motor.inductance,
-                torque_constant: drive.motor.torque_constant,
-                amps_per_count: stage.amps_per_count,
-                supply: drive.supply.highest,
-                counts: timing.counts,
-                instant: self.instant,
-                dead_time: stage.dead_time,
-            }
-            .resolution(drive.motor.winding),
-            motion_loss: motion_loss(&drive.motor, &self.plant, self.instant),
+            resolution,
+            torque_source: TorqueSource::of(&drive.motor, &self.plant, self.instant, &resolution),
+            #[cfg(not(target_os = "none"))]
+            drive: *drive,
         }
     }
 

@@ -29,6 +29,22 @@ pub enum DriveError {
         /// The most that there may be.
         largest: f64,
     },
+    /// The index of a brushed motor's encoder, which has no phase to be found.
+    IndexNotNeeded,
+    /// An electrical turn has too few counts for its phase to come from the index.
+    IndexCounts {
+        /// How many there are.
+        counts: f64,
+        /// The fewest that there may be.
+        least: f64,
+    },
+    /// The phase at the index is none of an electrical turn.
+    IndexOffset {
+        /// The offset in counts.
+        offset: u32,
+        /// Counts in an electrical turn.
+        counts: f64,
+    },
     /// The phase of a brushless motor turns too far in an instant.
     ElectricalSpeed {
         /// Electrical turns a second at the largest speed.
@@ -128,6 +144,23 @@ impl DriveError {
                 );
                 t.push_number(*largest);
                 t.push(": count at the shaft that the motor is on");
+            }
+            Self::IndexNotNeeded => t.push(
+                "a brushed motor needs no index of its encoder: state none, or the winding of a brushless one",
+            ),
+            Self::IndexCounts { counts, least } => {
+                t.push("an electrical turn has ");
+                t.push_number(*counts);
+                t.push(" encoder counts, and a phase that comes from the index needs at least ");
+                t.push_number(*least);
+                t.push(", since its pulse is some counts wide: take a finer encoder, or state no offset");
+            }
+            Self::IndexOffset { offset, counts } => {
+                t.push("the index offset of ");
+                t.push_number(*offset as f64);
+                t.push(" counts is not below the counts of an electrical turn, ");
+                t.push_number(*counts);
+                t.push(": align the motor, and state the offset that the board tells");
             }
             Self::ElectricalSpeed { turns, largest } => {
                 t.push("at the largest speed the motor makes ");

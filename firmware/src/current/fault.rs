@@ -71,7 +71,10 @@ pub enum PowerFault {
         allowed: u32,
     },
     /// A brushless motor has not been aligned.
-    NotAligned,
+    NotAligned {
+        /// Whether the index of its encoder aligns it.
+        by_index: bool,
+    },
     /// The motor could not be aligned.
     Alignment(AlignmentError),
 }
@@ -89,7 +92,7 @@ impl PowerFault {
             Self::SaturatedDuty { .. } => "saturated-duty",
             Self::IndexMismatch { .. } => "index-mismatch",
             Self::CurrentInterruptLate { .. } => "current-interrupt-late",
-            Self::NotAligned => "not-aligned",
+            Self::NotAligned { .. } => "not-aligned",
             Self::Alignment(error) => error.as_str(),
         }
     }
@@ -108,7 +111,7 @@ impl PowerFault {
             Self::SaturatedDuty { instants, allowed } => (20, [instants, allowed]),
             Self::IndexMismatch { count, aligned } => (21, [count, aligned]),
             Self::CurrentInterruptLate { late, allowed } => (22, [late, allowed]),
-            Self::NotAligned => (23, [0; 2]),
+            Self::NotAligned { by_index } => (23, [by_index as u32, 0]),
             Self::Alignment(error) => error.encode(),
         }
     }
@@ -126,7 +129,7 @@ impl PowerFault {
             20 => Self::SaturatedDuty { instants: a, allowed: b },
             21 => Self::IndexMismatch { count: a, aligned: b },
             22 => Self::CurrentInterruptLate { late: a, allowed: b },
-            23 => Self::NotAligned,
+            23 => Self::NotAligned { by_index: a != 0 },
             _ => match AlignmentError::decode(code, numbers) {
                 Some(error) => Self::Alignment(error),
                 None => return None,
@@ -187,8 +190,12 @@ impl fmt::Display for PowerFault {
                  {allowed} are allowed: shorten the critical sections that mask it, then arm again"
             ),
             Self::Alignment(error) => write!(f, "not aligned: {error}"),
-            Self::NotAligned => f.write_str(
+            Self::NotAligned { by_index: false } => f.write_str(
                 "the motor has not been aligned with its encoder: align it, then arm again",
+            ),
+            Self::NotAligned { by_index: true } => f.write_str(
+                "the motor has not been aligned with its encoder: turn the handle past the encoder's index, \
+                 or align it, then arm again",
             ),
         }
     }

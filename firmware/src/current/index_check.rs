@@ -1,45 +1,40 @@
-//! The index of an encoder, which has to stay where it was when the motor was aligned.
+//! The index of an encoder, which has to come where it came before.
 
 use super::fault::PowerFault;
+use super::phase::Turn;
 
 /// Counts by which the index may be off: its pulse is as wide, and is met from both sides.
-const WIDTH: u32 = 4;
+pub(super) const WIDTH: u32 = 4;
 
-/// Compares the counts at which the index comes.
+/// Compares the counts at which the index comes. The first one since it was last forgotten is the reference.
 #[derive(Clone, Copy, Debug)]
-pub struct IndexCheck {
-    counts: u32,
-    aligned: Option<u32>,
+pub(super) struct IndexCheck {
+    /// Where the index came first.
+    reference: Option<Turn>,
 }
 
 impl IndexCheck {
-    /// For an encoder with so many counts a turn, at least one; the first index is that of the alignment.
-    pub const fn new(counts: u32) -> Self {
-        Self { counts, aligned: None }
+    /// No index has come.
+    pub(super) const NOT_SEEN: Self = Self { reference: None };
+
+    /// Where the handle is in its turn at the index.
+    pub(super) const fn reference(&self) -> Option<Turn> {
+        self.reference
     }
 
-    /// The same with an index that was stored.
-    pub const fn stored(counts: u32, aligned: u32) -> Self {
-        Self { counts, aligned: Some(aligned) }
-    }
-
-    /// The count of the alignment, to be stored.
-    pub const fn aligned(&self) -> Option<u32> {
-        self.aligned
-    }
-
-    /// Takes the count, within its turn, at which an index came.
+    /// Takes where the handle was in its turn when an index came.
     ///
     /// # Errors
-    /// Where it is another one.
-    pub const fn observe(&mut self, count: u32) -> Result<(), PowerFault> {
-        let Some(aligned) = self.aligned else {
-            self.aligned = Some(count);
+    /// Where that is another place.
+    pub(super) const fn observe(&mut self, at: Turn) -> Result<(), PowerFault> {
+        let Some(reference) = self.reference else {
+            self.reference = Some(at);
             return Ok(());
         };
+        let (count, aligned) = (at.count().cast_unsigned(), reference.count().cast_unsigned());
         let apart = count.abs_diff(aligned);
         // Either way round the turn.
-        let other_way = self.counts.saturating_sub(apart);
+        let other_way = at.counts().saturating_sub(apart);
         if apart <= WIDTH || other_way <= WIDTH {
             Ok(())
         } else {

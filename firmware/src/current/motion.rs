@@ -5,12 +5,60 @@
 
 use super::motor::{Motor, Winding};
 use super::plant::Plant;
+use super::resolution::CurrentResolution;
 use crate::passivity::interval::Interval;
+
+/// What a measurement of a device has to know of the current loop that its torque comes from.
+///
+/// The feedback leaves a path from the velocity to the torque that its back-EMF moves: a device that is measured
+/// through the loop has it beside its own inertia and damping. And the torque is as fine as the current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "wire", derive(serde::Serialize))]
+pub struct TorqueSource {
+    /// `Kt Ke`, torque in N m/A times back-EMF in V s/rad.
+    pub gain: f64,
+    /// `R` in ohm.
+    pub resistance: f64,
+    /// `L` in H.
+    pub inductance: f64,
+    /// `K`, the gain of the feedback's loop.
+    pub feedback: f64,
+    /// `h`, time in s between two instants.
+    pub instant: f64,
+    /// Damping in N m s/rad that it takes, rounded up (equation 52); infinite where no bound is known.
+    pub loss: f64,
+    /// Torque in N m of a count of the current: [`CurrentResolution::step`].
+    pub step: f64,
+    /// Torque in N m that it may be off by after the current has changed its sign:
+    /// [`CurrentResolution::zero_crossing`].
+    pub zero_crossing: f64,
+}
+
+impl TorqueSource {
+    /// Of a motor and the feedback of its current, with so fine a torque.
+    pub(super) const fn of(
+        motor: &Motor,
+        plant: &Plant,
+        instant: f64,
+        resolution: &CurrentResolution,
+    ) -> Self {
+        Self {
+            gain: motor.torque_constant * motor.back_emf(),
+            resistance: motor.resistance,
+            inductance: motor.inductance,
+            feedback: plant.feedback,
+            instant,
+            loss: motion_loss(motor, plant, instant),
+            step: resolution.step,
+            zero_crossing: resolution.zero_crossing,
+        }
+    }
+}
 
 /// The most power that the current of the back-EMF gives to a motion on average, over the mean square of its
 /// velocity, in N m s/rad: `Kt Ke h/(4 sqrt(3) L)`, rounded up (equation 52). Infinite where equation 53 does not
 /// hold, so that no bound is known.
-pub(super) const fn motion_loss(motor: &Motor, plant: &Plant, instant: f64) -> f64 {
+const fn motion_loss(motor: &Motor, plant: &Plant, instant: f64) -> f64 {
     let (resistance, inductance) =
         (Interval::decimal(motor.resistance), Interval::decimal(motor.inductance));
     let torque = Interval::decimal(motor.torque_constant);

@@ -50,7 +50,28 @@ impl Turn {
     /// Electrical angle since the count 0.
     #[inline(always)]
     pub(super) const fn angle(&self) -> u32 {
-        ((self.count as u64).wrapping_mul(self.scale) >> 32) as u32
+        self.angle_of(self.count.cast_unsigned())
+    }
+
+    /// Electrical angle of so many counts.
+    #[inline(always)]
+    pub(super) const fn angle_of(&self, counts: u32) -> u32 {
+        ((counts as u64).wrapping_mul(self.scale) >> 32) as u32
+    }
+
+    /// The counts nearest to an electrical angle, below those of an electrical turn.
+    pub(super) const fn electrical_counts(&self, angle: u32) -> u32 {
+        let turns = angle as u128 * self.counts.cast_unsigned() as u128;
+        let one = (self.pole_pairs as u128) << 32;
+        // The quotient is at most the counts of a turn.
+        let nearest = ((turns + one / 2) / one) as u32;
+        let is_whole_turn = nearest as u128 * self.pole_pairs as u128 >= self.counts as u128;
+        if is_whole_turn { 0 } else { nearest }
+    }
+
+    /// Counts in a turn.
+    pub(super) const fn counts(&self) -> u32 {
+        self.counts.cast_unsigned()
     }
 
     /// Electrical turns in a turn.

@@ -4,7 +4,7 @@ use super::current_loop::CurrentLoop;
 use crate::power_reading::PowerReading;
 
 impl CurrentLoop {
-    /// The reading of a current in A, of the code that the servo gave last, as
+    /// The reading, without an index, of a current in A, of the code that the servo gave last, as
     /// [`DacCode::offset`](crate::dac::DacCode::offset) gives it, and of the counts of supply and temperature.
     /// For the host: not for the interrupt of the currents.
     pub fn power_reading(
@@ -20,6 +20,7 @@ impl CurrentLoop {
             // The cast rounds a positive number down.
             voltage: (f32::from(bus) * self.limits.millivolts_per_count + 0.5) as u32,
             temperature: self.limits.thermistor.tenths(temperature),
+            index: None,
         }
     }
 }
@@ -41,7 +42,7 @@ mod tests {
     #[test]
     fn counts_become_units() {
         let reading = BRUSHED.power_reading(-0.4124, -1791, (2865, AT_25));
-        let PowerReading { current, reference, voltage, temperature } = reading;
+        let PowerReading { current, reference, voltage, temperature, .. } = reading;
         // 2865 counts of 8.4 mV.
         assert_eq!((current, reference, voltage), (-412, -4000, 24_066));
         // Straight lines ten degrees apart are half a degree off at most.

@@ -29,10 +29,16 @@ impl Speed {
     /// zero that is nearest.
     #[inline(always)]
     pub(super) const fn step(&mut self, position: RawCount) -> i32 {
-        let shift = self.width as u32;
-        let step = (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift;
+        let step = self.since_last(position);
         self.last = position.bits();
         step
+    }
+
+    /// Counts from the last reading to one that is near it.
+    #[inline(always)]
+    pub(super) const fn since_last(&self, position: RawCount) -> i32 {
+        let shift = self.width as u32;
+        (position.bits().wrapping_sub(self.last) << shift).cast_signed() >> shift
     }
 
     /// Takes a step; gives the mean of the counts in an instant.

@@ -1,11 +1,13 @@
 //! How a sweep ended: the last word of the record on the wire.
 
 /// Version of the protocol of a board that plays a sweep.
-pub const SWEEP_PROTOCOL: u32 = 1;
+pub const SWEEP_PROTOCOL: u32 = 2;
 
 /// Bytes that the host sends.
 pub mod byte {
-    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`.
+    /// Requests the description: `identify,PROTOCOL,period,counts per turn,ticks,travel,speed`, and of a board
+    /// whose own bridge drives the motor `,gain,resistance,inductance,feedback,instant,loss,step,crossing` of its
+    /// [`TorqueSource`](crate::current::TorqueSource).
     pub const DESCRIBE: u8 = b'?';
     /// Begins the sweep. The record follows, and behind it `end,WORD,count`.
     pub const BEGIN: u8 = b'g';

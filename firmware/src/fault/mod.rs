@@ -8,6 +8,7 @@ mod record;
 pub use record::FaultRecord;
 
 use core::fmt;
+use core::panic::PanicInfo;
 
 use crate::current::PowerFault;
 
@@ -78,6 +79,12 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// The fault that a panic is, for a panic handler.
+    pub fn of_panic(info: &PanicInfo<'_>) -> Self {
+        let (line, column) = info.location().map_or((0, 0), |at| (at.line(), at.column()));
+        Self::Panic { line, column }
+    }
+
     /// The fault in one word, for tables.
     pub const fn as_str(self) -> &'static str {
         match self {

@@ -25,7 +25,7 @@ const ALL: [Fault; 27] = [
     Fault::Power(PowerFault::SaturatedDuty { instants: 33, allowed: 32 }),
     Fault::Power(PowerFault::IndexMismatch { count: 7, aligned: 12 }),
     Fault::Power(PowerFault::CurrentInterruptLate { late: 8500, allowed: 6375 }),
-    Fault::Power(PowerFault::NotAligned),
+    Fault::Power(PowerFault::NotAligned { by_index: true }),
     Fault::Power(PowerFault::Alignment(AlignmentError::NotNeeded)),
     Fault::Power(PowerFault::Alignment(AlignmentError::Blocked { moved: -3, expected: 2340 })),
     Fault::Power(PowerFault::Alignment(AlignmentError::PolePairs { moved: -1200, expected: 2340 })),

@@ -9,7 +9,7 @@ use static_cell::StaticCell;
 use super::tick_timer;
 use crate::board::BAUD;
 use crate::board::isr_cell::IsrCell;
-use crate::board::link::Port;
+use crate::wire::Port;
 
 /// USART1's registers, from the F405's memory map: status, data, and control register 1.
 const STATUS: *const u32 = 0x4001_1000 as *const u32;

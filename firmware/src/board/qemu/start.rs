@@ -9,7 +9,6 @@ use super::registers::Registers;
 use super::serial::{self, Serial};
 use super::tick_timer::{self, Period};
 use crate::board::isr_cell::IsrCell;
-use crate::board::link::Link;
 use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, boot};
@@ -17,7 +16,7 @@ use crate::certificate::Assessment;
 use crate::number::Number;
 use crate::servo::{OutputMode, SupportsTiming};
 use crate::tuning::Tunable;
-use crate::wire::{BoardInfo, Session};
+use crate::wire::{BoardInfo, Link, Session};
 
 #[cfg(feature = "log")]
 use crate::certificate::{certify_in, scene_data};

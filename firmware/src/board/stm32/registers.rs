@@ -14,7 +14,7 @@ use crate::dac::DacCode;
 use crate::encoder::RawCount;
 use crate::fault::{Fault, FaultRecord};
 use crate::output_timing::OutputTiming;
-use crate::period::{PATIENCE, WATCHDOG_CLOCK};
+use crate::period;
 use crate::reset::ResetCause;
 use crate::servo_loop::Hardware;
 use crate::torque_output::TorqueOutput;
@@ -99,11 +99,10 @@ impl Startup for Registers {
         // While the core is halted the DAC holds its last code: what takes that away shall not
         // be halted with it.
         family::keep_watchdog_running();
-        // A count more covers the cast's rounding.
-        let counts = PATIENCE * self.pace.periods().seconds() * WATCHDOG_CLOCK + 1.0;
+        let counts = period::watchdog_counts(self.pace.periods().seconds());
         pac::IWDG.kr().write(|w| w.set_key(Key::START));
         pac::IWDG.kr().write(|w| w.set_key(Key::ENABLE));
-        pac::IWDG.rlr().write(|w| w.set_rl(counts as u16));
+        pac::IWDG.rlr().write(|w| w.set_rl(counts));
     }
 
     fn stored_fault(&mut self) -> [u32; FaultRecord::WORDS] {

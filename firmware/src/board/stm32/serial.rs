@@ -12,7 +12,7 @@ use embedded_io_async::{Read, Write};
 use static_cell::StaticCell;
 
 use crate::board::BAUD;
-use crate::board::link::Port;
+use crate::wire::Port;
 
 /// Bytes that may wait for the task that reads them: 5 ms of the line's rate, some ten times what
 /// that task needs for anything but a certificate, during which the host waits for its answer.

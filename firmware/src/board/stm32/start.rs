@@ -16,7 +16,6 @@ use super::wiring::{self, ENCODER};
 use super::{BoardPeripherals, family, output};
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
-use crate::board::link::Link;
 use crate::board::servo_isr::{Endpoints, MailboxCell, ServoIsr, endpoints};
 use crate::board::{critical, stack};
 use crate::boot::{Booted, Program, Startup, boot};
@@ -28,7 +27,7 @@ use crate::reset::ResetCause;
 use crate::servo::{OutputMode, OutputTiming, SupportsTiming, Transducers};
 use crate::servo_loop::Reason;
 use crate::tuning::Tunable;
-use crate::wire::{BoardInfo, Session};
+use crate::wire::{BoardInfo, Link, Session};
 
 /// Where the servo's interrupt finds its state.
 pub type ServoCell<E, N, M> = IsrCell<ServoIsr<Registers, E, N, M>>;

@@ -20,8 +20,8 @@ use super::start::{init_chip, registers, width};
 use super::wiring::ENCODER;
 use crate::board::input_filter::InputFilter;
 use crate::board::isr_cell::IsrCell;
-use crate::board::link::Port;
 use crate::boot::Startup;
+use crate::current::TorqueSource;
 use crate::dac::DacCode;
 use crate::encoder::Position;
 use crate::excitation::{
@@ -32,6 +32,7 @@ use crate::servo::Transducers;
 use crate::servo_loop::{Frame, FrameQueue, FrameReader, FrameSink, Frames, Hardware, State};
 use crate::text::ShortF64;
 use crate::torque::LimitReason;
+use crate::wire::Port;
 
 /// The state of the sweep's interrupt.
 pub type SweepCell = IsrCell<SweepIsr>;
@@ -52,8 +53,8 @@ pub struct Setup {
 
 /// Rows that may wait to be sent: 64 ms at 1 kHz.
 const ROWS: usize = 64;
-/// Bytes of the longest line: the heading together with the first row has 60.
-const LINE: usize = 80;
+/// Bytes of the longest line: the description, with fourteen numbers of at most 17.
+const LINE: usize = 256;
 
 /// Whether the host wants a sweep to begin.
 static BEGIN: AtomicBool = AtomicBool::new(false);
@@ -272,10 +273,19 @@ impl Writer {
         let (period, counts) = (ShortF64(self.period), ShortF64(setup.transducers.counts_per_turn));
         let (travel, speed) = (ShortF64(setup.limits.travel), ShortF64(setup.limits.speed));
         self.line.clear();
-        let _ = writeln!(
+        let _ = write!(
             self.line,
             "identify,{SWEEP_PROTOCOL},{period},{counts},{ticks},{travel},{speed}"
         );
+        if let Some(source) = setup.output.torque_source() {
+            let TorqueSource { gain, resistance, inductance, feedback, instant, .. } = source;
+            let of_loop = [gain, resistance, inductance, feedback, instant];
+            let of_torque = [source.loss, source.step, source.zero_crossing];
+            for number in of_loop.into_iter().chain(of_torque) {
+                let _ = write!(self.line, ",{}", ShortF64(number));
+            }
+        }
+        let _ = self.line.push('\n');
     }
 }
 

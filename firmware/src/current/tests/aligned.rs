@@ -3,13 +3,14 @@
 use super::three_phases::{Handle, ThreePhases};
 use super::*;
 
-const WIRES: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
+pub const WIRES: [[usize; 3]; 6] =
+    [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
 
-const HANDLE: Handle =
+pub const HANDLE: Handle =
     Handle { inertia: 2.2e-5, damping: 1e-3, friction: 1e-3, cogging: (0.0, 0.0) };
 
 /// Runs an alignment to its end; the longest of all takes less than seven seconds.
-fn align(rig: &mut ThreePhases) -> Result<PhaseAlignment, AlignmentError> {
+pub fn align(rig: &mut ThreePhases) -> Result<PhaseAlignment, AlignmentError> {
     let mut alignment = rig.controller.start_alignment().unwrap();
     for _ in 0..280_000 {
         match rig.controller.align(&rig.sample(), &mut alignment).unwrap() {
@@ -25,7 +26,7 @@ fn align(rig: &mut ThreePhases) -> Result<PhaseAlignment, AlignmentError> {
     panic!("it has no end")
 }
 
-fn rig(wires: [usize; 3], encoder: f64, handle: Option<Handle>) -> ThreePhases {
+pub fn rig(wires: [usize; 3], encoder: f64, handle: Option<Handle>) -> ThreePhases {
     let mut rig = ThreePhases::off(&BRUSHLESS);
     (rig.wires, rig.encoder, rig.handle, rig.edges) = (wires, encoder, handle, false);
     rig.angle = 0.3;
@@ -33,7 +34,7 @@ fn rig(wires: [usize; 3], encoder: f64, handle: Option<Handle>) -> ThreePhases {
 }
 
 /// Torque in N m in the direction in which the encoder counts up, at several angles: of a code of 1000.
-fn torques(rig: &mut ThreePhases) -> Vec<f64> {
+pub fn torques(rig: &mut ThreePhases) -> Vec<f64> {
     (rig.handle, rig.speed, rig.edges) = (None, 0.0, true);
     rig.controller.start().unwrap();
     let torque = |_| {
@@ -92,7 +93,7 @@ fn other_pole_pairs_are_refused() {
         let turn = 61_440.0 / pole_pairs;
         assert!((f64::from(moved) / turn - 1.0).abs() < 0.05, "{pole_pairs}: {moved}, {turn}");
         // And nothing runs afterwards.
-        assert_eq!(rig.controller.start(), Err(PowerFault::NotAligned));
+        assert_eq!(rig.controller.start(), Err(PowerFault::NotAligned { by_index: false }));
     }
 }
 

@@ -127,8 +127,8 @@ fn a_voltage_that_is_not_enough_stays_in_the_circle() {
 #[test]
 fn needs_an_alignment() {
     let mut rig = ThreePhases::off(&BRUSHLESS).measured();
-    assert_eq!(rig.controller.start(), Err(PowerFault::NotAligned));
-    assert_eq!(rig.instant(0), Err(PowerFault::NotAligned));
+    assert_eq!(rig.controller.start(), Err(PowerFault::NotAligned { by_index: false }));
+    assert_eq!(rig.instant(0), Err(PowerFault::NotAligned { by_index: false }));
 }
 
 /// Against 128 bits, after millions of turns both ways.
@@ -154,22 +154,6 @@ fn a_phase_does_not_drift() {
             assert!(off.abs() <= 1, "{counts}, {pole_pairs}: {off}");
         }
     }
-}
-
-#[test]
-fn an_index_stays_where_it_was() {
-    let mut check = IndexCheck::new(61_440);
-    assert_eq!(
-        (check.aligned(), check.observe(61_439), check.aligned()),
-        (None, Ok(()), Some(61_439))
-    );
-    assert_eq!((check.observe(2), check.observe(61_436)), (Ok(()), Ok(())));
-    let mismatch = PowerFault::IndexMismatch { count: 10, aligned: 61_439 };
-    assert_eq!(check.observe(10), Err(mismatch));
-    assert_eq!(
-        IndexCheck::stored(4096, 100).observe(2000).unwrap_err().encode(),
-        (21, [2000, 100])
-    );
 }
 
 #[test]

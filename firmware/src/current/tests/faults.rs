@@ -135,8 +135,12 @@ fn every_fault_comes_back_from_its_code() {
         assert_eq!(decoded, Some(crate::fault::Fault::Power(fault)));
     }
     assert_eq!(PowerFault::decode(13, [0; 2]), None);
-    assert_eq!(PowerFault::decode(23, [0; 2]), Some(PowerFault::NotAligned));
-    assert_eq!(PowerFault::NotAligned.encode(), (23, [0; 2]));
+    for by_index in [false, true] {
+        let fault = PowerFault::NotAligned { by_index };
+        assert_eq!(PowerFault::decode(23, [by_index.into(), 0]), Some(fault));
+        assert_eq!(fault.encode(), (23, [by_index.into(), 0]));
+        assert_eq!(fault.to_string().contains("past the encoder's index"), by_index);
+    }
     // Codes from there on are those of an alignment.
     assert!(matches!(PowerFault::decode(24, [0; 2]), Some(PowerFault::Alignment(_))));
     assert_eq!(PowerFault::decode(29, [0; 2]), None);

@@ -5,8 +5,10 @@ mod aligned;
 mod brushed;
 mod brushless;
 mod design;
+mod duty_current;
 mod faults;
 mod follower;
+mod index;
 mod rig;
 mod three_phases;
 

@@ -4,6 +4,7 @@ use super::Pace;
 use crate::board::stm32::start::halt_with;
 use crate::board::stm32::wiring::{AMPLIFIER, DAC};
 use crate::build_error::BuildError;
+use crate::current::TorqueSource;
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
@@ -22,6 +23,11 @@ impl Setup {
     /// Of one whose scene has the latency of a bridge. It does not run: cargo builds all programs beside the tests
     /// on a board, and none of them is flashed.
     pub const BRIDGE: Self = Self { is_served: false };
+
+    /// None: of an amplifier outside it is unknown.
+    pub const fn torque_source(&self) -> Option<TorqueSource> {
+        None
+    }
 }
 
 /// The output.

@@ -21,6 +21,12 @@ impl Gate {
         Self { port, pin, function }
     }
 
+    /// Whether the pin is low, whatever drives it.
+    #[cfg(feature = "on-target")]
+    pub fn is_low(&self) -> bool {
+        self.port.idr().read().idr(self.pin) == pac::gpio::vals::Idr::LOW
+    }
+
     /// Gives the pin to the timer. It was an output, and low.
     fn connect(self) {
         self.port.afr(self.pin / 8).modify(|w| w.set_afr(self.pin % 8, self.function));

@@ -1,10 +1,9 @@
 //! The clock that never stops, and the servo's periods that have begun by it. Belongs to what paces the servo.
 
-use core::hint::cold_path;
 use core::num::NonZeroU32;
 
 use crate::board::stm32::wiring::CLOCK;
-use crate::servo_loop::BEGAN_LATE;
+use crate::servo_loop::PeriodClock;
 
 /// The clock.
 #[inline(always)]
@@ -15,14 +14,9 @@ pub fn now() -> u32 {
 /// Keeps count of the periods.
 #[derive(Debug)]
 pub struct Periods {
-    /// Clock counts in a period.
-    counts: NonZeroU32,
+    clock: PeriodClock,
     /// Seconds in a period, as it is paced.
     seconds: f64,
-    /// Clock counts after its beginning in which a period counts as in time.
-    in_time: u32,
-    /// The clock when the present period began.
-    began: u32,
 }
 
 impl Periods {
@@ -32,7 +26,7 @@ impl Periods {
         CLOCK.psc().write_value(0);
         CLOCK.arr().write_value(u32::MAX);
         CLOCK.egr().write(|w| w.set_ug(true));
-        Self { counts, seconds, in_time, began: 0 }
+        Self { clock: PeriodClock::new(counts, in_time), seconds }
     }
 
     /// Starts the clock and then the timers that pace, so that no period begins before the clock's.
@@ -45,24 +39,15 @@ impl Periods {
     }
 
     /// The periods that had begun at this time, since this was last asked: see
-    /// [`Hardware::periods_since_last`](crate::servo_loop::Hardware::periods_since_last).
+    /// [`PeriodClock::begun_by`].
     #[inline(always)]
     pub fn begun_by(&mut self, time: u32) -> u32 {
-        let next = self.began.wrapping_add(self.counts.get());
-        let late = time.wrapping_sub(next);
-        if late < self.in_time {
-            self.began = next;
-            return 1;
-        }
-        cold_path();
-        let missed = late / self.counts;
-        self.began = next.wrapping_add(missed * self.counts.get());
-        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+        self.clock.begun_by(time)
     }
 
     /// Clock counts in a period.
     pub fn counts(&self) -> u32 {
-        self.counts.get()
+        self.clock.counts()
     }
 
     /// Seconds in a period, as it is paced.
@@ -73,6 +58,6 @@ impl Periods {
     /// Clock counts since the present period began.
     #[inline(always)]
     pub fn elapsed(&self) -> u32 {
-        now().wrapping_sub(self.began)
+        self.clock.elapsed_at(now())
     }
 }

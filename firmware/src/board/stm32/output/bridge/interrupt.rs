@@ -6,7 +6,7 @@ use core::sync::atomic::Ordering;
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::interrupt;
 
-use super::{STATE, State, WAITING, latest, off, over_current, pace, pwm, sense, tell};
+use super::{STATE, State, WAITING, index, latest, off, over_current, pace, pwm, sense, tell};
 use crate::board::stm32::output::periods::now;
 use crate::current::{
     Alignment, AlignmentStep, CurrentController, CurrentLoop, PowerFault, Sample,
@@ -73,6 +73,10 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
             cold_path();
             self.otherwise(&sample);
         }
+        if BRUSHLESS && index::has_come() {
+            cold_path();
+            self.take_index();
+        }
         // Bookkeeping: the host, and the servo, both below this.
         if begins {
             latest::keep(&sample, self.controller.current());
@@ -103,6 +107,17 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         if pwm::updated() {
             cold_path();
             stop(self.late(now().wrapping_sub(self.last)));
+        }
+    }
+
+    /// An index has come since the last instant's sample, or just after this one's.
+    #[cold]
+    #[inline(never)]
+    fn take_index(&mut self) {
+        let observed = self.controller.observe_index(index::take());
+        latest::keep_index(self.controller.index_offset());
+        if let Err(fault) = observed {
+            stop(fault);
         }
     }
 
@@ -152,8 +167,13 @@ impl<const BRUSHLESS: bool> CurrentIsr<BRUSHLESS> {
         let Some(alignment) = &mut self.alignment else { return off() };
         match self.controller.align(sample, alignment) {
             Ok(AlignmentStep::Turning(duties)) => pwm::set(self.current_loop, duties),
-            Ok(AlignmentStep::Ended(Ok(_))) => off(),
-            Ok(AlignmentStep::Ended(Err(error))) => stop(PowerFault::Alignment(error)),
+            Ok(AlignmentStep::Ended(result)) => {
+                latest::keep_index(self.controller.index_offset());
+                match result {
+                    Ok(_) => off(),
+                    Err(error) => stop(PowerFault::Alignment(error)),
+                }
+            }
             Err(fault) => stop(fault),
         }
     }

@@ -5,7 +5,7 @@ use core::ptr;
 use core::sync::atomic::{AtomicPtr, AtomicU32, Ordering};
 
 use super::WAITING;
-use crate::current::{CurrentLoop, Sample};
+use crate::current::{CurrentLoop, IndexOffset, Sample};
 use crate::dac::DacCode;
 use crate::power_reading::PowerReading;
 
@@ -17,6 +17,11 @@ static LATEST_CURRENT: AtomicU32 = AtomicU32::new(0);
 
 /// Counts of the supply in the low half and of the temperature in the high half.
 static LATEST_COUNTS: AtomicU32 = AtomicU32::new(0);
+
+/// The offset of the index: its counts, which take 24 bits, whether it is reversed, and whether there is one.
+static LATEST_INDEX: AtomicU32 = AtomicU32::new(0);
+const IS_REVERSED: u32 = 1 << 30;
+const IS_KNOWN: u32 = 1 << 31;
 
 /// Names the current loop whose numbers these are.
 pub fn of(current_loop: &'static CurrentLoop) {
@@ -31,6 +36,21 @@ pub fn keep(sample: &Sample, current: f32) {
     LATEST_COUNTS.store(counts, Ordering::Relaxed);
 }
 
+/// Keeps the offset of the index, or that none is known.
+pub fn keep_index(offset: Option<IndexOffset>) {
+    let word = offset.map_or(0, |IndexOffset { counts, is_reversed }| {
+        IS_KNOWN | if is_reversed { IS_REVERSED } else { 0 } | counts
+    });
+    LATEST_INDEX.store(word, Ordering::Relaxed);
+}
+
+/// The offset of the index that was kept last.
+fn index_offset() -> Option<IndexOffset> {
+    let word = LATEST_INDEX.load(Ordering::Relaxed);
+    let counts = word & !(IS_KNOWN | IS_REVERSED);
+    (word & IS_KNOWN != 0).then_some(IndexOffset { counts, is_reversed: word & IS_REVERSED != 0 })
+}
+
 /// The reading of what was kept last; `None` before the current loop runs.
 pub fn power_reading() -> Option<PowerReading> {
     // SAFETY: it is null, or was made of a reference that lives as long as the program.
@@ -40,5 +60,6 @@ pub fn power_reading() -> Option<PowerReading> {
     let counts = LATEST_COUNTS.load(Ordering::Relaxed);
     // The casts take the halves.
     let surroundings = (counts as u16, (counts >> 16) as u16);
-    Some(current_loop.power_reading(current, reference, surroundings))
+    let reading = current_loop.power_reading(current, reference, surroundings);
+    Some(PowerReading { index: index_offset(), ..reading })
 }

@@ -16,8 +16,13 @@
 //! The gates are off from reset until the servo arms; each fault takes them away by one write, and too much
 //! current by [hardware](over_current) alone.
 
+pub mod index;
 mod interrupt;
 mod latest;
+#[cfg(feature = "on-target")]
+pub mod load;
+#[cfg(feature = "on-target")]
+mod no_motor;
 mod over_current;
 mod pace;
 mod pwm;
@@ -36,7 +41,7 @@ pub use pace::Pace;
 use crate::board::isr_cell::IsrCell;
 use crate::board::stm32::wiring::GATES;
 use crate::build_error::BuildError;
-use crate::current::{AlignmentError, CurrentLoop, PowerFault};
+use crate::current::{AlignmentError, CurrentLoop, PowerFault, TorqueSource};
 use crate::dac::DacCode;
 use crate::fault::Fault;
 use crate::output_timing::OutputTiming;
@@ -53,6 +58,13 @@ pub struct Setup {
     /// Fills the place of its interrupt's state, whose type says which motor it is. That interrupt must not be
     /// enabled yet.
     pub fill: fn(OutputTiming),
+}
+
+impl Setup {
+    /// What a measurement has to know of the current loop.
+    pub const fn torque_source(&self) -> Option<TorqueSource> {
+        Some(*self.current_loop.torque_source())
+    }
 }
 
 /// The code that the servo gave last.
@@ -99,6 +111,9 @@ impl Output {
         over_current::prepare();
         sense::prepare();
         latest::of(current_loop);
+        if current_loop.has_index() {
+            index::capture();
+        }
         (setup.fill)(timing);
         let counts = NonZeroU32::new(current_loop.clock_counts()).unwrap_or(NonZeroU32::MIN);
         let is_brushless = current_loop.is_brushless();
@@ -107,6 +122,7 @@ impl Output {
 
     /// Lets the current interrupt begin, with the gates low.
     pub fn start(&mut self, pace: &mut Pace, _: OutputTiming) {
+        index::forget();
         interrupts::ADC1_2.set_priority(Priority::P0);
         // SAFETY: its handler finds its place filled.
         unsafe { interrupts::ADC1_2.enable() };
@@ -190,7 +206,7 @@ pub fn stop() {
 #[macro_export]
 macro_rules! board_output {
     ([]) => {
-        compile_error!(
+        $crate::not_for_the_bridge!(
             "the bridge drives a motor that this program does not state: write `bridge: CURRENT_LOOP` in \
              scene_program! or sweep_program!, or build it with --output dac"
         );
@@ -230,5 +246,27 @@ macro_rules! board_output {
 macro_rules! sweep_output {
     ($bridge:tt) => {
         $crate::board_output!($bridge);
+    };
+}
+
+/// A compile error, but for the programs that cargo builds beside the tests on a board.
+#[cfg(not(feature = "on-target"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! not_for_the_bridge {
+    ($why:literal) => {
+        compile_error!($why);
+    };
+}
+
+/// A program beside the tests on a board that ends at its start.
+#[cfg(feature = "on-target")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! not_for_the_bridge {
+    ($why:literal) => {
+        /// What the output has to know of this program.
+        const OUTPUT: $crate::board::stm32::output::Setup =
+            $crate::board::stm32::output::Setup::DAC;
     };
 }

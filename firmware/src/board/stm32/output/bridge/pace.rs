@@ -2,8 +2,9 @@
 //! of TIM1.
 //!
 //! The count is not read late, whenever that interrupt comes: each update of TIM1 has the encoder's timer
-//! capture it (RM0440, general-purpose timers: channel 3 of TIM4 captures on TRC, which is TIM1's trigger
-//! output by the timers' interconnection, and encoder mode leaves that input free).
+//! capture it (RM0440, general-purpose timers: channel 4 of TIM4 captures on TRC, which is TIM1's trigger
+//! output by the timers' interconnection, and encoder mode leaves that input free). Any channel captures on
+//! TRC; the third is the one whose pin is at the encoder's connector, and captures its [index](super::index).
 
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -26,14 +27,14 @@ const TIM1_TRGO: Ts = Ts::ITR0;
 /// Has each update of TIM1 capture the encoder's count.
 pub fn capture_counts() {
     ENCODER.smcr().modify(|w| w.set_ts(TIM1_TRGO));
-    ENCODER.ccmr_input(1).modify(|w| w.set_ccs(0, CcmrInputCcs::TRC));
-    ENCODER.ccer().modify(|w| w.set_cce(2, true));
+    ENCODER.ccmr_input(1).modify(|w| w.set_ccs(1, CcmrInputCcs::TRC));
+    ENCODER.ccer().modify(|w| w.set_cce(3, true));
 }
 
 /// The count at the last update.
 #[inline(always)]
 pub fn captured() -> RawCount {
-    RawCount::from(ENCODER.ccr(2).read().ccr())
+    RawCount::from(ENCODER.ccr(3).read().ccr())
 }
 
 /// Takes the count of a period down, and the time.

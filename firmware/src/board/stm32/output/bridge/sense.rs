@@ -84,6 +84,12 @@ impl Converter {
     }
 }
 
+/// Whether the currents of an instant wait to be read.
+#[cfg(feature = "on-target")]
+pub fn is_converted() -> bool {
+    FIRST.registers.isr().read().jeos()
+}
+
 /// The currents of this instant, phases U and V, as the converters count them. Acknowledges ADC1's interrupt.
 #[inline(always)]
 pub fn currents() -> [u16; 2] {

@@ -1,0 +1,61 @@
+//! A shaft with a brushless motor on a motor board, whose encoder has an index: what `brushless_wall` and
+//! `brushless_index` render with. A device of your own has its numbers here, or in a module like this.
+
+// A crate that includes several programs has this module in each.
+#![allow(dead_code, clippy::duplicate_mod)]
+
+use firmware::current::{B_G431B_ESC1, CurrentLoop, Drive, EncoderIndex, Motor, Supply, Winding};
+use firmware::encoder::CounterWidth;
+use firmware::environment::{DamperWall, Matched, OneSided};
+use firmware::output_timing::OutputTiming;
+use firmware::scene::{Coupling, Device, Scene, Timing};
+use firmware::servo::Transducers;
+
+/// Period of the servo in s: four of the current loop.
+pub const PERIOD: f64 = 0.0001;
+
+/// The encoder of the shaft, and its motor.
+pub const TRANSDUCERS: Transducers = Transducers {
+    counts_per_turn: 16_384.0,
+    counter: CounterWidth::Bits16,
+    full_scale_torque: 0.15,
+    largest_speed: 60.0,
+};
+
+/// The motor between the outputs U, V and W, in any order, and its supply.
+pub const DRIVE: Drive = Drive {
+    motor: Motor {
+        winding: Winding::Brushless { pole_pairs: 7 },
+        resistance: 0.3,
+        inductance: 0.06e-3,
+        torque_constant: 0.05,
+    },
+    supply: Supply { lowest: 20.0, highest: 25.2 },
+    bandwidth: 2000.0,
+    largest_temperature: 80.0,
+};
+
+/// Its current loop on the board's power stage. An encoder without an index leaves its input as it is, and is not
+/// checked.
+pub const CURRENT_LOOP: CurrentLoop =
+    CurrentLoop::checked(&DRIVE, &B_G431B_ESC1, &TRANSDUCERS, PERIOD)
+        .with_index(EncoderIndex { offset: None });
+
+/// What the hand feels, behind a coupling that remembers the current loop's lag.
+pub type Environment = Matched<OneSided<DamperWall<1>>, 0, 1, true>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    // Motion takes 0.0001 of the damping through the current loop (`CurrentLoop::motion_loss`).
+    device: Device { inertia: 1.5e-5, damping: 0.0005, passivity: Some(0.00039) },
+    timing: Timing { period: PERIOD, worst_period: None },
+    coupling: Coupling::Matched,
+    environment: Matched {
+        environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 2.0, damping: 0.0001 } },
+    },
+    latency: CURRENT_LOOP.latency(OutputTiming::Latched),
+    torque_limit: Some(0.1),
+};
+
+/// Angles to 128 rad and torques to 128 N m, in steps of 6e-8.
+pub type Fixed = fixed::types::I8F24;

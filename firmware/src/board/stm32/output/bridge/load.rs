@@ -1,0 +1,81 @@
+//! The power stage without its interrupts, for the tests on a board: one instant after the other, by asking.
+//!
+//! The protection is that of the current loop: from [`Load::on`] on, the comparators break TIM1's outputs.
+
+use embassy_stm32::pac;
+
+use super::{over_current, pace, pwm, sense};
+use crate::board::stm32::output::gates::Gate;
+use crate::board::stm32::wiring::GATES;
+use crate::current::{CurrentLoop, Duties, Sample};
+
+/// How often is asked whether an instant has come, before it counts as missed: far more than a period of the
+/// modulation takes.
+const PATIENCE: u32 = 100_000;
+
+/// The bridge with a load at its outputs.
+pub struct Load {
+    current_loop: &'static CurrentLoop,
+}
+
+impl Load {
+    /// Everything set up and TIM1 counting, with the gates low.
+    pub fn new(current_loop: &'static CurrentLoop) -> Self {
+        pwm::prepare(current_loop);
+        GATES.connect(current_loop.phases());
+        over_current::prepare();
+        sense::prepare();
+        pace::capture_counts();
+        pwm::start();
+        Self { current_loop }
+    }
+
+    /// What is sampled at the next instant; none where there is none.
+    pub fn next(&mut self) -> Option<Sample> {
+        let came = (0..PATIENCE).any(|_| sense::is_converted());
+        came.then(|| {
+            pwm::acknowledge();
+            let currents = sense::currents();
+            let (bus, temperature) = sense::bus_and_temperature();
+            Sample { currents, bus, temperature, position: pace::captured() }
+        })
+    }
+
+    /// Switches the gates on with no voltage, above which the comparators trip as for the current loop; these are
+    /// the counts of the phases U and V without a current.
+    pub fn on(&mut self, zero: [u16; 2]) {
+        over_current::set(zero, self.current_loop.over_current_counts());
+        self.set(self.current_loop.no_voltage());
+        pwm::on();
+    }
+
+    /// Duties from the next instant on.
+    pub fn set(&mut self, duties: Duties) {
+        pwm::set(self.current_loop, duties);
+    }
+
+    /// All gates low, at once.
+    pub fn off(&mut self) {
+        super::off();
+    }
+
+    /// A break as a comparator makes it, by the program.
+    pub fn break_now(&mut self) {
+        pac::TIM1.egr().write(|w| w.set_bg(0, true));
+    }
+
+    /// Whether there was a break.
+    pub fn broke(&self) -> bool {
+        pwm::broke()
+    }
+
+    /// Whether the timer drives the gates.
+    pub fn is_on(&self) -> bool {
+        pac::TIM1.bdtr().read().moe()
+    }
+
+    /// Whether all six inputs of the gate drivers are low at this moment, as the pins have it.
+    pub fn are_gates_low(&self) -> bool {
+        GATES.0.as_flattened().iter().all(Gate::is_low)
+    }
+}

@@ -1,0 +1,198 @@
+//! The current of a duty that stands still, in a load of known resistance and inductance: what has to be read
+//! before the power stage drives a motor (theory, section 15.9).
+
+use core::fmt;
+
+use super::current_loop::CurrentLoop;
+use super::error::DriveError;
+use super::motor::{Drive, Winding};
+use super::power_stage::PowerStage;
+use super::sample::Duties;
+use crate::text::Text;
+
+/// By how much more or less than its time the dead time may take, relatively: switches take time too.
+const DEAD_TIME_TOLERANCE: f64 = 0.5;
+
+/// Time constants after which a current counts as settled: what is left is below a count.
+const SETTLING: f64 = 10.0;
+
+/// The current that settles at a duty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DutyCurrent {
+    /// The least in A that it may be.
+    pub least: f64,
+    /// The most in A.
+    pub most: f64,
+    /// Instants until it has settled.
+    pub settling: u32,
+}
+
+/// Why there is no such current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DutyError {
+    /// A number is zero, negative or not finite.
+    Drive(DriveError),
+    /// A load has two terminals.
+    Brushless,
+    /// The tolerance is not between 0 and 1.
+    Tolerance(f64),
+    /// The dead time takes all of the duty, or the low sides are given no time.
+    Duty {
+        /// The duty.
+        duty: f64,
+        /// What it has to be above.
+        least: f64,
+        /// The most that it may be.
+        most: f64,
+    },
+    /// The board does not bear it.
+    Current {
+        /// The current in A that it may be.
+        current: f64,
+        /// The most in A that the board bears.
+        largest: f64,
+    },
+}
+
+impl Drive {
+    /// The current in A at a duty, the part of the supply that is between the terminals U and V, with a winding
+    /// that stands still or a load in its place. Resistance and inductance may be off by this `tolerance`.
+    ///
+    /// In each period of the modulation the dead time takes twice its part of the supply away. Of the ripple
+    /// nothing is seen in the middle of the low sides.
+    ///
+    /// # Errors
+    /// Where a number is none, or out of its bound.
+    pub const fn current_at_duty(
+        &self,
+        stage: &PowerStage,
+        instant: f64,
+        duty: f64,
+        tolerance: f64,
+    ) -> Result<DutyCurrent, DutyError> {
+        if let Err(error) = self.check_load(instant, tolerance) {
+            return Err(error);
+        }
+        let dead = 2.0 * stage.dead_time / instant;
+        let (least, most) =
+            (dead * (1.0 + DEAD_TIME_TOLERANCE), 1.0 - 2.0 * stage.shortest_low / instant);
+        // Written so that NaN is refused.
+        let is_between = duty > least && duty <= most;
+        if !is_between {
+            return Err(DutyError::Duty { duty, least, most });
+        }
+        let (resistance, inductance) = (self.motor.resistance, self.motor.inductance);
+        let (high, low) = (1.0 + tolerance, 1.0 - tolerance);
+        let current = DutyCurrent {
+            least: self.supply.lowest * (duty - least) / (resistance * high),
+            most: self.supply.highest * (duty - dead * (1.0 - DEAD_TIME_TOLERANCE))
+                / (resistance * low),
+            // The cast rounds a positive number down.
+            settling: (SETTLING * inductance * high / (resistance * low * instant)) as u32 + 1,
+        };
+        if current.most > stage.largest_current {
+            let (current, largest) = (current.most, stage.largest_current);
+            return Err(DutyError::Current { current, largest });
+        }
+        Ok(current)
+    }
+
+    const fn check_load(&self, instant: f64, tolerance: f64) -> Result<(), DutyError> {
+        if !matches!(self.motor.winding, Winding::Brushed) {
+            return Err(DutyError::Brushless);
+        }
+        let is_part = tolerance >= 0.0 && tolerance < 1.0;
+        if !is_part {
+            return Err(DutyError::Tolerance(tolerance));
+        }
+        let numbers = [
+            ("load's resistance", self.motor.resistance),
+            ("load's inductance", self.motor.inductance),
+            ("lowest supply", self.supply.lowest),
+            ("highest supply", self.supply.highest),
+            ("period of the modulation", instant),
+        ];
+        let mut i = 0;
+        while i < numbers.len() {
+            if let Err(error) = DriveError::unless_positive(numbers[i].0, numbers[i].1) {
+                return Err(DutyError::Drive(error));
+            }
+            i += 1;
+        }
+        Ok(())
+    }
+
+    /// The same for constants.
+    ///
+    /// # Panics
+    /// Where there is no such current; in a constant that is a compile error with the sentence.
+    #[track_caller]
+    pub const fn checked_current_at_duty(
+        &self,
+        stage: &PowerStage,
+        instant: f64,
+        duty: f64,
+        tolerance: f64,
+    ) -> DutyCurrent {
+        match self.current_at_duty(stage, instant, duty, tolerance) {
+            Ok(current) => current,
+            Err(error) => panic!("{}", error.sentence().as_str()),
+        }
+    }
+}
+
+impl CurrentLoop {
+    /// Compare values of a duty, the part of the supply from U to V, from -1 to 1: the nearest that leave the low
+    /// sides their time.
+    pub const fn duties_at(&self, duty: f64) -> Duties {
+        let span = self.output.span as f32;
+        let difference = duty as f32 * self.timing.counts as f32;
+        self.timing.between_two(difference.clamp(-span, span))
+    }
+
+    /// Current in A between U and V, of the difference of the two phases' counts above those without a current.
+    pub const fn current_between_two(&self, difference: f32) -> f32 {
+        self.law.between_two(difference)
+    }
+}
+
+impl DutyError {
+    /// The error as a sentence.
+    pub const fn sentence(&self) -> Text<320> {
+        let mut t = Text::new();
+        match self {
+            Self::Drive(error) => return error.sentence(),
+            Self::Brushless => {
+                t.push("a load has two terminals: state it as the winding of a brushed motor")
+            }
+            Self::Tolerance(tolerance) => {
+                t.push("the tolerance must be from 0 to below 1, and is ");
+                t.push_number(*tolerance);
+            }
+            Self::Duty { duty, least, most } => {
+                t.push("the duty must be above ");
+                t.push_number(*least);
+                t.push(", which the dead time may take, and at most ");
+                t.push_number(*most);
+                t.push(", which leaves the low sides their time, and is ");
+                t.push_number(*duty);
+            }
+            Self::Current { current, largest } => {
+                t.push("the load may take ");
+                t.push_number(*current);
+                t.push(" A, and the power stage bears ");
+                t.push_number(*largest);
+                t.push(" A: take a larger resistance, a lower supply or a smaller duty");
+            }
+        }
+        t
+    }
+}
+
+impl fmt::Display for DutyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.sentence().as_str())
+    }
+}
+
+impl core::error::Error for DutyError {}
