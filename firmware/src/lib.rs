@@ -1,10 +1,74 @@
 //! Haptic servo firmware for one axis whose scenes are certified passive.
 //!
-//! The modules are in the order of the data's path: counts come in at [`encoder`], leave at
-//! [`dac`]; [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
+//! A scene is a constant of numbers in SI units: the device, the timing, the virtual coupling, the environment.
+//! Its certificate is a proof, computed in `const fn`, that no passive hand can make the rendering oscillate. A
+//! scene without a certificate does not compile:
 //!
-//! "Theory, section 4" and "equation 17" are those of `THEORY.md` beside this folder, "the paper" the
-//! one that it names.
+//! ```
+//! use firmware::certificate::Certified;
+//! use firmware::environment::DelayedSpring;
+//! use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+//!
+//! const SPRING: Certified<Scene<DelayedSpring<1>>> = Scene {
+//!     device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+//!     timing: Timing { period: 0.001, worst_period: None },
+//!     coupling: Coupling::Spring { stiffness: 44.0 },
+//!     environment: DelayedSpring { stiffness: 22.0 }, // with 220.0 this does not compile
+//!     latency: Latency::NONE,
+//!     torque_limit: None,
+//! }
+//! .certified();
+//!
+//! assert!(SPRING.assessment().alpha_coupled.unwrap().hi() < 0.0111); // K T / 2
+//! ```
+//!
+//! # How much of it to use
+//!
+//! | what | begin with |
+//! |---|---|
+//! | the certificate alone, for a control loop of your own | [`certificate`], `examples/verify_only.rs` |
+//! | the servo, from a count to a code, on the host too | [`servo::Servo`], `examples/servo_on_host.rs` |
+//! | the interrupt, on a board of your own | [`servo_loop::Hardware`], [`boot::Startup`] |
+//! | the same with the host's link | `wire`, with the feature of that name |
+//! | an environment of your own | [`environment::StatedEnvironment`] |
+//! | a board that is there | [`scene_program!`], with the board's feature |
+//!
+//! The modules are in the order of the data's path: counts come in at [`encoder`], leave at [`dac`];
+//! [`passivity`] and [`certificate`] judge what runs; [`scene`] and [`servo`] carry it.
+//!
+//! # Features
+//!
+//! None is on by default. Those of boards are for the bare-metal target `thumbv7em-none-eabihf`, and a program
+//! has one of them.
+//!
+//! | feature | what it is for |
+//! |---|---|
+//! | `wire` | parameters and telemetry over a serial line: messages, frames, the board's end |
+//! | `fixed-point` | programs compute in their scene's fixed-point format instead of `f32` |
+//! | `nucleo-g474re` | board: NUCLEO-G474RE, with a current amplifier outside |
+//! | `b-g431b-esc1` | board: B-G431B-ESC1 |
+//! | `stm32f405` | board: STM32F405, as on a VESC 6 |
+//! | `bridge` | the board's own bridge drives the motor: B-G431B-ESC1 |
+//! | `board-qemu` | the emulated board |
+//! | `log` | measurements and their log, on the emulated board |
+//! | `on-target` | tests that run on a board |
+//! | `stm32`, `fast-memory` | parts of the boards' features; of no use alone |
+//!
+//! # What is stable
+//!
+//! Versions follow semantic versioning. Before 1.0 a minor version may break the interface, and a patch does
+//! not. A certificate may become less conservative in any version; where one would turn out to be wrong, a patch
+//! refuses what it had accepted. Exempt are the texts of errors and reports, what is hidden from this
+//! documentation, and all in [`board`] but [`scene_program!`] and [`sweep_program!`]. The messages of `wire`
+//! have a version of their own, which board and host compare.
+//!
+//! The minimum supported Rust version is 1.95. A minor version may raise it.
+//!
+//! # Where to read on
+//!
+//! `THEORY.md` beside this folder has definitions and proofs: "theory, section 4" and "equation 17" are its own,
+//! "the paper" the one that it names. `PROTOCOL.md` has the wire, `boards.md` the boards. In the repository,
+//! `firmware/own-board` is a board of another crate, `firmware/own-environment` an environment.
 #![cfg_attr(not(test), no_std)]
 #![deny(unsafe_code)]
 // A rejection carries all its numbers, and there is no heap to put them on.
@@ -59,6 +123,11 @@ pub mod text;
 pub mod wire;
 
 pub mod board;
+
+/// The page of the package, so that its example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 /// What a program's macros name besides this crate, for programs of crates that depend on nothing else.
 #[cfg(all(target_os = "none", any(feature = "board-qemu", feature = "stm32")))]

@@ -16,6 +16,17 @@ pub const SHORTEST: f64 = 1e-5;
 /// The longest period in s that the watchdog has its patience with.
 pub const LONGEST: f64 = (WATCHDOG_LONGEST - 1.0) / WATCHDOG_CLOCK / PATIENCE;
 
+/// The count that a watchdog of an STM32 starts from, to reset the board after [`PATIENCE`] periods of this
+/// many seconds without a tick.
+///
+/// ```
+/// assert_eq!(firmware::period::watchdog_counts(0.001), 65);
+/// ```
+pub const fn watchdog_counts(seconds: f64) -> u16 {
+    // A count more covers the cast's rounding.
+    (PATIENCE * seconds * WATCHDOG_CLOCK + 1.0) as u16
+}
+
 /// Rejects any other period.
 ///
 /// # Errors

@@ -45,7 +45,9 @@ impl<E: Discretize<N>, N: Number, M: OutputMode> ServoLoop<E, N, M> {
 
     fn arm(&mut self, hardware: &mut impl Hardware, inbox: &mut Inbox<'_, PreparedServo<E, N, M>>) {
         if self.state == State::Aligning {
-            return inbox.notify(Notice::NotArmed(Fault::Power(PowerFault::NotAligned)));
+            return inbox.notify(Notice::NotArmed(Fault::Power(PowerFault::NotAligned {
+                by_index: false,
+            })));
         }
         if !self.state.is_armed() {
             if let Some(fault) = self.persistent_fault() {

@@ -8,17 +8,19 @@
 pub mod decoder;
 pub mod description;
 pub mod frame;
+mod link;
 pub mod message;
 pub mod session;
 pub mod telemetry;
 
 pub use decoder::{Decoder, Discarded};
 pub use frame::{CHECKSUM, TooLong, encode, largest_frame};
+pub use link::{BroughtUp, Link, Port, bring_up};
 pub use session::{BoardInfo, Session};
 
 /// Version of the messages. Board and host must have the same; [`message::ToBoard::Hello`] and
 /// [`message::ToHost::Welcome`] begin alike in all versions, so that each can say which it has.
-pub const PROTOCOL: u16 = 6;
+pub const PROTOCOL: u16 = 7;
 
 #[cfg(test)]
 mod tests;

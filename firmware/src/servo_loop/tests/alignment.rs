@@ -49,7 +49,10 @@ fn disarming_ends_it_and_arming_waits_for_its_end() {
     let mut bench = aligning(100);
     bench.requests.arm();
     bench.stand(0, 1);
-    assert_eq!(bench.notices(), [Notice::NotArmed(Fault::Power(PowerFault::NotAligned))]);
+    assert_eq!(
+        bench.notices(),
+        [Notice::NotArmed(Fault::Power(PowerFault::NotAligned { by_index: false }))]
+    );
     assert_eq!(bench.servo_loop.state(), State::Aligning);
     bench.requests.disarm();
     bench.stand(0, 1);

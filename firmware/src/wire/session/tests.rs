@@ -9,6 +9,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::certificate::Parameter;
+use crate::current::IndexOffset;
 use crate::dac::DacCode;
 use crate::encoder::{CounterWidth, RawCount};
 use crate::environment::{
@@ -73,8 +74,13 @@ impl Hardware for Still {
 type Said = ToHost<String>;
 
 /// Of a board with a bridge; the numbers are as long as they get.
-const READING: PowerReading =
-    PowerReading { current: i32::MIN, reference: 400, voltage: u32::MAX, temperature: i32::MIN };
+const READING: PowerReading = PowerReading {
+    current: i32::MIN,
+    reference: 400,
+    voltage: u32::MAX,
+    temperature: i32::MIN,
+    index: Some(IndexOffset { counts: u32::MAX, is_reversed: true }),
+};
 
 /// Frames that wait.
 const FRAMES: usize = 32;

@@ -1,0 +1,85 @@
+//! Only the certificate, in somebody else's control loop: the loop computes by itself, in its own units, and has
+//! its numbers from a constant that was certified.
+//!
+//! The certificate is about a law and not about code. What the loop computes must be that law: here a spring
+//! that is one sample late, behind a virtual coupling, with a limited torque, in `f32`.
+
+use firmware::certificate::Certified;
+use firmware::environment::DelayedSpring;
+use firmware::number::Format;
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+
+/// The loop's law, as the certificate has it.
+pub const SPRING: Scene<DelayedSpring<1>> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: DelayedSpring { stiffness: 20.0 },
+    latency: Latency::NONE,
+    torque_limit: Some(0.3),
+};
+
+/// Certified with the numbers as the loop's `f32` rounds it. The loop has its numbers from here and from
+/// nowhere else, so that none can be changed without a certificate.
+pub const CERTIFIED: Certified<Scene<DelayedSpring<1>>> =
+    SPRING.certified().certified_in(Format::F32);
+
+const STIFFNESS: f32 = CERTIFIED.scene().environment.stiffness as f32;
+const COMPLIANCE: f32 = match CERTIFIED.scene().coupling {
+    Coupling::Spring { stiffness } => (1.0 / stiffness) as f32,
+    _ => panic!("this loop has a coupling that is a spring"),
+};
+const LIMIT: f32 = match CERTIFIED.scene().torque_limit {
+    Some(limit) => limit as f32,
+    None => f32::INFINITY,
+};
+
+/// Somebody else's control loop: nothing of the library is in it.
+#[derive(Default)]
+pub struct ControlLoop {
+    /// Where the spring's end behind the coupling was in the sample before, in rad.
+    late: f32,
+}
+
+impl ControlLoop {
+    /// The motor's torque in N m for this period.
+    pub fn update(&mut self, angle: f32) -> f32 {
+        let force = (STIFFNESS * self.late).clamp(-LIMIT, LIMIT);
+        self.late = angle - force * COMPLIANCE;
+        -force
+    }
+}
+
+/// The device of the scene, in steps of 10 microseconds.
+#[derive(Default)]
+struct SimulatedDevice {
+    angle: f64,
+    speed: f64,
+}
+
+impl SimulatedDevice {
+    fn turn(&mut self, torque: f64) {
+        const STEPS: u32 = 100;
+        let Device { inertia, damping, .. } = SPRING.device;
+        let step = SPRING.timing.period / f64::from(STEPS);
+        for _ in 0..STEPS {
+            self.speed += (torque - damping * self.speed) / inertia * step;
+            self.angle += self.speed * step;
+        }
+    }
+}
+
+/// Runs the loop against the device.
+pub fn main() {
+    let (mut servo, mut device) = (ControlLoop::default(), SimulatedDevice::default());
+    println!("ms   angle/rad   torque/(N m)");
+    for tick in 1..=60 {
+        let torque = servo.update(device.angle as f32);
+        if tick % 10 == 0 {
+            println!("{tick:2}   {:9.4}   {torque:12.4}", device.angle);
+        }
+        // A hand pushes for 30 ms and lets go.
+        let hand = if tick <= 30 { 0.25 } else { 0.0 };
+        device.turn(f64::from(torque) + hand);
+    }
+}

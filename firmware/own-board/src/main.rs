@@ -1,0 +1,23 @@
+//! A program for a board that is not in the firmware. On the host it prints the certificate of its scene.
+//!
+//! - `board.rs` is the board as the servo sees it, and its interrupts.
+//! - `chip.rs` sets the chip up, and `serial.rs` is its port to the host.
+//! - `scene.rs` is what it renders, which does not know the board.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
+mod chip;
+pub mod scene;
+#[cfg(target_os = "none")]
+mod serial;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    use firmware::board::report::Report;
+    use firmware::certificate::Resolution;
+
+    let resolution = Resolution::of(&scene::PROGRAM.transducers, None);
+    print!("{}", Report::new(&scene::CERTIFIED, &resolution, scene::PROGRAM.rendering.injection));
+}

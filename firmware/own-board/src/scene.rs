@@ -1,0 +1,44 @@
+//! What the hand feels, and on which device: a wall of spring and damper at 1 kHz.
+
+use firmware::boot::Program;
+use firmware::certificate::{Certified, TimingChecked};
+use firmware::encoder::CounterWidth;
+use firmware::environment::{DamperWall, OneSided};
+use firmware::number::Format;
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+use firmware::servo::{Latched, RenderingOptions, Transducers};
+use firmware::servo_loop::Options;
+
+/// What the hand feels.
+pub type Environment = OneSided<DamperWall<1>>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: OneSided { face: 0.0, wall: DamperWall { stiffness: 22.0, damping: 0.01 } },
+    latency: Latency::NONE,
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate, of the coefficients as `f32` rounds them: a scene that could oscillate in a hand stops
+/// the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified().certified_in(Format::F32);
+
+/// The scene is as late as a DAC that a timer latches: where it is not, this does not compile.
+pub const TIMED: TimingChecked<Scene<Environment>, Latched> = CERTIFIED.timing_checked::<Latched>();
+
+/// What the board runs. Numbers that no board could run with do not compile.
+pub const PROGRAM: Program<Environment> = Program {
+    scene: *TIMED.scene(),
+    transducers: Transducers {
+        counts_per_turn: 61_440.0,
+        counter: CounterWidth::Bits16,
+        full_scale_torque: 2.0,
+        largest_speed: 100.0,
+    },
+    rendering: RenderingOptions::DEFAULT,
+    options: Options::DEFAULT,
+}
+.checked();

@@ -1,0 +1,66 @@
+//! The servo's periods that have begun, by a clock that never stops. Belongs to what paces the servo.
+
+use core::hint::cold_path;
+use core::num::NonZeroU32;
+
+use super::BEGAN_LATE;
+
+/// Counts the periods by a clock that wraps at 32 bits and was zero when the first one began, after which no
+/// tick is due for a period.
+///
+/// ```
+/// use core::num::NonZeroU32;
+/// use firmware::servo_loop::{BEGAN_LATE, PeriodClock};
+///
+/// let mut periods = PeriodClock::new(NonZeroU32::new(1000).unwrap(), 10);
+/// assert_eq!(periods.begun_by(1009), 1); // in time: 9 counts after its beginning
+/// assert_eq!(periods.elapsed_at(1300), 300);
+/// assert_eq!(periods.begun_by(2010), BEGAN_LATE);
+/// assert_eq!(periods.begun_by(5009), 3); // two ticks were missed
+/// assert_eq!(periods.begun_by(6000), 1);
+/// ```
+#[derive(Clone, Debug)]
+pub struct PeriodClock {
+    /// Clock counts in a period.
+    counts: NonZeroU32,
+    /// Clock counts after its beginning in which a period counts as in time.
+    in_time: u32,
+    /// The clock when the present period began.
+    began: u32,
+}
+
+impl PeriodClock {
+    /// Periods of this many clock counts, each in time within so many counts:
+    /// [`READ_WITHIN`](super::READ_WITHIN) of them for a board whose certificate is to hold.
+    pub const fn new(counts: NonZeroU32, in_time: u32) -> Self {
+        Self { counts, in_time, began: 0 }
+    }
+
+    /// The periods that had begun at this time of the clock, since this was last asked: what
+    /// [`Hardware::periods_since_last`](super::Hardware::periods_since_last) gives.
+    #[inline(always)]
+    pub fn begun_by(&mut self, time: u32) -> u32 {
+        let next = self.began.wrapping_add(self.counts.get());
+        let late = time.wrapping_sub(next);
+        if late < self.in_time {
+            self.began = next;
+            return 1;
+        }
+        cold_path();
+        let missed = late / self.counts;
+        self.began = next.wrapping_add(missed.wrapping_mul(self.counts.get()));
+        if missed == 0 { BEGAN_LATE } else { missed + 1 }
+    }
+
+    /// Clock counts in a period.
+    pub const fn counts(&self) -> u32 {
+        self.counts.get()
+    }
+
+    /// Clock counts since the present period began: what
+    /// [`Hardware::time_in_period`](super::Hardware::time_in_period) gives.
+    #[inline(always)]
+    pub const fn elapsed_at(&self, time: u32) -> u32 {
+        time.wrapping_sub(self.began)
+    }
+}

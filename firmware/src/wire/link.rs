@@ -1,0 +1,85 @@
+//! A board's serial port with the board's end of the wire at it.
+
+use super::{BoardInfo, Session};
+use crate::boot::{Booted, Program, Startup, boot};
+use crate::environment::Discretize;
+use crate::number::Number;
+use crate::servo::{OutputMode, Step, SupportsTiming};
+use crate::servo_loop::{Endpoints, FRAMES, ServoIsr};
+use crate::tuning::Tunable;
+
+/// A serial port that never waits.
+pub trait Port {
+    /// Reads received bytes, as far as there is room; returns their number.
+    fn read(&mut self, bytes: &mut [u8]) -> usize;
+    /// Sends as many of the bytes as there is room for; gives their number.
+    fn write(&mut self, bytes: &[u8]) -> usize;
+}
+
+/// A port with a session at it.
+pub struct Link<P, E: Discretize<N> + 'static, N: Number, M: 'static> {
+    /// The port.
+    pub port: P,
+    /// Its session.
+    pub session: Session<'static, E, N, M, FRAMES>,
+}
+
+/// Bytes that are taken at once: at most what arrives within a millisecond or so.
+const PIECE: usize = 64;
+
+impl<P: Port, E, N, M> Link<P, E, N, M>
+where
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
+    /// Hears what has come, answers one thing, and sends what fits. To be called over and over,
+    /// below the servo's priority.
+    pub fn poll(&mut self) {
+        let mut bytes = [0; PIECE];
+        let count = self.port.read(&mut bytes);
+        self.session.receive(bytes.get(..count).unwrap_or_default());
+        self.session.poll();
+        let sent = self.port.write(self.session.outgoing());
+        self.session.sent(sent);
+    }
+}
+
+/// The interrupt's state, and the link below it.
+pub type BroughtUp<H, P, E, N, M> = (ServoIsr<H, E, N, M>, Link<P, E, N, M>);
+
+/// Everything from reset to the first tick of a board, which then has to begin its periods, call
+/// [`ServoIsr::tick`] in each, and [`Link::poll`] over and over below it. The servo stays off until the host
+/// arms it, unless its program arms it at power-on, and this is one.
+///
+/// `name` is the program's. The package `own-board` is a board that begins like this.
+///
+/// # Errors
+/// Where the board refuses the scene: the step of the self-check that failed. The amplifier is then off.
+pub fn bring_up<H, P, E, N, M>(
+    name: &'static str,
+    program: Program<E>,
+    mut hardware: H,
+    port: P,
+    endpoints: Endpoints<E, N, M>,
+) -> Result<BroughtUp<H, P, E, N, M>, Step>
+where
+    H: Startup,
+    E: Tunable<N> + SupportsTiming<M>,
+    N: Number,
+    M: OutputMode,
+{
+    let Endpoints { requests, inbox, frames, frame_reader } = endpoints;
+    let Booted { servo_loop, margin, reset, previous_fault, .. } =
+        boot(&program, &mut hardware, &requests)?;
+    let info = BoardInfo {
+        name,
+        timer_counts: hardware.period(),
+        reset,
+        previous_fault,
+        stack_left: || None,
+        power: || None,
+    };
+    let session = Session::new(program, margin, info, requests, frame_reader);
+    Ok((ServoIsr { servo_loop, hardware, inbox, frames }, Link { port, session }))
+}
