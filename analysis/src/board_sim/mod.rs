@@ -24,9 +24,10 @@ use firmware::wire::{BoardInfo, Session};
 
 use self::listener::Listener;
 use self::plant_hardware::PlantHardware;
+pub use self::virtual_board_server::DrivingBoard;
 use crate::link::Address;
 use crate::lockstep::PlantIo;
-use crate::virtual_board::{VirtualBoard, VirtualBoardError};
+use crate::virtual_board::VirtualBoardError;
 
 /// Timer counts in a period: a 170 MHz timer at 1 kHz.
 const TIMER_COUNTS: u32 = 170_000;
@@ -103,8 +104,7 @@ impl SimulatedBoard {
     /// # Errors
     /// Where the address cannot be listened at.
     pub fn from_virtual_board(
-        board: VirtualBoard,
-        plant: Box<dyn PlantIo + Send>,
+        board: DrivingBoard,
         address: &Address,
         pacing: Pacing,
         period: f64,
@@ -113,9 +113,8 @@ impl SimulatedBoard {
         let ended = Arc::new(AtomicBool::new(false));
         let over = ended.clone();
         let period = (pacing == Pacing::RealTime).then(|| Duration::from_secs_f64(period));
-        let thread = thread::spawn(move || {
-            Ok(virtual_board_server::serve(board, plant, listener, period, &over)?)
-        });
+        let thread =
+            thread::spawn(move || Ok(virtual_board_server::serve(board, listener, period, &over)?));
         Ok(Self { address, ended, thread: Some(thread) })
     }
 

@@ -6,35 +6,81 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::listener::Listener;
+use crate::bridge_board::BridgeBoard;
 use crate::lockstep::PlantIo;
+use crate::shaft::HandHeldShaft;
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// Bytes to the board with one sample: more than its port takes in a sample.
 const BYTES_PER_SAMPLE: usize = 1024;
 
+/// A virtual board and what it drives.
+pub enum DrivingBoard {
+    /// By its DAC.
+    Dac {
+        /// The board.
+        board: VirtualBoard,
+        /// What it drives.
+        plant: Box<dyn PlantIo + Send>,
+        /// The count that the board has not been told yet; none before the first sample.
+        count: Option<i32>,
+    },
+    /// By its own bridge.
+    Bridge {
+        /// The board.
+        board: BridgeBoard,
+        /// What the motor turns. The hand is off it while the motor is aligned.
+        shaft: Box<HandHeldShaft>,
+    },
+}
+
+impl DrivingBoard {
+    /// Runs a sample, with bytes to the serial port; those that it has sent.
+    fn sample(&mut self, bytes: &[u8]) -> Result<Vec<u8>, VirtualBoardError> {
+        match self {
+            Self::Dac { board, plant, count } => {
+                if let Some(count) = *count {
+                    board.answer(count, bytes)?;
+                }
+                let sample = board.sample()?;
+                plant.hold(sample.applied_code());
+                // A recording that has ended stands still.
+                *count = Some(plant.count().or(*count).unwrap_or(0));
+                Ok(sample.sent)
+            }
+            Self::Bridge { board, shaft } => {
+                let sample = board.period(shaft.as_mut(), bytes)?;
+                shaft.let_go(sample.is_aligning);
+                Ok(sample.sent.clone())
+            }
+        }
+    }
+
+    fn finish(self) -> Result<(), VirtualBoardError> {
+        match self {
+            Self::Dac { board, .. } => board.finish().map(drop),
+            Self::Bridge { board, .. } => board.finish().map(drop),
+        }
+    }
+}
+
 /// Runs a board's samples as a real one's would pass, or all that it can where `period` is none.
 pub(super) fn serve(
-    mut board: VirtualBoard,
-    mut plant: Box<dyn PlantIo + Send>,
+    mut board: DrivingBoard,
     mut listener: Listener,
     period: Option<Duration>,
     over: &AtomicBool,
 ) -> Result<(), VirtualBoardError> {
     let (mut to_board, mut to_host) = (VecDeque::new(), Vec::new());
-    let (mut count, mut next) = (0, Instant::now());
+    let mut next = Instant::now();
     while !over.load(Ordering::Relaxed) {
-        let sample = board.sample()?;
-        plant.hold(sample.applied_code());
-        // A recording that has ended stands still.
-        count = plant.count().unwrap_or(count);
-        to_host.extend(sample.sent);
-        to_board.extend(listener.carry_bytes(&mut to_host));
         let bytes: Vec<u8> = to_board.drain(..to_board.len().min(BYTES_PER_SAMPLE)).collect();
-        board.answer(count, &bytes)?;
+        to_host.extend(board.sample(&bytes)?);
+        to_board.extend(listener.carry_bytes(&mut to_host));
         if let Some(period) = period {
             next += period;
             thread::sleep(next.saturating_duration_since(Instant::now()));
         }
     }
-    board.finish().map(drop)
+    board.finish()
 }

@@ -68,8 +68,7 @@ fn distortion(
     // Torque that moves the device by so many counts at a multiple of the frequency.
     let felt = |order: usize, counts: f64| {
         let omega = order as f64 * step.omega;
-        let (b, m) = (found.damping.value, found.inertia.value);
-        counts * correction.count_angle * omega * b.hypot(omega * m)
+        counts * correction.count_angle * omega * found.model.device(omega).norm()
     };
     let harmonic = (2..=ORDERS)
         .filter(|order| *order as f64 * angle < 0.95 * std::f64::consts::PI)

@@ -84,11 +84,18 @@ impl Identification {
         self.misfit <= RIGID
     }
 
-    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device. `None`
+    /// Damping in N m s/rad that motion takes through the board's own current loop; none with an amplifier outside.
+    pub fn motion_loss(&self) -> f64 {
+        self.model.source.map_or(0.0, |source| source.loss)
+    }
+
+    /// `delta` to certify with, in N m s/rad: the lower end of the damping of a rigid device, less what motion
+    /// takes through the board's own current loop. `None`
     /// where that is not positive, and for a device that is not rigid: no hand held it, and its
     /// damping in a hand cannot be measured from the motor alone (theory, section 3.2).
     pub fn passivity(&self) -> Option<f64> {
-        (self.is_rigid() && self.damping.lo > 0.0).then_some(self.damping.lo)
+        let passivity = self.damping.lo - self.motion_loss();
+        (self.is_rigid() && passivity > 0.0).then_some(passivity)
     }
 }
 
@@ -112,7 +119,8 @@ pub fn identify(
     if usable < 3 {
         return Err(too_few(left_out));
     }
-    let measured = Measured { responses: &responses, period, declared: correction.delay() };
+    let (declared, source) = (correction.delay(), correction.source);
+    let measured = Measured { responses: &responses, period, declared, source };
     let Some(profile) = Profile::of(&measured, correction.longest_lag) else {
         return Err(too_few(left_out));
     };

@@ -1,5 +1,6 @@
 //! Damping, inertia and delay of the device that is nearest to some responses, for a lag that is given.
 
+use firmware::current::TorqueSource;
 use nalgebra::{Complex, Matrix3, Vector3};
 
 use super::model::Model;
@@ -38,6 +39,8 @@ pub struct Measured<'a> {
     pub period: f64,
     /// Delays in s that were taken out of the responses, which have theirs of the images still.
     pub declared: f64,
+    /// The current loop that the torque came from, where it is known.
+    pub source: Option<TorqueSource>,
 }
 
 /// The nearest device.
@@ -82,7 +85,7 @@ impl Measured<'_> {
         };
         // For a given delay the problem is linear; a delay of a device that has no inertia yet would
         // do nothing: so in turn.
-        let nothing = Model { damping: 0.0, inertia: 0.0, delay: begin, lag };
+        let nothing = self.nothing(begin, lag);
         let mut model = moved(nothing, System::at(self, &nothing, false, false).step()?);
         let mut system = System::at(self, &model, is_free, true);
         for _ in 0..ITERATIONS {
@@ -98,6 +101,11 @@ impl Measured<'_> {
         let deviations = [deviations[DAMPING], deviations[INERTIA], of_delay];
         let squares = system.squares;
         is_usable.then_some(Fit { model, squares, deviations, is_delay_free: is_free })
+    }
+
+    /// No device behind this delay and this lag in s.
+    fn nothing(&self, delay: f64, lag: f64) -> Model {
+        Model { damping: 0.0, inertia: 0.0, delay, lag, source: self.source }
     }
 
     /// A step that does not raise the squares, and where it leads: responses that no device explains send
@@ -123,7 +131,7 @@ impl Measured<'_> {
         let last = ((LAST - FIRST) * self.period / step).ceil() as usize;
         let candidates = (0..=last).map(|i| FIRST * self.period + i as f64 * step);
         let squares = |delay: f64| {
-            let nothing = Model { damping: 0.0, inertia: 0.0, delay, lag: 0.0 };
+            let nothing = self.nothing(delay, 0.0);
             let model = moved(nothing, System::at(self, &nothing, false, false).step()?);
             // A device that is late by half a turn has all signs changed.
             let squares = System::at(self, &model, false, false).squares;

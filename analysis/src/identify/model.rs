@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
+use firmware::current::TorqueSource;
 use nalgebra::Complex;
+
+use super::torque_source;
 
 /// Images of a held sine on each side that are summed: what is left out is below 1e-5 of a response
 /// at a quarter of the sampling rate, and falls with the third power of the frequency.
 const IMAGES: i32 = 40;
 
-/// `1/J = (b + j w m) (1 + j w tau) e^(j w d)`.
+/// `1/J = (b + j w m + Z) (1 + j w tau) e^(j w d)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// Damping `b` in N m s/rad.
@@ -19,12 +22,22 @@ pub struct Model {
     pub delay: f64,
     /// Time constant `tau` in s of the amplifier.
     pub lag: f64,
+    /// The current loop of a board's own bridge, which makes `Z`; `None` of an amplifier outside.
+    pub source: Option<TorqueSource>,
 }
 
 impl Model {
     /// The inverse response in N m s/rad at an angular frequency in rad/s.
     pub fn impedance(&self, omega: f64) -> Complex<f64> {
-        Complex::new(self.damping, omega * self.inertia) * self.output(omega)
+        self.device(omega) * self.output(omega)
+    }
+
+    /// The part of it that is the device's, with what its motion moves through the current loop.
+    pub fn device(&self, omega: f64) -> Complex<f64> {
+        let path = self
+            .source
+            .map_or(Complex::from(0.0), |source| torque_source::impedance(&source, omega));
+        Complex::new(self.damping, omega * self.inertia) + path
     }
 
     /// The part of it that is the output's: its lag and its delay.
@@ -60,7 +73,7 @@ mod tests {
     #[test]
     fn images_add_up_to_the_sampled_response() {
         let (b, m, period) = (0.022, 2.2e-5, 1e-3);
-        let model = Model { damping: b, inertia: m, delay: 0.0, lag: 0.0 };
+        let model = Model { damping: b, inertia: m, delay: 0.0, lag: 0.0, source: None };
         for hertz in [1.0, 30.0, 240.0] {
             let (omega, pole) = (TAU * hertz, (-period * b / m).exp());
             let z = Complex::from_polar(1.0, omega * period);

@@ -3,9 +3,11 @@
 use std::io;
 use std::time::{Duration, Instant};
 
+use firmware::current::TorqueSource;
 use firmware::excitation::{SILENCE, SWEEP_PROTOCOL, SweepEnd, byte};
 use thiserror::Error;
 
+use super::torque_source;
 use crate::link::{Address, LinkError, Transport, is_timeout, open};
 
 /// Timeout for a board's description, and between rows.
@@ -30,6 +32,8 @@ pub struct Description {
     pub travel: f64,
     /// The limit of speed in rad/s.
     pub speed: f64,
+    /// The current loop of a board whose own bridge drives the motor.
+    pub source: Option<TorqueSource>,
 }
 
 /// What a board has sent.
@@ -185,8 +189,14 @@ impl SweepPort {
     pub fn open(address: &Address) -> Result<Self, PortError> {
         let transport =
             open(address).map_err(|source| LinkError::Open { address: address.clone(), source })?;
-        let description =
-            Description { period: 0.0, counts_per_turn: 0.0, ticks: 0, travel: 0.0, speed: 0.0 };
+        let description = Description {
+            period: 0.0,
+            counts_per_turn: 0.0,
+            ticks: 0,
+            travel: 0.0,
+            speed: 0.0,
+            source: None,
+        };
         let (address, rest) = (address.clone(), Vec::new());
         let mut player = Self { address, transport, rest, told: Instant::now(), description };
         player.send_byte(byte::STOP)?;
@@ -293,10 +303,16 @@ impl SweepPort {
     }
 }
 
-/// `PROTOCOL,period,counts per turn,ticks,travel,speed`
+/// `PROTOCOL,period,counts per turn,ticks,travel,speed`, and of a bridge the numbers of its current loop.
 fn describe(fields: &str) -> Option<Description> {
-    let fields: Vec<&str> = fields.split(',').collect();
-    let [protocol, period, counts, ticks, travel, speed] = fields.as_slice() else { return None };
+    let fields: Vec<&str> = fields.splitn(7, ',').collect();
+    let [protocol, period, counts, ticks, travel, speed, rest @ ..] = fields.as_slice() else {
+        return None;
+    };
+    let source = match rest.first() {
+        Some(numbers) => Some(torque_source::parse(numbers)?),
+        None => None,
+    };
     let positive =
         |text: &str| text.parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite());
     (protocol.parse() == Ok(SWEEP_PROTOCOL)).then_some(())?;
@@ -306,6 +322,7 @@ fn describe(fields: &str) -> Option<Description> {
         ticks: ticks.parse().ok()?,
         travel: positive(travel)?,
         speed: positive(speed)?,
+        source,
     })
 }
 
@@ -323,8 +340,18 @@ mod tests {
 
     #[test]
     fn a_description_of_another_version_or_shape_is_none() {
-        assert!(describe("1,0.001,61440,52500,0.7,85").is_some());
-        for wrong in ["2,0.001,61440,52500,0.7,85", "1,0.001,61440", "1,0,61440,52500,0.7,85", ""] {
+        assert!(describe("2,0.001,61440,52500,0.7,85").is_some_and(|it| it.source.is_none()));
+        let bridge =
+            "2,0.001,61440,52500,0.7,85,0.0841,0.6,0.00012,0.25,0.000025,0.00253,0.00427,0.115";
+        assert!(describe(bridge).is_some_and(|it| it.source.is_some()));
+        for wrong in [
+            "1,0.001,61440,52500,0.7,85",
+            "2,0.001,61440",
+            "2,0,61440,52500,0.7,85",
+            "2,0.001,61440,52500,0.7,85,",
+            "2,0.001,61440,52500,0.7,85,0.0841",
+            "",
+        ] {
             assert_eq!(describe(wrong), None, "{wrong}");
         }
     }

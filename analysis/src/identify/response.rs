@@ -1,9 +1,11 @@
 //! The response of the device at one frequency, by least squares over one stretch of sine.
 
+use firmware::current::TorqueSource;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::record::Record;
 use super::step::Step;
+use super::torque_source;
 
 /// Data of the measurement besides the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,13 +20,22 @@ pub struct Correction {
     pub settle: f64,
     /// Longest lag in s that the amplifier may have; half a period where nothing is said.
     pub longest_lag: Option<f64>,
+    /// The current loop of the board's own bridge that the torque came from; `None` where an amplifier made it.
+    pub source: Option<TorqueSource>,
 }
 
 impl Correction {
     /// An encoder of `counts_per_turn`, no delays, and a quarter of each stretch to settle.
     pub fn of_encoder(counts_per_turn: f64) -> Self {
         let count_angle = std::f64::consts::TAU / counts_per_turn;
-        Self { count_angle, torque_delay: 0.0, count_delay: 0.0, settle: 0.25, longest_lag: None }
+        Self {
+            count_angle,
+            torque_delay: 0.0,
+            count_delay: 0.0,
+            settle: 0.25,
+            longest_lag: None,
+            source: None,
+        }
     }
 
     /// Both declared delays together, in s.
@@ -72,7 +83,12 @@ pub fn single_bin(record: &Record, step: &Step, correction: &Correction) -> Opti
     let velocity = Complex::new(0.0, step.omega * correction.count_angle) * counts;
     let admittance = velocity / applied;
     let impedance = 1.0 / admittance;
-    let deviation = impedance.norm() * deviation / counts.norm();
+    // Of the counts, and of the torque, each relative to what there is.
+    let amplitude = torque.norm();
+    let of_torque = correction
+        .source
+        .map_or(0.0, |source| torque_source::deviation(&source, step.omega, amplitude) / amplitude);
+    let deviation = impedance.norm() * (deviation / counts.norm()).hypot(of_torque);
     let usable = impedance.is_finite() && deviation.is_finite() && admittance.is_finite();
     usable.then(|| Response { omega: step.omega, admittance, deviation, counts: counts.norm() })
 }

@@ -8,6 +8,7 @@ use crate::chip::{
 use crate::core::System;
 use crate::core::exceptions::{FIRST_INTERRUPT, SYS_TICK};
 use crate::device::{Device, FixedDevice};
+use crate::encoder_index::EncoderIndex;
 use crate::error::{AccessError, NotModelled};
 use crate::meter::Meter;
 use crate::peripheral::basic_timer::BasicTimer;
@@ -59,6 +60,8 @@ pub struct Board {
     pub phase_timer: BasicTimer,
     /// The encoder's counter.
     pub encoder: Counter,
+    /// The encoder's index, where it has one that is wired.
+    pub index: Option<EncoderIndex>,
     /// The DAC.
     pub dac: Dac,
     /// The serial port.
@@ -106,6 +109,7 @@ impl Board {
             tick_timer: BasicTimer::new(),
             phase_timer: BasicTimer::new(),
             encoder: Counter::new(chip.counter),
+            index: None,
             dac: Dac::new(chip.dac),
             serial: Serial::new(chip.usart),
             power_stage: PowerStage::default(),
@@ -147,6 +151,7 @@ impl Board {
             now: self.now,
             meter: self.meter,
             samples: self.samples,
+            index: self.index,
             broken: self.broken,
             events: self.events.take(),
             gates: self.gates.take(),
@@ -296,10 +301,28 @@ impl Board {
         }
     }
 
-    /// Turns the encoder, where it is wired as the program has set its pins up.
+    /// Turns the encoder, which is counted where it is wired as the program has set its pins up.
     pub fn turn_encoder(&mut self, counts: i32) {
-        if self.is_wired(self.chip.encoder) {
-            self.encoder.turn(counts);
+        let rose = self.index.as_mut().and_then(|index| index.turn(counts));
+        if !self.is_wired(self.chip.encoder) {
+            return;
+        }
+        let before = rose.unwrap_or(0);
+        self.encoder.turn(before);
+        let is_index_wired = self.chip.index.is_some_and(|(pin, function)| {
+            let (port, pin) = pin;
+            self.ports[port].function(pin) == Some(function)
+        });
+        if rose.is_some() && is_index_wired {
+            self.encoder.index();
+        }
+        self.encoder.turn(counts - before);
+    }
+
+    /// The encoder turns by so many counts that its counter loses, as by a bad cable.
+    pub fn lose_counts(&mut self, counts: i32) {
+        if let Some(index) = &mut self.index {
+            index.turn(counts);
         }
     }
 

@@ -58,6 +58,8 @@ pub struct Chip {
     pub gates: Option<&'static [((usize, u32), u32); 6]>,
     /// The encoder's two pins and the alternate function that is its timer.
     pub encoder: ([(usize, u32); 2], u32),
+    /// The pin of the encoder's index and the alternate function that is its timer's channel 3, where there is one.
+    pub index: Option<((usize, u32), u32)>,
     /// The serial port's two pins and the alternate function that is that port.
     pub serial: ([(usize, u32); 2], u32),
     /// The serial port's interrupt.
@@ -194,6 +196,7 @@ pub static NUCLEO_G474RE: Chip = Chip {
     gates: None,
     // TIM2_CH1 and TIM2_CH2.
     encoder: ([(0, 0), (0, 1)], 1),
+    index: None,
     // USART2_TX and USART2_RX.
     serial: ([(0, 2), (0, 3)], 7),
     serial_interrupt: 38,
@@ -241,6 +244,8 @@ pub static B_G431B_ESC1: Chip = Chip {
     configuration: || InertRegisters::new(&[(BREAKS, 0, LOCK_UP_BREAKS)]),
     // TIM4_CH1 and TIM4_CH2.
     encoder: ([(1, 6), (1, 7)], 2),
+    // TIM4_CH3.
+    index: Some(((1, 8), 2)),
     // USART2_TX and USART2_RX.
     serial: ([(1, 3), (1, 4)], 7),
     ..NUCLEO_G474RE
@@ -282,6 +287,7 @@ pub static STM32F405: Chip = Chip {
     gates: None,
     // TIM3_CH1 and TIM3_CH2.
     encoder: ([(2, 6), (2, 7)], 2),
+    index: None,
     // USART3_TX and USART3_RX.
     serial: ([(1, 10), (1, 11)], 7),
     serial_interrupt: 39,

@@ -10,7 +10,8 @@
 //!   peripheral is for.
 //! - [`peripheral`], [`core`]: the units, and what the core has besides its instructions.
 //! - [`power_stage`]: TIM1 and the analogue units, with the circuit around them; [`motor`]: its currents.
-//! - [`device`]: what is wired to the board.
+//! - [`device`]: what is wired to the board; [`bridge_memory`]: what a program keeps in memory of what it does.
+//!   [`encoder_index`]: the encoder's third output.
 //! - [`meter`]: instructions of a tick.
 //! - [`processor`]: the instructions, which a library executes; `hooks`: what it asks meanwhile; [`halt`]:
 //!   why it stops.
@@ -21,9 +22,11 @@
 //! order of everything that is shown here, and nothing is said of its duration on a chip.
 
 pub mod board;
+pub mod bridge_memory;
 pub mod chip;
 pub mod core;
 pub mod device;
+pub mod encoder_index;
 pub mod error;
 mod frame;
 pub mod halt;

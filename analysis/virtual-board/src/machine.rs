@@ -90,6 +90,11 @@ impl Machine {
         self.core.board_mut()
     }
 
+    /// The core, to look at its memory.
+    pub fn core(&self) -> &Processor {
+        &self.core
+    }
+
     /// The core, to do something to its memory.
     pub fn core_mut(&mut self) -> &mut Processor {
         &mut self.core

@@ -1,5 +1,7 @@
-//! A virtual board for another program: `virtual-board BOARD PROGRAM.elf`, in lockstep with the
-//! process at standard input and output.
+//! A virtual board for another program, in lockstep with the process at standard input and output:
+//! `virtual-board BOARD PROGRAM.elf` for a program that drives a DAC, and with a motor behind it, `WINDING
+//! RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY`, for one that drives the board's own bridge: `brushed` or the
+//! number of pole pairs, ohm, H, N m/A, V.
 //!
 //! All numbers have their lowest byte first. At the end of each sample the board writes what the
 //! sample was, and waits for what comes of it:
@@ -8,24 +10,46 @@
 //! |---|---|---|---|---|
 //! | 1 | 1 | | counts that the encoder turned by | 4 |
 //! | code of the DAC, 65535 for none | 2 | | length of what follows | 2 |
-//! | whether the amplifier is on | 1 | | bytes for the serial port | |
+//! | 1: the amplifier is on | 1 | | bytes for the serial port | |
 //! | length of what follows | 2 | | | |
 //! | bytes that the serial port sent | | | | |
 //!
+//! With a bridge, the world gets the motor's torque at the end of each period of the modulation, so that the
+//! shaft moves within a period of the servo, as its back-EMF and the count of the current loop do:
+//!
+//! | board | bytes | | world | bytes |
+//! |---|---|---|---|---|
+//! | 2 | 1 | | counts that the encoder turned by | 4 |
+//! | mean torque in N m, a double | 8 | | angle in rad, a double | 8 |
+//! | length in s, a double | 8 | | speed in rad/s, a double | 8 |
+//!
+//! The message of a sample then comes at the beginning of the servo's period. Its code is the one that the
+//! servo has written, which the current loop follows from there on; its fourth byte is 1 where the servo
+//! drives the gates, and 2 while an alignment does.
+//!
 //! Once the input ends, the board writes a 0, then how many there were and the least, the most and
 //! the sum of the instructions from count to code and of the servo's whole interrupt (8 bytes each),
-//! then the number of resets (4), and the rest is the log as defmt has encoded it.
+//! then the number of resets (4), and the rest is the log as defmt has encoded it. A bridge's code is in
+//! memory, and nothing is counted up to it.
 //!
 //! A board that cannot go on writes why to its standard error, and ends with a failure.
 
-use std::io::{self, BufWriter, Read, Stdin, Stdout, Write};
-use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+mod host_link;
+mod wired_motor;
 
+use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::Chip;
-use virtual_board::device::Device;
+use virtual_board::device::{Device, Motion};
 use virtual_board::machine::Machine;
 use virtual_board::meter::InstructionStats;
+
+use host_link::{Drive, HostLink};
+
+type Failure = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
     match run() {
@@ -37,53 +61,83 @@ fn main() -> ExitCode {
     }
 }
 
-/// Bytes on their way between the host and the board's serial port.
-#[derive(Default)]
-struct SerialQueues {
-    to_board: Vec<u8>,
-    from_board: Vec<u8>,
-    /// The host has closed its end, or why it cannot be read.
-    end: Option<io::Result<()>>,
-}
-
-/// The plant, which the host simulates at the standard input and output.
-struct HostPlant {
-    input: Stdin,
-    output: BufWriter<Stdout>,
-    serial: Arc<Mutex<SerialQueues>>,
-}
-
-fn run() -> Result<(), Box<dyn std::error::Error>> {
+fn run() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [board, elf] = arguments.as_slice() else {
-        return Err("usage: virtual-board BOARD PROGRAM.elf".into());
+    let [board, elf, motor @ ..] = arguments.as_slice() else {
+        return Err("usage: virtual-board BOARD PROGRAM.elf [MOTOR]".into());
     };
     let Some(chip) = Chip::find(board) else {
         let names = Chip::BOARDS.map(|chip| chip.name).join(", ");
         return Err(format!("there is no virtual board {board}; there are {names}").into());
     };
-    let serial = Arc::<Mutex<SerialQueues>>::default();
-    let plant = HostPlant {
-        input: io::stdin(),
-        output: BufWriter::new(io::stdout()),
-        serial: serial.clone(),
+    let host = Arc::new(Mutex::new(HostLink::new()));
+    let mut machine = if motor.is_empty() {
+        let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(DacPlant(host.clone())))?;
+        while step(&mut machine, &host)?.is_none() {}
+        machine
+    } else {
+        let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(Shaft(host.clone())))?;
+        let memory = wire(&mut machine, motor)?;
+        while bridge_step(&mut machine, &memory, &host)?.is_none() {}
+        machine
     };
-    let mut machine = Machine::boot(elf.as_ref(), chip, Box::new(plant))?;
-    while step(&mut machine, &serial)?.is_none() {}
     Ok(report(&mut machine)?)
 }
 
-/// A sample, with what comes and goes over the serial port; says when the host has closed its end.
-fn step(
-    machine: &mut Machine,
-    serial: &Mutex<SerialQueues>,
-) -> Result<Option<()>, Box<dyn std::error::Error>> {
-    machine.run_samples(1)?;
+/// Wires a motor to the bridge; where the program keeps what no pin shows.
+fn wire(machine: &mut Machine, motor: &[String]) -> Result<BridgeMemory, Failure> {
+    let Ok(words) = motor.try_into() else {
+        let wanted = "WINDING RESISTANCE INDUCTANCE TORQUE_CONSTANT SUPPLY";
+        return Err(format!("a motor has five words, {wanted}, and not {}", motor.len()).into());
+    };
+    let (motor, supply) = wired_motor::parse(words)?;
     let board = machine.board_mut();
-    let mut serial = serial.lock().unwrap_or_else(PoisonError::into_inner);
-    board.send(&std::mem::take(&mut serial.to_board));
-    serial.from_board.extend(board.serial.take_sent());
-    Ok(serial.end.take().transpose()?)
+    if board.chip().gates.is_none() {
+        return Err(format!("the board {} has no bridge", board.chip().name).into());
+    }
+    let circuit = &mut board.power_stage.circuit;
+    (circuit.motor, circuit.supply) = (Some(motor), supply);
+    BridgeMemory::of(machine.image()).ok_or_else(|| "the program does not drive the bridge".into())
+}
+
+fn locked(host: &Mutex<HostLink>) -> MutexGuard<'_, HostLink> {
+    host.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A sample, with what comes and goes over the serial port; says when the host has closed its end.
+fn step(machine: &mut Machine, host: &Mutex<HostLink>) -> Result<Option<()>, Failure> {
+    machine.run_samples(1)?;
+    carry_bytes(machine, &mut locked(host));
+    Ok(locked(host).end().transpose()?)
+}
+
+/// The same to the begin of a period of the servo, where its code is taken over.
+fn bridge_step(
+    machine: &mut Machine,
+    memory: &BridgeMemory,
+    host: &Mutex<HostLink>,
+) -> Result<Option<()>, Failure> {
+    machine.run_samples(1)?;
+    let mut host = locked(host);
+    if let Some(end) = host.end() {
+        return Ok(Some(end?));
+    }
+    let is_on = machine.board().power_stage.timer.is_on();
+    let drive = match memory.is_aligning(machine.core()) {
+        Some(true) => Drive::Aligning,
+        _ if is_on => Drive::On,
+        _ => Drive::Off,
+    };
+    let turned = host.sample(memory.code(machine.core()), drive);
+    machine.board_mut().turn_encoder(turned);
+    carry_bytes(machine, &mut host);
+    Ok(host.end().transpose()?)
+}
+
+fn carry_bytes(machine: &mut Machine, host: &mut HostLink) {
+    let board = machine.board_mut();
+    board.send(&std::mem::take(&mut host.to_board));
+    host.from_board.extend(board.serial.take_sent());
 }
 
 /// What was measured, to the standard output.
@@ -103,40 +157,24 @@ fn report(machine: &mut Machine) -> io::Result<()> {
     output.flush()
 }
 
-impl HostPlant {
-    fn exchange(&mut self, code: Option<u16>, amplifier: bool) -> io::Result<i32> {
-        let mut serial = self.serial.lock().unwrap_or_else(PoisonError::into_inner);
-        let sent = serial.from_board.len().min(u16::MAX.into());
-        let bytes: Vec<u8> = serial.from_board.drain(..sent).collect();
-        self.output.write_all(&[1])?;
-        self.output.write_all(&code.unwrap_or(u16::MAX).to_le_bytes())?;
-        self.output.write_all(&[amplifier.into()])?;
-        self.output.write_all(&(sent as u16).to_le_bytes())?;
-        self.output.write_all(&bytes)?;
-        self.output.flush()?;
-        let mut turned = [0; 4];
-        self.input.read_exact(&mut turned)?;
-        let mut length = [0; 2];
-        self.input.read_exact(&mut length)?;
-        let mut bytes = vec![0; u16::from_le_bytes(length).into()];
-        self.input.read_exact(&mut bytes)?;
-        serial.to_board.extend(bytes);
-        Ok(i32::from_le_bytes(turned))
+/// What a DAC drives, which the host simulates.
+struct DacPlant(Arc<Mutex<HostLink>>);
+
+impl Device for DacPlant {
+    fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
+        locked(&self.0).sample(code, if amplifier { Drive::On } else { Drive::Off })
     }
 }
 
-impl Device for HostPlant {
-    fn sample(&mut self, code: Option<u16>, amplifier: bool) -> i32 {
-        match self.exchange(code, amplifier) {
-            Ok(turned) => turned,
-            Err(error) => {
-                let end = match error.kind() {
-                    io::ErrorKind::UnexpectedEof => Ok(()),
-                    _ => Err(error),
-                };
-                self.serial.lock().unwrap_or_else(PoisonError::into_inner).end = Some(end);
-                0
-            }
-        }
+/// What the motor at the bridge turns, which the host simulates.
+struct Shaft(Arc<Mutex<HostLink>>);
+
+impl Device for Shaft {
+    fn sample(&mut self, _: Option<u16>, _: bool) -> i32 {
+        0
+    }
+
+    fn turn(&mut self, torque: f64, seconds: f64) -> Motion {
+        locked(&self.0).turn(torque, seconds)
     }
 }

@@ -21,6 +21,7 @@ const OPEN: u32 = 0x01;
 const CLOSE: u32 = 0x02;
 const WRITE: u32 = 0x05;
 const READ: u32 = 0x06;
+const COMMAND_LINE: u32 = 0x15;
 const EXIT_EXTENDED: u32 = 0x20;
 /// What an operation returns that has failed.
 const FAILED: u32 = u32::MAX;
@@ -64,6 +65,9 @@ pub enum CallError {
     /// It has ended.
     #[error("the program has ended with status {0}")]
     Ended(u32),
+    /// It has ended for a reason that is none of its own choice.
+    #[error("the program has aborted for the reason {0:#x}")]
+    Aborted(u32),
     /// It waits for another question instead.
     #[error("the program waits for more than it was asked")]
     Waiting,
@@ -79,6 +83,8 @@ pub struct Guest {
     closed: bool,
     replies: VecDeque<u8>,
     console: Vec<u8>,
+    /// What the program is called with.
+    command: &'static str,
 }
 
 impl Guest {
@@ -95,7 +101,34 @@ impl Guest {
         let mut machine = Machine::boot(elf, chip, Box::new(FixedDevice))?;
         machine.debugged = true;
         let (requests, replies) = (VecDeque::new(), VecDeque::new());
-        Ok(Self { machine, names, requests, closed: false, replies, console: Vec::new() })
+        let (console, command) = (Vec::new(), "");
+        Ok(Self { machine, names, requests, closed: false, replies, console, command })
+    }
+
+    /// The same with a program that is called with a command line, and asks nothing.
+    ///
+    /// # Errors
+    /// As for [`Self::boot`].
+    pub fn boot_command(
+        elf: &Path,
+        chip: &'static Chip,
+        command: &'static str,
+    ) -> Result<Self, BootError> {
+        let guest = Self::boot(elf, chip, ["", ""])?;
+        Ok(Self { closed: true, command, ..guest })
+    }
+
+    /// The board, to do something to it from outside.
+    pub fn machine_mut(&mut self) -> &mut Machine {
+        &mut self.machine
+    }
+
+    /// Runs up to the next call.
+    ///
+    /// # Errors
+    /// As [`Self::exchange`], and where the program ends.
+    pub fn run_to_call(&mut self) -> Result<(), CallError> {
+        self.run()
     }
 
     /// The board.
@@ -144,9 +177,12 @@ impl Guest {
             return Err(error.into());
         }
         let operation = core.register(RegisterARM::R0);
-        let block = core.register(RegisterARM::R1);
-        let block = [0, 4, 8].map(|offset| core.word(block + offset).unwrap_or(0));
-        let result = self.answer(operation, block, address)?;
+        let place = core.register(RegisterARM::R1);
+        let block = [0, 4, 8].map(|offset| core.word(place + offset).unwrap_or(0));
+        let result = match operation {
+            COMMAND_LINE => self.write_command(place, block)?,
+            _ => self.answer(operation, block, address)?,
+        };
         let core = self.machine.core_mut();
         core.set_register(RegisterARM::R0, result);
         core.set_register(RegisterARM::PC, (address + 2) | 1);
@@ -166,9 +202,22 @@ impl Guest {
             WRITE => self.write(handle(first), second, third),
             READ if handle(first) == Some(Handle::Requests) => self.read(second, third)?,
             EXIT_EXTENDED if first == APPLICATION_EXIT => return Err(CallError::Ended(second)),
+            EXIT_EXTENDED => return Err(CallError::Aborted(first)),
             _ => return Err(CallError::NoOperation { operation, address }),
         };
         result.ok_or(malformed)
+    }
+
+    /// The command line with a zero behind it, and its length without in the second word of the block.
+    fn write_command(&mut self, place: u32, block: [u32; 3]) -> Result<u32, CallError> {
+        let [buffer, size, _] = block;
+        let bytes: Vec<u8> = self.command.bytes().chain([0]).collect();
+        let length = bytes.len() as u32 - 1;
+        let core = self.machine.core_mut();
+        let is_written = bytes.len() <= size as usize
+            && core.set_memory(buffer, &bytes)
+            && core.set_memory(place + 4, &length.to_le_bytes());
+        is_written.then_some(0).ok_or(CallError::Malformed { operation: COMMAND_LINE, block })
     }
 
     fn open(&self, name: &[u8]) -> u32 {

@@ -99,7 +99,8 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
             Response { admittance, ..*r }
         };
         let responses: Vec<Response> = found.responses.iter().map(again).collect();
-        let measured = Measured { responses: &responses, period: SENSING.period, declared: 0.0 };
+        let period = SENSING.period;
+        let measured = Measured { responses: &responses, period, declared: 0.0, source: None };
         let model = measured.fit(0.0, Delay::From(2e-4)).unwrap().model;
         model.inertia
     };
@@ -111,7 +112,7 @@ fn damping_is_unbiased_where_the_real_part_is_not() {
 
 impl From<Output> for Model {
     fn from(Output { lag, delay }: Output) -> Self {
-        Self { damping: 0.0, inertia: 0.0, delay, lag }
+        Self { damping: 0.0, inertia: 0.0, delay, lag, source: None }
     }
 }
 

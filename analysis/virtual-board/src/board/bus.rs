@@ -10,6 +10,7 @@ use crate::peripheral::Access;
 use crate::peripheral::basic_timer::BasicTimer;
 use crate::peripheral::counter::Counter;
 use crate::peripheral::dac::Dac;
+use crate::peripheral::pins::{self, Level};
 use crate::peripheral::serial::Serial;
 use crate::power_stage::Surroundings;
 use crate::unit::Unit;
@@ -157,6 +158,10 @@ impl Board {
             Unit::Flash => self.flash.read(offset),
             Unit::Configuration => self.configuration.read(offset),
             Unit::Debug => self.debug.read(offset),
+            Unit::Pins(port) if offset == pins::INPUT => {
+                self.advance_power_stage();
+                Ok(self.input(port))
+            }
             Unit::Pins(port) => self.ports[port].read(offset),
             Unit::TickTimer => self.tick_timer.read(offset),
             Unit::PhaseTimer => self.phase_timer.read(offset),
@@ -182,6 +187,17 @@ impl Board {
                 self.power_stage.read(unit, offset)
             }
         }
+    }
+
+    /// IDR: the pins that this chip drives high. What others drive is not seen here.
+    fn input(&self, port: usize) -> u32 {
+        let gates = self.chip.gates.iter().flat_map(|gates| gates.iter());
+        let gates = gates.zip(self.power_stage.gates());
+        let of_timer = |pin: u32| {
+            gates.clone().any(|(gate, level)| gate.0 == (port, pin) && level == Level::High)
+        };
+        let is_high = |pin: &u32| self.ports[port].level(*pin) == Level::High || of_timer(*pin);
+        (0..16).filter(is_high).map(|pin| 1 << pin).sum()
     }
 
     fn write_unit(&mut self, unit: Unit, offset: u32, value: u32) -> Access<()> {

@@ -12,9 +12,15 @@ const OWN_INPUTS: u32 = 0x0101;
 const FILTERS: u32 = 0xF0F0;
 /// CCER: both channels enabled, neither inverted.
 const CHANNELS: u32 = 0x0011;
-/// CCMR2 and CCER: channel 3 captures the count at the trigger that SMCR chooses, which is the first: TIM1's.
-const TRIGGERED_CAPTURE: u32 = 0b11;
-const CAPTURES: u32 = 1 << 8;
+/// CCMR2 and CCER: channel 4 captures the count at the trigger that SMCR chooses, which is the first: TIM1's.
+const TRIGGERED_CAPTURE: u32 = 0b11 << 8;
+const CAPTURES: u32 = 1 << 12;
+/// CCMR2 and CCER: channel 3 captures it at a rising edge of its own input, behind a filter.
+const INDEX_CAPTURE: u32 = 0b01;
+const INDEX_FILTER: u32 = 0xF0;
+const CAPTURES_INDEX: u32 = 1 << 8;
+/// SR: channel 3 has captured, and its capture has not been read.
+const INDEX_CAPTURED: u32 = 1 << 3;
 
 /// The timer.
 #[derive(Clone, Debug)]
@@ -26,8 +32,11 @@ pub struct Counter {
     inputs: u32,
     channels: u32,
     capture_mode: u32,
-    /// What channel 3 has captured.
+    /// What channel 4 has captured.
     captured: u32,
+    /// What channel 3 has, and SR.
+    index: u32,
+    status: u32,
     prescaler: u32,
     reload: u32,
     /// What it holds, at the time when it held it.
@@ -47,6 +56,8 @@ impl Counter {
             channels: 0,
             capture_mode: 0,
             captured: 0,
+            index: 0,
+            status: 0,
             prescaler: 0,
             reload: mask,
             value: 0,
@@ -84,7 +95,24 @@ impl Counter {
     }
 
     fn captures(&self) -> bool {
-        self.capture_mode == TRIGGERED_CAPTURE && self.channels & CAPTURES != 0
+        self.capture_mode & TRIGGERED_CAPTURE == TRIGGERED_CAPTURE && self.channels & CAPTURES != 0
+    }
+
+    /// The encoder's index rises.
+    pub fn index(&mut self) {
+        if self.captures_index() && self.control & ENABLE != 0 {
+            self.index = self.value;
+            self.status |= INDEX_CAPTURED;
+        }
+    }
+
+    fn captures_index(&self) -> bool {
+        self.capture_mode & INDEX_CAPTURE != 0 && self.channels & CAPTURES_INDEX != 0
+    }
+
+    /// The filter of the index, IC3F of CCMR2.
+    pub fn index_filter(&self) -> u32 {
+        self.capture_mode >> 4 & 0xF
     }
 
     /// What it holds.
@@ -97,17 +125,23 @@ impl Counter {
     }
 
     /// Reads.
-    pub fn read(&self, offset: u32, now: u64, divider: u64) -> Access<u32> {
+    pub fn read(&mut self, offset: u32, now: u64, divider: u64) -> Access<u32> {
         match offset {
             0x00 => Ok(self.control),
             0x08 => Ok(self.slave),
+            0x10 => Ok(self.status),
             0x18 => Ok(self.inputs),
             0x1C => Ok(self.capture_mode),
             0x20 => Ok(self.channels),
             0x24 => Ok(self.value(now, divider)),
             0x28 => Ok(self.prescaler),
             0x2C => Ok(self.reload),
-            0x3C if self.captures() => Ok(self.captured),
+            // The read acknowledges.
+            0x3C if self.captures_index() => {
+                self.status &= !INDEX_CAPTURED;
+                Ok(self.index)
+            }
+            0x40 if self.captures() => Ok(self.captured),
             _ => Err(Unmodelled::Register),
         }
     }
@@ -125,6 +159,8 @@ impl Counter {
                 only(value, BOTH_CHANNELS)?;
                 self.slave = value;
             }
+            // Ones leave flags as they are.
+            0x10 => self.status &= value,
             // An update by the program: from zero, with the prescaler that was written.
             0x14 => {
                 only(value, 1)?;
@@ -135,15 +171,15 @@ impl Counter {
                 self.inputs = value;
             }
             0x1C => {
-                only(value, TRIGGERED_CAPTURE)?;
-                // Captures from inputs are not modelled.
-                if value != 0 && value != TRIGGERED_CAPTURE {
+                only(value, TRIGGERED_CAPTURE | INDEX_CAPTURE | INDEX_FILTER)?;
+                // Channel 4 captures from no input.
+                if !matches!(value & TRIGGERED_CAPTURE, 0 | TRIGGERED_CAPTURE) {
                     return Err(Unmodelled::Bits(value));
                 }
                 self.capture_mode = value;
             }
             0x20 => {
-                only(value, CHANNELS | CAPTURES)?;
+                only(value, CHANNELS | CAPTURES | CAPTURES_INDEX)?;
                 self.channels = value;
             }
             0x24 => self.value = value & self.mask,
@@ -172,17 +208,43 @@ mod tests {
             counter.write(register, value, 0, 1).unwrap();
         }
         counter.turn(-3);
-        assert_eq!(counter.read(0x3C, 0, 1), Ok(0));
+        assert_eq!(counter.read(0x40, 0, 1), Ok(0));
         counter.capture();
         counter.turn(1);
-        assert_eq!(counter.read(0x3C, 0, 1), Ok(0xFFFD));
+        assert_eq!(counter.read(0x40, 0, 1), Ok(0xFFFD));
         assert_eq!(counter.read(0x24, 0, 1), Ok(0xFFFE));
+    }
+
+    #[test]
+    fn an_index_captures_the_count_until_it_is_read() {
+        let mut counter = Counter::new(16);
+        for (register, value) in [
+            (0x08, BOTH_CHANNELS),
+            (0x18, OWN_INPUTS),
+            (0x1C, TRIGGERED_CAPTURE | INDEX_CAPTURE | 0x30),
+            (0x20, CHANNELS | CAPTURES | CAPTURES_INDEX),
+            (0x00, ENABLE),
+        ] {
+            counter.write(register, value, 0, 1).unwrap();
+        }
+        assert_eq!((counter.index_filter(), counter.read(0x10, 0, 1)), (3, Ok(0)));
+        counter.turn(7);
+        counter.index();
+        counter.turn(1);
+        assert_eq!(counter.read(0x10, 0, 1), Ok(INDEX_CAPTURED));
+        assert_eq!(counter.read(0x40, 0, 1), Ok(0), "the other channel");
+        assert_eq!(counter.read(0x3C, 0, 1), Ok(7));
+        assert_eq!(counter.read(0x10, 0, 1), Ok(0));
+        counter.index();
+        counter.write(0x10, !INDEX_CAPTURED, 0, 1).unwrap();
+        assert_eq!(counter.read(0x10, 0, 1), Ok(0));
     }
 
     #[test]
     fn a_channel_that_captures_nothing_is_not_read() {
         let mut counter = Counter::new(16);
         assert!(counter.read(0x3C, 0, 1).is_err());
-        assert!(counter.write(0x1C, 0b01, 0, 1).is_err(), "its own input");
+        assert!(counter.read(0x40, 0, 1).is_err());
+        assert!(counter.write(0x1C, 0b01 << 8, 0, 1).is_err(), "its own input");
     }
 }

@@ -3,6 +3,9 @@
 
 use super::{Access, Unmodelled};
 
+/// IDR.
+pub const INPUT: u32 = 0x10;
+
 /// Registers that say what pins are for: MODER, OTYPER, OSPEEDR, PUPDR, AFRL, AFRH.
 const MODE: usize = 0;
 const PULLS: usize = 3;

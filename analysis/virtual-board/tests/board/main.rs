@@ -11,6 +11,7 @@ mod device;
 mod faults;
 mod harmless;
 mod interrupts;
+mod own_board;
 mod phase;
 mod reset;
 mod scenes;

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use analysis::toolchain::TorqueOutput;
 use firmware::current::{Drive, Winding};
 use virtual_board::board::{Board, BusAccess};
+use virtual_board::bridge_memory::BridgeMemory;
 use virtual_board::chip::B_G431B_ESC1;
 use virtual_board::device::Device;
 use virtual_board::motor::{self, Motor};
@@ -19,7 +20,7 @@ use crate::bench::{Bench, build_for};
 pub const INSTANT: u64 = 2 * CURRENT_LOOP.timer_counts() as u64;
 
 /// The programs that drive the bridge.
-const PROGRAMS: [&str; 2] = ["bridge_wall", "brushless_wall"];
+const PROGRAMS: [&str; 4] = ["bridge_identify", "bridge_wall", "brushless_index", "brushless_wall"];
 
 /// A program's file. All of them are built when the first is asked for.
 fn program(name: &str) -> &'static PathBuf {
@@ -97,12 +98,9 @@ pub fn take_accesses(bench: &mut Bench) -> Vec<BusAccess> {
 
 /// The code that the servo gave last.
 pub fn code(bench: &mut Bench) -> u16 {
-    const NAMES: [&str; 2] = ["6bridge7WAITING.0", "6bridge7WAITING"];
-    let image = bench.machine.image();
-    let found = NAMES.iter().find_map(|name| image.symbol_ending(name));
-    let (place, _) = found.expect("the bridge's waiting code has a place");
-    let word = bench.machine.core_mut().word(place & !3).unwrap();
-    (word >> (8 * (place & 3))) as u16
+    let machine = &bench.machine;
+    let memory = BridgeMemory::of(machine.image()).expect("the bridge's waiting code has a place");
+    memory.code(machine.core()).expect("that is in memory")
 }
 
 /// Runs to the next valley of the modulation.

@@ -5,14 +5,23 @@ mod bench;
 mod brushless;
 mod faults;
 mod gates;
+mod identify;
+mod index;
+mod load;
 mod paddle;
 mod same;
 mod wall;
 
 // Programs of their own, of which these use the numbers.
 #[allow(dead_code)]
+#[path = "../../../../../firmware/src/bin/bridge_identify.rs"]
+mod bridge_identify;
+#[allow(dead_code)]
 #[path = "../../../../../firmware/src/bin/bridge_wall.rs"]
 mod bridge_wall;
+#[allow(dead_code)]
+#[path = "../../../../../firmware/src/bin/brushless_index.rs"]
+mod brushless_index;
 #[allow(dead_code)]
 #[path = "../../../../../firmware/src/bin/brushless_wall.rs"]
 mod brushless_wall;

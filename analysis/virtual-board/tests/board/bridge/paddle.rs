@@ -36,11 +36,13 @@ impl Paddle {
         Self::of(bridge_wall::SCENE.device, counts, Box::new(hand), friction)
     }
 
-    /// The shaft of `brushless_wall` with some friction, in a hand whose torque is what is there.
+    /// The shaft of `brushless_wall` with some friction, in a hand whose torque is what is there, from the first
+    /// moment on.
     pub fn shaft(torque: Arc<Mutex<f64>>) -> Self {
         let counts = brushless_wall::TRANSDUCERS.counts_per_turn;
         let mechanics = Mechanics { damping: HAND_DAMPING, ..brushless_wall::SCENE.device };
-        Self::of(mechanics, counts, Box::new(move |_| *torque.lock().unwrap()), 0.002)
+        let hand = Box::new(move |_| *torque.lock().unwrap());
+        Self { time: Some(0.0), ..Self::of(mechanics, counts, hand, 0.002) }
     }
 
     fn of(mechanics: Mechanics, counts_per_turn: f64, hand: HandTorque, friction: f64) -> Self {

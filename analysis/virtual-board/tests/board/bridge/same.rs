@@ -17,7 +17,7 @@ use super::paddle::Paddle;
 use crate::bench::MID_SCALE;
 
 /// Registers of the current interrupt.
-const COUNT: u32 = 0x4000_083C;
+const COUNT: u32 = 0x4000_0840;
 const BREAK_CONTROL: u32 = 0x4001_2C44;
 const MAIN_OUTPUT: u32 = 1 << 15;
 const COMPARE: [u32; 3] = [0x4001_2C34, 0x4001_2C38, 0x4001_2C3C];

@@ -1,0 +1,158 @@
+//! A virtual board whose own bridge drives a motor: aligned and armed as a person does it.
+
+use std::path::Path;
+
+use firmware::current::CurrentLoop;
+use firmware::dac::DacCode;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+use firmware::wire::message::ToBoard;
+
+use crate::hand::HandTrajectory;
+use crate::shaft::{HandHeldShaft, LedShaft, Shaft};
+use crate::simulation::SimulationError;
+use crate::toolchain::Board;
+use crate::virtual_board::{
+    LONGEST_ARMING, Sample, VirtualBoard, VirtualBoardError, VirtualBoardReport, fading_samples,
+    request,
+};
+
+/// Periods of the modulation in which the current sensors' offsets are measured, twice over.
+const OFFSETS: usize = 512;
+/// Longest time in s of an alignment.
+const LONGEST_ALIGNMENT: f64 = 20.0;
+/// Time in s in which a hand turns the aligned motor back to zero.
+const RETURN: f64 = 0.5;
+
+/// Why a bridge could not be made ready.
+#[derive(Debug, thiserror::Error)]
+pub enum BridgeError {
+    /// The board failed.
+    #[error(transparent)]
+    Board(#[from] VirtualBoardError),
+    /// The device that the motor turns cannot be simulated.
+    #[error(transparent)]
+    Device(#[from] SimulationError),
+}
+
+/// A running board, which waits at the begin of a period of the servo.
+pub struct BridgeBoard {
+    board: VirtualBoard,
+    current_loop: &'static CurrentLoop,
+    transducers: Transducers,
+    sample: Option<Sample>,
+}
+
+impl BridgeBoard {
+    /// Switches one on, as [`VirtualBoard::boot`], with the motor of a current loop.
+    ///
+    /// # Errors
+    /// Where it cannot be started.
+    pub fn boot(
+        program: &Path,
+        board: Board,
+        elf: &Path,
+        current_loop: &'static CurrentLoop,
+        transducers: Transducers,
+    ) -> Result<Self, VirtualBoardError> {
+        let board = VirtualBoard::boot(program, board, elf, Some(current_loop.drive()))?;
+        Ok(Self { board, current_loop, transducers, sample: None })
+    }
+
+    /// Runs to the begin of the next period of the servo, with bytes to the serial port.
+    ///
+    /// # Errors
+    /// Where the board has stopped.
+    pub fn period(
+        &mut self,
+        shaft: &mut dyn Shaft,
+        bytes: &[u8],
+    ) -> Result<&Sample, VirtualBoardError> {
+        if self.sample.is_some() {
+            self.board.answer(self.board.count(), bytes)?;
+        }
+        let sample = self.board.sample_turning(shaft)?;
+        Ok(self.sample.insert(sample))
+    }
+
+    /// The count at the begin of the period.
+    pub fn count(&self) -> i32 {
+        self.board.count()
+    }
+
+    /// The code that the current loop follows from there on: that of no torque while the gates are off.
+    pub fn code(&self) -> u16 {
+        self.sample.as_ref().map_or(DacCode::MID_SCALE.get(), Sample::applied_code)
+    }
+
+    /// Has a brushless motor aligned, on which a scene's device is that nobody holds, and turned back to zero
+    /// by a hand; then has the servo armed there, and runs until the clamp has opened.
+    ///
+    /// # Errors
+    /// Where the board stops, or the motor is not aligned or not armed.
+    pub fn align_and_arm(&mut self, scene: &Scene) -> Result<(), BridgeError> {
+        let period = scene.timing.period;
+        let mut still = LedShaft::new(0.0, &self.transducers, self.current_loop);
+        for _ in 0..OFFSETS / usize::from(self.current_loop.updates()) + 1 {
+            self.period(&mut still, &[])?;
+        }
+        if self.current_loop.is_brushless() {
+            self.align(scene)?;
+        }
+        self.arm(&mut still)?;
+        for _ in 0..fading_samples(period) {
+            self.period(&mut still, &[])?;
+        }
+        Ok(())
+    }
+
+    fn align(&mut self, scene: &Scene) -> Result<(), BridgeError> {
+        let hand = HandTrajectory::push_and_let_go();
+        let mut shaft = HandHeldShaft::new(scene, hand, &self.transducers, self.current_loop)?;
+        shaft.let_go(true);
+        let mut bytes = request(&ToBoard::Align { id: 0 });
+        let samples = (LONGEST_ALIGNMENT / scene.timing.period) as usize;
+        let mut has_begun = false;
+        for _ in 0..samples {
+            let is_aligning = self.period(&mut shaft, &std::mem::take(&mut bytes))?.is_aligning;
+            if has_begun && !is_aligning {
+                return Ok(self.turn_to_zero(shaft.motion().angle, scene.timing.period)?);
+            }
+            has_begun |= is_aligning;
+        }
+        Err(VirtualBoardError::NotAligned { samples, log: self.board.last_log()? }.into())
+    }
+
+    /// From an angle in rad, smoothly.
+    fn turn_to_zero(&mut self, angle: f64, period: f64) -> Result<(), VirtualBoardError> {
+        let from = angle * self.transducers.counts_per_turn / std::f64::consts::TAU;
+        let mut shaft = LedShaft::new(from, &self.transducers, self.current_loop);
+        let way = HandTrajectory {
+            path: vec![(0.0, from), (RETURN, 0.0)],
+            ..HandTrajectory::push_and_let_go()
+        };
+        for tick in 1..=(RETURN / period).ceil() as usize {
+            shaft.lead_to(way.position(tick as f64 * period));
+            self.period(&mut shaft, &[])?;
+        }
+        Ok(())
+    }
+
+    fn arm(&mut self, shaft: &mut LedShaft) -> Result<(), VirtualBoardError> {
+        let mut bytes = request(&ToBoard::Arm { id: 0 });
+        for _ in 0..LONGEST_ARMING {
+            if self.period(shaft, &std::mem::take(&mut bytes))?.amplifier {
+                return Ok(());
+            }
+        }
+        Err(VirtualBoardError::NotArmed { log: self.board.last_log()? })
+    }
+
+    /// Switches it off.
+    ///
+    /// # Errors
+    /// Where it has stopped before.
+    pub fn finish(self) -> Result<VirtualBoardReport, VirtualBoardError> {
+        self.board.finish()
+    }
+}

@@ -1,0 +1,72 @@
+//! A scene run over counts with the board's own bridge: on a virtual board, and on the host beside it.
+
+use firmware::scene::Scene;
+
+use crate::bridge_board::{BridgeBoard, BridgeError};
+use crate::compare_run::{BoardMeasurement, RunOutcome};
+use crate::controller::Controller;
+use crate::lockstep::Run;
+use crate::shaft::{HandHeldShaft, RecordedShaft, Shaft};
+use crate::virtual_board::VirtualBoardError;
+
+/// What turns the motor's shaft besides the motor.
+pub enum ShaftInput<'a> {
+    /// A hand that holds the scene's device. It waits until the servo runs.
+    Hand(Box<HandHeldShaft>),
+    /// Recorded counts.
+    Recording(RecordedShaft<'a>),
+}
+
+/// Has the board's motor aligned where that has to be, and armed; then runs at most `ticks` ticks. `progress`
+/// is called after each.
+///
+/// # Errors
+/// Where the board is not made ready, fails, or does not end.
+pub fn run_on_bridge(
+    input: ShaftInput<'_>,
+    controller: &mut dyn Controller,
+    mut board: BridgeBoard,
+    scene: &Scene,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<RunOutcome, BridgeError> {
+    board.align_and_arm(scene)?;
+    let (mut energy, mut final_speed) = (None, None);
+    let run = match input {
+        ShaftInput::Hand(mut shaft) => {
+            let run = run(&mut *shaft, controller, &mut board, ticks, progress)?;
+            (energy, final_speed) = (Some(shaft.energy()), Some(shaft.motion().speed.abs()));
+            run
+        }
+        ShaftInput::Recording(mut shaft) => {
+            // The board has only just begun the period in which it turns to the first count.
+            if shaft.begin() {
+                board.period(&mut shaft, &[])?;
+            }
+            run(&mut shaft, controller, &mut board, ticks, progress)?
+        }
+    };
+    let board = Some(BoardMeasurement::Virtual(board.finish()?));
+    Ok(RunOutcome { run, energy, final_speed, board })
+}
+
+/// From the period on that has begun.
+fn run(
+    shaft: &mut dyn Shaft,
+    controller: &mut dyn Controller,
+    board: &mut BridgeBoard,
+    ticks: usize,
+    mut progress: impl FnMut(),
+) -> Result<Run, VirtualBoardError> {
+    let mut run = Run::default();
+    while run.ticks.len() < ticks {
+        let count = board.count();
+        run.add(count, controller.tick(count), board.code());
+        progress();
+        if !shaft.begin() {
+            break;
+        }
+        board.period(shaft, &[])?;
+    }
+    Ok(run)
+}

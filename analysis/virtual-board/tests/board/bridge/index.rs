@@ -1,0 +1,144 @@
+//! A motor that its encoder's index aligns after a reset, and counts that the index finds lost.
+
+use std::f64::consts::TAU;
+
+use firmware::current::{IndexOffset, Winding};
+use firmware::fault::Fault;
+use firmware::servo_loop::State;
+use firmware::wire::message::FaultCode;
+use virtual_board::encoder_index::EncoderIndex;
+use virtual_board::power_stage::gate_log::any_high;
+
+use super::bench::gates;
+use super::brushless::{Held, aligned, check_stays_off, check_torque, wired};
+use super::brushless_index::{DRIVE, OFFSET, TRANSDUCERS};
+use crate::bench::Bench;
+
+const COUNTS: f64 = TRANSDUCERS.counts_per_turn;
+/// Where the index is, in counts: a little outside of the wall.
+const AT: i64 = -300;
+/// Counts for which it lasts.
+const WIDTH: i64 = 2;
+/// Torque of the hand in N m that turns the shaft past it.
+const TURNS: f64 = 0.02;
+
+/// Counts of an electrical turn.
+fn electrical_counts() -> f64 {
+    let Winding::Brushless { pole_pairs } = DRIVE.motor.winding else { panic!("it is brushless") };
+    COUNTS / f64::from(pole_pairs)
+}
+
+/// The magnets' angle at the angle zero with which they are at this offset where the index is.
+fn magnets(offset: f64) -> f64 {
+    (offset - AT as f64) / electrical_counts() * TAU
+}
+
+/// A board out of reset whose motor has the offset of its program, and whose gates are recorded.
+fn unaligned() -> Held {
+    let motor = wired([0, 1, 2], magnets(f64::from(OFFSET.counts)));
+    let mut held = Held::new("brushless_index", motor);
+    let board = held.bench.machine.board_mut();
+    (board.index, board.gates) = (Some(index()), Some(Vec::new()));
+    held.bench.run(200);
+    held
+}
+
+fn index() -> EncoderIndex {
+    EncoderIndex::new(COUNTS as i64, AT, WIDTH)
+}
+
+/// What the board says of the motor at the index.
+fn told(bench: &mut Bench) -> Option<IndexOffset> {
+    bench.status().power.and_then(|power| power.index)
+}
+
+/// Turns the shaft past the index, and lets it come to rest.
+fn turn_past(held: &mut Held) -> Option<IndexOffset> {
+    held.push(-TURNS);
+    let mut samples = 0;
+    while told(&mut held.bench).is_none() && samples < 3000 {
+        held.bench.run(50);
+        samples += 50;
+    }
+    held.push(0.0);
+    held.bench.run(500);
+    told(&mut held.bench)
+}
+
+/// A servo that holds the shaft in its wall, against a hand, after its index has aligned it.
+pub fn leaning() -> Held {
+    let mut held = unaligned();
+    assert_eq!(turn_past(&mut held), Some(OFFSET));
+    check_torque(&mut held, "by the index");
+    held
+}
+
+/// The encoder's counter has lost counts, and the index comes.
+pub fn comes_elsewhere(bench: &mut Bench) {
+    let board = bench.machine.board_mut();
+    let index = board.index.as_mut().expect("it has an index");
+    index.position = index.at - 1;
+    board.turn_encoder(1);
+}
+
+#[test]
+fn the_first_index_after_a_reset_aligns_the_motor_and_no_gate_is_high_before() {
+    let mut held = unaligned();
+    check_stays_off(&mut held.bench);
+    let status = held.bench.status();
+    let fault = status.fault.and_then(FaultCode::fault).unwrap().to_string();
+    assert!(fault.contains("turn the handle past the encoder's index, or align it"), "{fault}");
+    assert_eq!(turn_past(&mut held), Some(OFFSET));
+    let bench = &held.bench;
+    assert!(!any_high(gates(bench), 0, bench.machine.board().now));
+    // As late as the other two inputs, and pulled by the board alone.
+    let encoder = &bench.machine.board().encoder;
+    assert_eq!(encoder.filters(), [encoder.index_filter(); 2]);
+    check_torque(&mut held, "by the index");
+}
+
+/// The board tells what a program may state: the magnets' angle at the index.
+#[test]
+fn an_alignment_and_an_index_give_the_offset() {
+    let wanted = 1900.0;
+    let (mut held, fault) = aligned(wired([0, 1, 2], magnets(wanted)), |_| {});
+    assert_eq!((fault, told(&mut held.bench)), (None, None));
+    let board = held.bench.machine.board_mut();
+    // It was at zero when the board was switched on.
+    let position = i64::from(board.encoder.value(0, 1) as u16 as i16);
+    board.index = Some(EncoderIndex { position, ..index() });
+    let IndexOffset { counts, is_reversed } = turn_past(&mut held).expect("the index has come");
+    let degrees = (f64::from(counts) - wanted) / electrical_counts() * 360.0;
+    println!("{counts} counts, {degrees:.2} degrees off");
+    assert!(!is_reversed && degrees.abs() < 5.0, "{counts}");
+}
+
+#[test]
+fn lost_counts_are_found_at_the_index_and_the_next_index_aligns_again() {
+    let mut held = leaning();
+    held.bench.machine.board_mut().lose_counts(60);
+    held.push(-TURNS);
+    let faulted = |bench: &mut Bench| bench.status().state == State::Faulted;
+    let mut samples = 0;
+    while !faulted(&mut held.bench) {
+        held.bench.run(50);
+        samples += 50;
+        assert!(samples < 8000, "it is not found");
+    }
+    let fault = held.bench.status().fault.and_then(FaultCode::fault);
+    let Some(Fault::Power(fault)) = fault else { panic!("{fault:?}") };
+    let (code, [count, aligned]) = fault.encode();
+    // Met from the upper side, both times.
+    let wanted = (COUNTS as i64 + AT + WIDTH - 1) as u32;
+    assert_eq!((code, count, aligned), (21, wanted - 60, wanted));
+    assert!(!held.bench.machine.board().power_stage.timer.is_on());
+    assert_eq!(told(&mut held.bench), None);
+    held.push(0.0);
+    held.bench.run(500);
+    check_stays_off(&mut held.bench);
+    // Back past the index, which aligns it.
+    held.push(TURNS);
+    held.bench.run(1000);
+    held.push(0.0);
+    assert_eq!(told(&mut held.bench), Some(OFFSET));
+}
