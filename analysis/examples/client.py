@@ -17,7 +17,7 @@ import sys
 import time
 import zlib
 
-PROTOCOL = 6
+PROTOCOL = 7
 BAUD = 460800
 
 RESETS = ["unknown", "power-on", "brown-out", "pin", "software", "independent-watchdog",
@@ -45,7 +45,8 @@ TO_HOST = ["welcome", "board", "running", "status", "answer", "remembered", "tel
 # The fields of the messages in order. A field more in the protocol is a line more here.
 DISCARDED = [("broken", "u"), ("too_long", "u"), ("checksum", "u"), ("unknown", "u")]
 FAULT = [("code", "u"), ("first", "u"), ("second", "u")]
-POWER = [("current", "i"), ("reference", "i"), ("voltage", "u"), ("temperature", "i")]
+POWER = [("current", "i"), ("reference", "i"), ("voltage", "u"), ("temperature", "i"),
+         ("index", ("option", [("counts", "u"), ("is_reversed", "bool")]))]
 STEP = ("enum", [("change", []), ("certificate", []), ("servo", [])])
 REFUSAL = ("enum", [("busy", []), ("disarming", []), ("fault", [("fault", FAULT)]),
                     ("set", [("step", STEP)]),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use crate::bridge_board::BridgeError;
 use crate::controller::Controller;
 use crate::device::Energy;
 use crate::emulator::{Emulator, EmulatorError, EmulatorReport, InstructionStats};
@@ -27,7 +28,7 @@ pub enum Input<'a> {
 pub enum Backend<'a> {
     /// On the emulated board, which has a program of its own.
     Emulator(&'a Path),
-    /// On a virtual board, which has what is flashed.
+    /// On a virtual board, which has what is flashed: a program for a DAC.
     VirtualBoard {
         /// The program that is a virtual board.
         program: &'a Path,
@@ -50,11 +51,11 @@ pub enum BoardMeasurement {
 }
 
 impl BoardMeasurement {
-    /// Instructions from count to code.
-    pub fn compute(&self) -> &InstructionStats {
+    /// Instructions from count to code; none where the code is not put out, but kept for a current loop.
+    pub fn compute(&self) -> Option<&InstructionStats> {
         match self {
-            Self::Emulated(report) => &report.compute_instructions,
-            Self::Virtual(report) => &report.compute,
+            Self::Emulated(report) => Some(&report.compute_instructions),
+            Self::Virtual(report) => report.compute.as_ref(),
         }
     }
 
@@ -107,6 +108,9 @@ pub enum RunError {
     /// The virtual board failed.
     #[error(transparent)]
     VirtualBoard(#[from] VirtualBoardError),
+    /// The virtual board whose own bridge drives the motor failed.
+    #[error(transparent)]
+    Bridge(#[from] BridgeError),
 }
 
 /// Runs a servo for at most `ticks` ticks and, with a backend, its program on that board as well.
@@ -154,7 +158,7 @@ fn run_lockstep(
             (run, Some(BoardMeasurement::Emulated(Box::new(board.emulator.finish()?))))
         }
         Some(Backend::VirtualBoard { program, board, elf, period }) => {
-            let mut board = VirtualBoard::boot(program, board, elf)?;
+            let mut board = VirtualBoard::boot(program, board, elf, None)?;
             board.arm_and_wait(period)?;
             let run = run(plant, controller, Some(&mut board), ticks, progress)?;
             (run, Some(BoardMeasurement::Virtual(board.finish()?)))

@@ -10,6 +10,7 @@ pub mod command;
 
 // Output: charts, and pages with charts.
 pub mod chart;
+pub mod explore;
 pub mod report;
 
 // Measured once and kept: comparisons of methods, formats and models.
@@ -17,6 +18,7 @@ pub mod studies;
 
 // What runs: a program's scene in a servo, with a simulated device, a recording or a board around
 // it; and the device that was measured so.
+pub mod bridge_run;
 pub mod compare_run;
 pub mod counts_csv;
 pub mod felt_turn;
@@ -25,52 +27,36 @@ pub mod program;
 
 // The board, emulated or virtual, what builds for it, and a board without hardware.
 pub mod board_sim;
+pub mod bridge_board;
 pub mod emulator;
 pub mod lockstep;
+pub mod shaft;
 pub mod toolchain;
 pub mod virtual_board;
 
 // A board that runs, at the other end of a wire, and the view of it.
 pub mod link;
 pub mod scope;
+pub mod serve;
 
-// What scenes are worth and would do, and how far one may go.
+// What scenes are worth and would do, and how far one may go: all of it that needs no operating system is in
+// the package `haptic-model`.
+pub use haptic_model::{
+    chain, closed_form, controller, design, device, file, hand, latency_limits, limits,
+    line_search, missed, nominal_latency, number, nyquist, open_loop, profile_curve, quantity,
+    response, sampled_actuator, simulation, snap_branches, stability, stability_map, text_width,
+    trace, unit_circle_poles, verdict, verdict_text, worst_hand,
+};
+
+// The same with threads, files and studies.
 pub mod batch;
-pub mod closed_form;
-pub mod design;
-pub mod latency_limits;
-pub mod limits;
 pub mod mu_analysis;
-pub mod open_loop;
-pub mod profile_curve;
-pub mod response;
 pub mod run_csv;
-pub mod simulation;
-pub mod snap_branches;
-pub mod stability;
-pub mod stability_map;
-pub mod trace;
-pub mod unit_circle_poles;
-pub mod verdict;
-pub mod worst_hand;
-
-// Input: a scene, its device, its hand and its servo.
-pub mod chain;
-pub mod controller;
-pub mod device;
-pub mod file;
-pub mod hand;
-pub mod missed;
-pub mod nominal_latency;
-pub mod sampled_actuator;
 pub mod table;
 
 // Numbers and words.
 pub mod date;
-pub mod line_search;
-pub mod number;
 pub mod progress;
-pub mod quantity;
 pub mod terminal;
 pub mod text_table;
 

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use firmware::dac::DacCode;
-use firmware::scene::Scene;
+use firmware::scene::{Latency, Scene, Timing};
 use firmware::servo::Transducers;
 
 use crate::controller::{Controller, Tick};
@@ -53,6 +53,7 @@ pub struct SimulatedDevice {
     ticks: u64,
     state: DeviceState,
     energy: Energy,
+    let_go: bool,
 }
 
 impl SimulatedDevice {
@@ -77,7 +78,41 @@ impl SimulatedDevice {
             torque_per_code: full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE),
             ticks: 0,
             energy: Energy::default(),
+            let_go: false,
         })
+    }
+
+    /// The same on the shaft of a motor whose torque comes from elsewhere, in steps of this length in s.
+    ///
+    /// # Errors
+    /// Where device and hand are too fast for their motion over a step to be computed.
+    pub fn on_shaft(
+        scene: &Scene,
+        trajectory: HandTrajectory,
+        transducers: &Transducers,
+        step: f64,
+    ) -> Result<Self, SimulationError> {
+        let timing = Timing { period: step, worst_period: None };
+        let latency = Latency::NONE;
+        Self::new(&Scene { timing, latency, ..*scene }, trajectory, transducers)
+    }
+
+    /// The hand lets go, or follows its trajectory.
+    pub fn let_go(&mut self, let_go: bool) {
+        self.let_go = let_go;
+    }
+
+    /// A step with this motor torque in N m.
+    pub fn push(&mut self, torque: f64) {
+        let start = self.ticks as f64 * self.period;
+        self.ticks += 1;
+        let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
+        let is_held = start < self.trajectory.release && !self.let_go;
+        let device = if is_held { &self.held } else { &self.free };
+        let work = device.step(&mut self.state, torque, setpoint);
+        if is_held {
+            self.energy.add(work);
+        }
     }
 
     /// How the device moves now.
@@ -98,16 +133,7 @@ impl PlantIo for SimulatedDevice {
 
     fn hold(&mut self, code: u16) {
         let codes = f64::from(code) - f64::from(DacCode::MID_SCALE.get());
-        let torque = codes * self.torque_per_code;
-        let start = self.ticks as f64 * self.period;
-        self.ticks += 1;
-        let setpoint = self.trajectory.setpoint(start, self.ticks as f64 * self.period);
-        let is_held = start < self.trajectory.release;
-        let device = if is_held { &self.held } else { &self.free };
-        let work = device.step(&mut self.state, torque, setpoint);
-        if is_held {
-            self.energy.add(work);
-        }
+        self.push(codes * self.torque_per_code);
     }
 }
 
@@ -159,6 +185,17 @@ impl Run {
     pub fn peak_torque(&self) -> f64 {
         self.ticks.iter().fold(0.0, |peak, tick| tick.torque.abs().max(peak))
     }
+
+    /// The host's next tick, of this count, beside the code that the remote servo gave.
+    pub fn add(&mut self, count: i32, tick: Tick, target: u16) {
+        if target == tick.code {
+            self.equal += 1;
+        } else if self.difference.is_none() {
+            let (number, host) = (self.ticks.len(), tick.code);
+            self.difference = Some(Difference { tick: number, count, host, target });
+        }
+        self.ticks.push(tick);
+    }
 }
 
 /// Runs at most `ticks` ticks. With a remote servo, its codes move the device, and the servo here is
@@ -179,14 +216,8 @@ pub fn run<T: RemoteServo>(
             Some(remote) => remote.exchange(count)?,
             None => tick.code,
         };
-        if code == tick.code {
-            run.equal += 1;
-        } else if run.difference.is_none() {
-            let (number, host) = (run.ticks.len(), tick.code);
-            run.difference = Some(Difference { tick: number, count, host, target: code });
-        }
         plant.hold(code);
-        run.ticks.push(tick);
+        run.add(count, tick, code);
         progress();
     }
     Ok(run)
@@ -207,7 +238,7 @@ impl RemoteServo for NoRemote {
 mod tests {
     use firmware::encoder::CounterWidth;
     use firmware::environment::{Environment, Wall};
-    use firmware::scene::{Coupling, Device, Latency, Timing};
+    use firmware::scene::{Coupling, Device};
 
     use super::*;
 

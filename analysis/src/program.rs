@@ -26,6 +26,7 @@ pub mod undelayed_wall;
 use std::io;
 use std::sync::OnceLock;
 
+use firmware::current::CurrentLoop;
 use firmware::environment::Discretize;
 use firmware::number::Number;
 use firmware::scene::Scene;
@@ -48,6 +49,8 @@ pub struct Program {
     pub scene: Scene,
     /// The encoder and the motor that it is built for.
     pub transducers: Transducers,
+    /// The current loop of the board's own bridge that makes its torques; none where a DAC does.
+    pub bridge: &'static Option<CurrentLoop>,
     /// What a hand does to show it.
     pub trajectory: fn() -> HandTrajectory,
     /// What its servo keeps from tick to tick, in a format.
@@ -145,6 +148,7 @@ macro_rules! program {
             name: stringify!($module),
             scene: $module::SCENE.as_data(),
             transducers: $module::TRANSDUCERS,
+            bridge: &$module::BRIDGE,
             trajectory: || {
                 $crate::hand::HandTrajectory::for_environment(&$module::SCENE.as_data().environment)
             },

@@ -137,7 +137,10 @@ fn verdict(report: &VerdictReport) -> Markup {
 /// Where the page is from.
 fn origin(page: &Page<'_>) -> Markup {
     let version = env!("CARGO_PKG_VERSION");
-    html! { p id="origin" { "Of " (page.path) ", by haptic " (version) ", on " (page.date) "." } }
+    html! {
+        p id="origin" { "Of " (page.path) ", by haptic " (version) ", on " (page.date) "." }
+        p { "To change this scene and to hold it in a browser: " code { "haptic explore " (page.path) " -o explore.html" } }
+    }
 }
 
 /// Environment, device and hand, with all of their keys.

@@ -8,6 +8,7 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use firmware::current::{Drive, Motor, Winding};
 use firmware::dac::DacCode;
 use firmware::servo::RenderingOptions;
 use firmware::wire::message::{LONGEST_TO_BOARD, ToBoard};
@@ -16,16 +17,22 @@ use firmware::wire::{encode, largest_frame};
 use crate::emulator::InstructionStats;
 use crate::emulator::log::LogDecoder;
 use crate::lockstep::RemoteServo;
+use crate::shaft::{Shaft, ShaftMotion};
 use crate::toolchain::Board;
 
 /// What a board says at the end of a sample, and when it is asked to end.
 const SAMPLE: u8 = 1;
 const END: u8 = 0;
+/// What it says at the end of each period of its bridge's modulation, and how long that message is.
+const PWM_PERIOD: u8 = 2;
+const PWM_PERIOD_BYTES: u64 = 16;
+/// What the gates are driven by, if by anything but the servo.
+const ALIGNING: u8 = 2;
 /// A code that is none.
 const NO_CODE: u16 = u16::MAX;
 /// Samples within which a servo that was asked to arm must have done so: many times what a frame and
 /// what the board may be at take.
-const LONGEST_ARMING: usize = 10_000;
+pub const LONGEST_ARMING: usize = 10_000;
 
 /// Why a virtual board does not do what it should.
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +46,16 @@ pub enum VirtualBoardError {
         /// What it said.
         said: String,
     },
+    /// Its motor was asked to be aligned, and that has not begun or not ended.
+    #[error(
+        "the motor at the virtual board's bridge is not aligned after {samples} samples; its log: {log}"
+    )]
+    NotAligned {
+        /// Samples since.
+        samples: usize,
+        /// What it logged.
+        log: String,
+    },
     /// Its servo was asked to arm, and did not switch the amplifier on.
     #[error(
         "the virtual board's amplifier has stayed off for {LONGEST_ARMING} samples; its log: {log}"
@@ -49,13 +66,16 @@ pub enum VirtualBoardError {
     },
 }
 
-/// A sample that has ended.
+/// A sample that has ended; where a bridge drives the motor, one that begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// The DAC's code in it; none while nothing drives its pin.
+    /// The DAC's code in it; none while nothing drives its pin. The code that a bridge's current loop follows
+    /// in it.
     pub code: Option<u16>,
-    /// Whether the amplifier was on.
+    /// Whether the amplifier was on, or the bridge's gates are driven.
     pub amplifier: bool,
+    /// Whether that is by an alignment, or one is about to begin.
+    pub is_aligning: bool,
     /// What the serial port has sent.
     pub sent: Vec<u8>,
 }
@@ -71,14 +91,40 @@ impl Sample {
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualBoardReport {
-    /// Instructions from reading the count to writing the code.
-    pub compute: InstructionStats,
+    /// Instructions from reading the count to writing the code; none where that is to memory, for a bridge.
+    pub compute: Option<InstructionStats>,
     /// Instructions of the servo's whole interrupt.
     pub interrupt: InstructionStats,
     /// Times that the board was reset.
     pub resets: u32,
     /// Lines of the log.
     pub log: Vec<String>,
+}
+
+/// A request as it goes over the serial port.
+pub fn request(message: &ToBoard) -> Vec<u8> {
+    let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
+    // It is a few bytes; the buffer has room for the longest.
+    encode(message, &mut buffer).unwrap_or_default().to_vec()
+}
+
+/// Samples from arming until the clamp of a servo with this period in s has opened.
+pub fn fading_samples(period: f64) -> usize {
+    // Rounded up, and two for the ticks in which it begins and ends.
+    (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2
+}
+
+/// A drive as the virtual board reads it: its supply in the middle of the range.
+fn words(drive: &Drive) -> [String; 5] {
+    let Motor { winding, resistance, inductance, torque_constant } = drive.motor;
+    let winding = match winding {
+        Winding::Brushed => "brushed".to_owned(),
+        Winding::Brushless { pole_pairs } => pole_pairs.to_string(),
+    };
+    let supply = 0.5 * (drive.supply.lowest + drive.supply.highest);
+    let [resistance, inductance, torque_constant, supply] =
+        [resistance, inductance, torque_constant, supply].map(|number| number.to_string());
+    [winding, resistance, inductance, torque_constant, supply]
 }
 
 /// A running board.
@@ -93,16 +139,22 @@ pub struct VirtualBoard {
 
 impl VirtualBoard {
     /// Switches one on: the `program` that is a virtual board, as this `board`, with the ELF in its
-    /// flash. It stands still until the first [`Self::sample`].
+    /// flash, and the drive of its bridge if it has one. It stands still until the first [`Self::sample`].
     ///
     /// # Errors
     /// Where it cannot be started.
-    pub fn boot(program: &Path, board: Board, elf: &Path) -> Result<Self, VirtualBoardError> {
+    pub fn boot(
+        program: &Path,
+        board: Board,
+        elf: &Path,
+        drive: Option<&Drive>,
+    ) -> Result<Self, VirtualBoardError> {
         let decoder =
             LogDecoder::of_program(&std::fs::read(elf).map_err(VirtualBoardError::Start)?);
         let mut process = Command::new(program)
             .arg(board.name())
             .arg(elf)
+            .args(drive.map(words).into_iter().flatten())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -123,6 +175,14 @@ impl VirtualBoard {
         self.read_sample().map_err(|error| self.stopped(&error))
     }
 
+    /// The same where a bridge drives a motor, which turns this shaft meanwhile.
+    ///
+    /// # Errors
+    /// Where the board has stopped.
+    pub fn sample_turning(&mut self, shaft: &mut dyn Shaft) -> Result<Sample, VirtualBoardError> {
+        self.read_sample_turning(shaft).map_err(|error| self.stopped(&error))
+    }
+
     /// What comes of a sample: the position that the encoder has turned to in it, and bytes to the
     /// serial port. The next sample begins.
     ///
@@ -140,20 +200,15 @@ impl VirtualBoard {
     /// # Errors
     /// Where the board stops, or its servo is not armed.
     pub fn arm_and_wait(&mut self, period: f64) -> Result<(), VirtualBoardError> {
-        let mut buffer = [0; largest_frame(LONGEST_TO_BOARD)];
-        // A request is a few bytes; the buffer has room for the longest.
-        let arm = encode(&ToBoard::Arm { id: 0 }, &mut buffer).unwrap_or_default();
-        for sample in 0..LONGEST_ARMING {
+        let mut arm = request(&ToBoard::Arm { id: 0 });
+        for _ in 0..LONGEST_ARMING {
             let on = self.sample()?.amplifier;
-            self.answer(self.count, if sample == 0 { arm } else { &[] })?;
+            self.answer(self.count, &std::mem::take(&mut arm))?;
             if on {
-                // Rounded up, and two for the ticks in which it begins and ends.
-                let fading = (RenderingOptions::DEFAULT.fade / period).ceil() as usize + 2;
-                return self.hold_still(fading);
+                return self.hold_still(fading_samples(period));
             }
         }
-        let log = self.end().map_err(|error| self.stopped(&error))?.log.join("; ");
-        Err(VirtualBoardError::NotArmed { log })
+        Err(VirtualBoardError::NotArmed { log: self.last_log()? })
     }
 
     /// So many samples in which the device stands still; then the board waits for the first count.
@@ -163,6 +218,19 @@ impl VirtualBoard {
             self.answer(self.count, &[])?;
         }
         self.sample().map(drop)
+    }
+
+    /// Where the encoder is, in counts.
+    pub fn count(&self) -> i32 {
+        self.count
+    }
+
+    /// Switches it off, and gives its log in a line.
+    ///
+    /// # Errors
+    /// Where it has stopped before.
+    pub fn last_log(&mut self) -> Result<String, VirtualBoardError> {
+        Ok(self.end().map_err(|error| self.stopped(&error))?.log.join("; "))
     }
 
     /// Switches it off.
@@ -177,11 +245,44 @@ impl VirtualBoard {
         if self.bytes::<1>()? != [SAMPLE] {
             return Err(io::ErrorKind::InvalidData.into());
         }
+        self.rest_of_sample()
+    }
+
+    fn read_sample_turning(&mut self, shaft: &mut dyn Shaft) -> io::Result<Sample> {
+        loop {
+            match self.bytes()? {
+                [SAMPLE] => return self.rest_of_sample(),
+                [PWM_PERIOD] => self.turn(shaft)?,
+                _ => return Err(io::ErrorKind::InvalidData.into()),
+            }
+        }
+    }
+
+    /// A period of the modulation has ended.
+    fn turn(&mut self, shaft: &mut dyn Shaft) -> io::Result<()> {
+        let torque = f64::from_le_bytes(self.bytes()?);
+        let seconds = f64::from_le_bytes(self.bytes()?);
+        let ShaftMotion { count, angle, speed } = shaft.turn(torque, seconds);
+        let turned = count.wrapping_sub(self.count);
+        self.count = count;
+        let input = self.input.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
+        input.write_all(&turned.to_le_bytes())?;
+        input.write_all(&angle.to_le_bytes())?;
+        input.write_all(&speed.to_le_bytes())?;
+        input.flush()
+    }
+
+    fn rest_of_sample(&mut self) -> io::Result<Sample> {
         let code = u16::from_le_bytes(self.bytes()?);
         let [amplifier] = self.bytes()?;
         let mut sent = vec![0; u16::from_le_bytes(self.bytes()?).into()];
         self.output.read_exact(&mut sent)?;
-        Ok(Sample { code: (code != NO_CODE).then_some(code), amplifier: amplifier != 0, sent })
+        Ok(Sample {
+            code: (code != NO_CODE).then_some(code),
+            amplifier: amplifier != 0,
+            is_aligning: amplifier == ALIGNING,
+            sent,
+        })
     }
 
     fn write_answer(&mut self, turned: i32, bytes: &[u8]) -> io::Result<()> {
@@ -195,13 +296,20 @@ impl VirtualBoard {
 
     fn end(&mut self) -> io::Result<VirtualBoardReport> {
         self.input = None;
-        while self.bytes::<1>()? != [END] {
-            // Skips an unread sample: code and amplifier follow its mark.
-            let [_, _, _, low, high] = self.bytes()?;
-            let length = u16::from_le_bytes([low, high]).into();
+        loop {
+            // Skips what is unread.
+            let length = match self.bytes()? {
+                [END] => break,
+                [PWM_PERIOD] => PWM_PERIOD_BYTES,
+                // Code and amplifier follow its mark.
+                _ => {
+                    let [_, _, _, low, high] = self.bytes()?;
+                    u16::from_le_bytes([low, high]).into()
+                }
+            };
             io::copy(&mut (&mut self.output).take(length), &mut io::sink())?;
         }
-        let compute = self.stats()?;
+        let compute = Some(self.stats()?).filter(|stats| stats.count > 0);
         let interrupt = self.stats()?;
         let resets = u32::from_le_bytes(self.bytes()?);
         let mut log = Vec::new();

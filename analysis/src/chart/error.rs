@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use firmware::passivity::transfer::Unbuildable;
 use thiserror::Error;
 
+use crate::nyquist::NoTransfer;
 use crate::quantity::significant;
 
 /// Why a picture could not be drawn.
@@ -53,13 +53,8 @@ pub enum ChartError {
     #[error("the picture cannot be drawn: {0}")]
     Drawing(String),
     /// The scene has no transfer function to draw.
-    #[error("{scene}: the environment has no transfer function to draw: {}", unbuildable(*.why))]
-    NoTransfer {
-        /// Name of the scene.
-        scene: String,
-        /// Why.
-        why: Unbuildable,
-    },
+    #[error(transparent)]
+    NoTransfer(#[from] NoTransfer),
     /// The requested axis has no data.
     #[error(
         "there is nothing to draw from {} to {} on the {axis} axis: the data go from {} to {}",
@@ -80,15 +75,4 @@ pub enum ChartError {
 
 fn number(value: f64) -> String {
     significant(value, 6)
-}
-
-fn unbuildable(why: Unbuildable) -> &'static str {
-    match why {
-        Unbuildable::Improper => "it needs future samples",
-        Unbuildable::IllPosed => "coupling and environment have no unique solution",
-        Unbuildable::OutOfRange => "one of its numbers is out of range",
-        Unbuildable::Unstated => {
-            "its environment is a torque profile, or stated by a bound alone, and has no transfer function"
-        }
-    }
 }

@@ -43,17 +43,6 @@ fn hatching(region: Region) -> Option<Fill> {
     }
 }
 
-fn name(region: Region) -> &'static str {
-    match region {
-        Region::Paper => "certified by the paper's rule",
-        Region::Exact => "certified by the exact rule only",
-        Region::Undecided => "undecided, stable with no hand",
-        Region::Rejected => "rejected, stable with no hand",
-        Region::Unstable => "unstable with no hand",
-        Region::Wrong => "WRONG: certified, unstable",
-    }
-}
-
 /// The regions of the legend, the best first; rare ones only if present.
 fn named(map: &Map) -> Vec<Region> {
     let is_named = |region: &Region| hatching(*region).is_none() || map.share(*region) > 0.0;
@@ -155,7 +144,7 @@ fn write_legend(area: &Area<'_>, map: &Map, overlay: &Overlay) -> Drawn<()> {
         }
         area.draw(&Rectangle::new(corners, pen(1)))?;
         let share = crate::quantity::significant(100.0 * map.share(region), 3);
-        let words = format!("{} ({share} %)", name(region));
+        let words = format!("{} ({share} %)", region.words());
         area.draw(&Text::new(words, (x + units(44), y), style()))?;
     }
     if let Some(border) = &overlay.border {

@@ -14,10 +14,12 @@ use super::rebuild_with_scene;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::seconds;
 use super::virtual_board_build::VirtualBoardBuild;
-use crate::board_sim::{Pacing, SimulatedBoard};
+use crate::board_sim::{DrivingBoard, Pacing, SimulatedBoard};
+use crate::hand::HandTrajectory;
 use crate::link::Address;
 use crate::lockstep::SimulatedDevice;
 use crate::program::Program;
+use crate::shaft::HandHeldShaft;
 use crate::toolchain::{Board, NumberFormat};
 
 /// Arguments of `haptic board-sim`.
@@ -54,24 +56,11 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         signal_hook::flag::register(signal, enough.clone())?;
     }
     let trajectory = (program.trajectory)().repeated_until(HAND_DURATION);
-    let period = program.scene.timing.period;
-    let device = SimulatedDevice::new(&program.scene, trajectory, &program.transducers)?;
-    let (device, address) = (Box::new(device), &arguments.port);
-    let board = match arguments.board {
-        None => program.listen(device, address, Pacing::RealTime),
-        Some(board) => {
-            let built = VirtualBoardBuild::build(board, program.name, NumberFormat::F32)?;
-            SimulatedBoard::from_virtual_board(
-                built.boot()?,
-                device,
-                address,
-                Pacing::RealTime,
-                period,
-            )
-        }
-    };
-    let board =
-        board.map_err(|source| CommandError::Listen { address: address.clone(), source })?;
+    let built = |board| VirtualBoardBuild::build(board, program, NumberFormat::F32);
+    let built = arguments.board.map(built).transpose()?;
+    let address = &arguments.port;
+    let board = listening(program, built.as_ref(), trajectory, address)?
+        .map_err(|source| CommandError::Listen { address: address.clone(), source })?;
     writeln!(io::stdout(), "{name} listens on {}", board.address())?;
     let end = arguments.duration.map(|duration| Instant::now() + duration);
     let is_over = || enough.load(Ordering::Relaxed) || end.is_some_and(|end| Instant::now() >= end);
@@ -80,6 +69,29 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     }
     board.end()?;
     Ok(CommandStatus::Success)
+}
+
+/// The program behind its port, in a hand.
+fn listening(
+    program: &Program,
+    built: Option<&VirtualBoardBuild>,
+    hand: HandTrajectory,
+    address: &Address,
+) -> Result<io::Result<SimulatedBoard>, CommandError> {
+    let Program { scene, transducers, .. } = program;
+    let Some(built) = built else {
+        let device = Box::new(SimulatedDevice::new(scene, hand, transducers)?);
+        return Ok(program.listen(device, address, Pacing::RealTime));
+    };
+    let board = if let Some((board, current_loop)) = built.boot_bridge()? {
+        let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
+        DrivingBoard::Bridge { board, shaft: Box::new(shaft) }
+    } else {
+        let plant = Box::new(SimulatedDevice::new(scene, hand, transducers)?);
+        DrivingBoard::Dac { board: built.boot()?, plant, count: None }
+    };
+    let period = scene.timing.period;
+    Ok(SimulatedBoard::from_virtual_board(board, address, Pacing::RealTime, period))
 }
 
 /// Why there is no simulated board of that name: a scene file may have been meant.

@@ -8,6 +8,7 @@ pub mod chart;
 pub mod demo;
 pub mod design;
 pub mod device;
+pub mod explore;
 pub mod failures;
 mod file_scene;
 pub mod flash;
@@ -19,6 +20,7 @@ pub mod report;
 pub mod run;
 pub mod schema;
 pub mod scope;
+pub mod serve;
 pub mod shared_arguments;
 pub mod simulate;
 pub mod stability;
@@ -35,6 +37,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use status::{CommandError, CommandStatus};
 
 use crate::terminal;
+use crate::text_width;
 
 /// Certifies haptic scenes, runs them, and draws their behaviour.
 #[derive(Debug, Parser)]
@@ -79,7 +82,7 @@ fn refuse(error: &clap::Error) -> ! {
     }
     let text = text(io::stderr().is_terminal());
     // No output is left if this fails.
-    let _ = write!(io::stderr(), "{}", terminal::wrapped(&text, terminal::error_width(), 2));
+    let _ = write!(io::stderr(), "{}", text_width::wrapped(&text, terminal::error_width(), 2));
     std::process::exit(error.exit_code())
 }
 
@@ -112,6 +115,8 @@ pub enum Command {
     Chart(chart::Arguments),
     /// Write verdict, numbers, assumptions and charts of a scene into one HTML page.
     Report(report::Arguments),
+    /// Write a scene into one HTML page: to change it, see what changes, hold it, and send it on.
+    Explore(explore::Arguments),
     /// Measure the cost of a certificate, a simulated step and a tick.
     Bench(bench::Arguments),
     /// Show or change the parameters of a running board, arm it or disarm it.
@@ -121,6 +126,11 @@ pub enum Command {
     /// Keys: t opens a line for new parameters (stiffness = 20), A arms, d disarms, q quits. The
     /// torque is the coupling torque, as in every trace; the motor applies its negative.
     Scope(scope::Arguments),
+    /// Serve a running board to a page in a browser: to tune, arm, watch and record it there.
+    ///
+    /// Prints the address of the page, on this machine alone, with a token that is new each time. The page is
+    /// that of `haptic explore`; one page at a time has the board.
+    Serve(serve::Arguments),
     /// Simulate a board with device and hand, to try `tune` and `scope` without hardware.
     #[command(name = "board-sim", alias = "twin")]
     BoardSim(board_sim::Arguments),
@@ -171,9 +181,11 @@ pub fn execute(arguments: Arguments) -> ExitCode {
         Command::Demo(arguments) => demo::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Explore(arguments) => explore::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Tune(arguments) => tune::run(&arguments),
         Command::Scope(arguments) => scope::run(&arguments),
+        Command::Serve(arguments) => serve::run(&arguments),
         Command::BoardSim(arguments) => board_sim::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
@@ -206,7 +218,7 @@ fn print_error(error: &CommandError) {
     let (colour, width) = (terminal::has_colour(stderr.is_terminal()), terminal::error_width());
     let text = match error {
         CommandError::File(error) => error.report_within(colour, width),
-        other => terminal::wrapped(&format!("error: {other}"), width, 7),
+        other => text_width::wrapped(&format!("error: {other}"), width, 7),
     };
     // No output is left if this fails.
     let _ = writeln!(stderr.lock(), "{text}");

@@ -24,16 +24,13 @@ pub fn text(outcome: &RunOutcome) -> String {
     if let Some(board) = &outcome.board {
         rows.push(("codes equal", format!("{} of {}", run.equal, run.ticks.len())));
         let (compute, whole) = (board.compute(), board.interrupt());
-        rows.push((
-            "instructions per tick",
-            format!(
-                "{} to {} from count to code, {} on average; {} on average in the whole interrupt",
-                compute.min,
-                compute.max,
-                significant(compute.mean, 3),
-                significant(whole.mean, 3)
-            ),
-        ));
+        let compute = compute.map_or(String::new(), |compute| {
+            let mean = significant(compute.mean, 3);
+            format!("{} to {} from count to code, {mean} on average; ", compute.min, compute.max)
+        });
+        let whole = significant(whole.mean, 3);
+        let text = format!("{compute}{whole} on average in the whole interrupt");
+        rows.push(("instructions per tick", text));
     }
     rows.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
 }
@@ -63,7 +60,7 @@ pub fn section(program: &Program, report: &VerdictReport, outcome: &RunOutcome) 
 /// Speed in rad/s above which a device counts as turning: half a turn in an hour is none.
 const AT_REST: f64 = 1e-3;
 
-/// Why a released device keeps turning: the DAC rounds, where it is on a spring its encoder has edges, and
+/// Why a released device keeps turning: the DAC rounds, or the current's converter does, where it is on a spring its encoder has edges, and
 /// the simulated device has no friction at all. In the linear theory it stops.
 fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     let speed = outcome.final_speed.unwrap_or(0.0);
@@ -73,7 +70,11 @@ fn coasting(program: &Program, outcome: &RunOutcome) -> String {
     }
     let friction = if is_held_by_a_spring(program) {
         let friction = RoundUp3(friction_to_rest(program));
-        format!("that the encoder's and the DAC's steps ask for, {friction} N m,")
+        let steps = if program.bridge.is_some() { "current loop" } else { "DAC" };
+        format!("that the encoder's and the {steps}'s steps ask for, {friction} N m,")
+    } else if let Some(current_loop) = program.bridge {
+        let friction = RoundUp3(current_loop.resolution().deviation);
+        format!("of what the current loop's steps leave, {friction} N m,")
     } else {
         let full_scale = program.transducers.full_scale_torque;
         let half_step = 0.5 * full_scale / f64::from(DacCode::CODES_TO_FULL_SCALE);

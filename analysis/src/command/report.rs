@@ -16,6 +16,7 @@ use crate::report::{Figure, Page};
 use crate::simulation::SimulationError;
 use crate::stability_map::MapError;
 use crate::terminal;
+use crate::text_width;
 use crate::trace::Trace;
 use crate::verdict::Verdict;
 
@@ -73,10 +74,10 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     };
     let nyquist =
         match nyquist("From velocity to torque: (T z/(z-1)) E(z)", &named, &Window::default()) {
-            Err(ChartError::NoTransfer { .. }) if profile.is_some() => {
+            Err(ChartError::NoTransfer(_)) if profile.is_some() => {
                 missing("A torque profile has no transfer function, and so no Nyquist curve.")
             }
-            Err(ChartError::NoTransfer { .. }) => {
+            Err(ChartError::NoTransfer(_)) => {
                 missing("The environment has no transfer function to draw.")
             }
             drawn => Figure::Drawn(drawn?),
@@ -86,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     std::fs::write(&arguments.output, page.html())
         .map_err(|source| CommandError::Unwritable { path: arguments.output.clone(), source })?;
     let said = format!("{}: {}\n", arguments.output.display(), report.message);
-    let said = terminal::wrapped(&said, terminal::output_width(), 0);
+    let said = text_width::wrapped(&said, terminal::output_width(), 0);
     io::stdout().lock().write_all(said.as_bytes())?;
     Ok(if report.verdict == Verdict::Certified {
         CommandStatus::Success

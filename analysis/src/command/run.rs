@@ -11,13 +11,14 @@ use firmware::scene::Scene;
 use firmware::servo::Transducers;
 use serde::Serialize;
 
-use super::file_scene::{hand_trajectory, scene_file, transducers_of};
+use super::file_scene::{hand_trajectory, scene_file};
 use super::outcome::{section, text};
 use super::shared_arguments::{DEFAULT_TICKS, JsonOption, MAX_TICKS, json};
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::positive;
 use super::virtual_board_build::VirtualBoardBuild;
-use crate::compare_run::{Backend, Input, RunOutcome, run_with_backend};
+use crate::bridge_run::{ShaftInput, run_on_bridge};
+use crate::compare_run::{Backend, Input, RunError, RunOutcome, run_with_backend};
 use crate::controller::{Controller, controller};
 use crate::device::Energy;
 use crate::file::SceneFile;
@@ -25,6 +26,7 @@ use crate::hand::HandTrajectory;
 use crate::lockstep::{Difference, SimulatedDevice};
 use crate::program::Program;
 use crate::progress;
+use crate::shaft::{HandHeldShaft, RecordedShaft};
 use crate::toolchain::{self, Board, NumberFormat, Tools, UnknownBoard};
 use crate::{counts_csv, lockstep, verdict};
 
@@ -87,7 +89,8 @@ pub struct Arguments {
     #[arg(value_name = "SCENE")]
     pub scene: String,
     /// Target: host, qemu (the emulated board), or board:NAME (the program as flashed, on a virtual
-    /// board: nucleo-g474re, b-g431b-esc1, stm32f405)
+    /// board: nucleo-g474re, b-g431b-esc1, stm32f405; with a motor, aligned and armed, where the program
+    /// is for the board's own bridge)
     #[arg(long, default_value_t = Target::Host)]
     pub target: Target,
     /// Replay recorded counts, one for each tick (column `count`), instead of simulating the device
@@ -145,8 +148,8 @@ struct Summary<'a> {
 /// Instructions a tick on the board.
 #[derive(Serialize)]
 struct Instructions {
-    compute_mean: f64,
-    compute_max: u64,
+    compute_mean: Option<f64>,
+    compute_max: Option<u64>,
     interrupt_mean: f64,
     interrupt_max: u64,
 }
@@ -161,23 +164,8 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         Some(counts) => arguments.ticks.map_or(counts.len(), |ticks| ticks.min(counts.len())),
         None => arguments.ticks.unwrap_or(DEFAULT_TICKS),
     };
-    let input = match &counts {
-        Some(counts) => Input::Recording(counts),
-        None => Input::Hand(Box::new(SimulatedDevice::new(
-            &setup.scene,
-            setup.trajectory.clone(),
-            &setup.transducers,
-        )?)),
-    };
     let bar = progress::bar(ticks as u64, &setup.name);
-    let stepper = progress::stepper(&bar);
-    let outcome = run_with_backend(
-        input,
-        setup.controller.as_mut(),
-        built.backend(setup.scene.timing.period),
-        ticks,
-        stepper,
-    )?;
+    let outcome = ran(&mut setup, &built, counts.as_deref(), ticks, progress::stepper(&bar))?;
     bar.finish_and_clear();
     print(arguments, &setup, &outcome)?;
     Ok(if outcome.run.difference.is_none() {
@@ -185,6 +173,42 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     } else {
         CommandStatus::NegativeVerdict
     })
+}
+
+/// Runs it: with a hand, or with recorded counts.
+fn ran(
+    setup: &mut RunSetup,
+    built: &Built,
+    counts: Option<&[i32]>,
+    ticks: usize,
+    progress: impl FnMut(),
+) -> Result<RunOutcome, CommandError> {
+    let RunSetup { scene, transducers, trajectory, .. } = setup;
+    let controller = setup.controller.as_mut();
+    if let Built::Virtual(flashed) = built
+        && let Some((board, current_loop)) = flashed.boot_bridge()?
+    {
+        let input = match counts {
+            Some(counts) => {
+                ShaftInput::Recording(RecordedShaft::new(counts, transducers, current_loop))
+            }
+            None => {
+                let hand = trajectory.clone();
+                let shaft = HandHeldShaft::new(scene, hand, transducers, current_loop)?;
+                ShaftInput::Hand(Box::new(shaft))
+            }
+        };
+        let outcome = run_on_bridge(input, controller, board, scene, ticks, progress);
+        return Ok(outcome.map_err(RunError::from)?);
+    }
+    let input = match counts {
+        Some(counts) => Input::Recording(counts),
+        None => {
+            Input::Hand(Box::new(SimulatedDevice::new(scene, trajectory.clone(), transducers)?))
+        }
+    };
+    let backend = built.backend(scene.timing.period);
+    Ok(run_with_backend(input, controller, backend, ticks, progress)?)
 }
 
 fn setup(arguments: &Arguments) -> Result<RunSetup, CommandError> {
@@ -223,7 +247,7 @@ fn of_file(arguments: &Arguments) -> Result<RunSetup, CommandError> {
     let file = scene_file(&arguments.scene)?;
     let certified =
         file.scene.certify().map_err(|rejection| CommandError::Refused(Box::new(rejection)))?;
-    let transducers = transducers_of(&file, arguments.counts_per_rev, arguments.full_scale);
+    let transducers = file.transducers(arguments.counts_per_rev, arguments.full_scale);
     let controller = match arguments.format {
         NumberFormat::F32 => controller::<_, f32>(&certified, &transducers)?,
         NumberFormat::Fixed => controller::<_, fixed::types::I8F24>(&certified, &transducers)?,
@@ -287,7 +311,7 @@ fn build(setup: &RunSetup, arguments: &Arguments) -> Result<Built, CommandError>
     };
     let format = arguments.format;
     if let Target::Board(board) = arguments.target {
-        return Ok(Built::Virtual(VirtualBoardBuild::build(board, program.name, format)?));
+        return Ok(Built::Virtual(VirtualBoardBuild::build(board, program, format)?));
     }
     let toolchain =
         toolchain::prepare(Tools::CompilerAndEmulator, |step| eprintln!("set-up: {step}"))?;
@@ -332,8 +356,8 @@ fn summary<'a>(arguments: &Arguments, name: &'a str, outcome: &RunOutcome) -> Su
         codes_equal: on_board.then_some(outcome.run.equal),
         difference: outcome.run.difference,
         instructions: outcome.board.as_ref().map(|board| Instructions {
-            compute_mean: board.compute().mean,
-            compute_max: board.compute().max,
+            compute_mean: board.compute().map(|compute| compute.mean),
+            compute_max: board.compute().map(|compute| compute.max),
             interrupt_mean: board.interrupt().mean,
             interrupt_max: board.interrupt().max,
         }),

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use haptic_model::board::timing::stream_every;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event as Input};
 
@@ -42,9 +43,6 @@ pub struct Arguments {
     pub window: Duration,
 }
 
-/// Ticks a second that are sent by default: as many as a serial line carries and as curves can
-/// show.
-const RATE: f64 = 1000.0;
 /// Time between two pictures.
 const PICTURE: Duration = Duration::from_millis(33);
 
@@ -61,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
         (None, false) => None,
     };
     let link = Link::open(&arguments.port)?;
-    let every = arguments.every.unwrap_or_else(|| every(link.board().period));
+    let every = arguments.every.unwrap_or_else(|| stream_every(link.board().period));
     let mut session = Session {
         scope: Scope::new(arguments.port.to_string(), arguments.window.as_secs_f64()),
         poller: BoardPoller::start(link, every),
@@ -88,11 +86,6 @@ fn ticks(text: &str) -> Result<NonZeroU32, String> {
 
 fn create(path: &Path) -> Result<File, CommandError> {
     File::create(path).map_err(|source| CommandError::Unwritable { path: path.to_owned(), source })
-}
-
-fn every(period: f64) -> NonZeroU32 {
-    // The cast saturates.
-    NonZeroU32::new((1.0 / (period * RATE)).round() as u32).unwrap_or(NonZeroU32::MIN)
 }
 
 struct Session {

@@ -61,16 +61,6 @@ pub enum CommandError {
         /// The programs that there are.
         programs: String,
     },
-    /// The torque of a program is that of a bridge, which is not in lockstep with the host.
-    #[error(
-        "{program} drives a motor by the bridge of its board, whose torque follows many times in a period: a \
-         virtual board in lockstep has a DAC alone. Its codes are those of --target host and --target qemu; with \
-         the bridge it runs in the tests of the virtual board"
-    )]
-    BridgeInLockstep {
-        /// The program.
-        program: String,
-    },
     /// A scene file has no program for a simulated board.
     #[error(
         "{file} is a file; a simulated board needs the name of a scene's program: {programs}; \
@@ -222,6 +212,12 @@ pub enum CommandError {
         /// The file.
         path: PathBuf,
     },
+    /// The page could not be opened.
+    #[error("the page is written, but no browser could be opened: {why}")]
+    NoBrowser {
+        /// Why.
+        why: String,
+    },
     /// A file or folder could not be written.
     #[error("{path}: {source}")]
     Unwritable {
@@ -267,6 +263,9 @@ pub enum CommandError {
     /// A board cannot be talked to.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// A board cannot be served.
+    #[error(transparent)]
+    Serve(#[from] crate::serve::ServeError),
     /// The address cannot be bound.
     #[error("cannot listen on {address}: {source}")]
     Listen {

@@ -14,7 +14,7 @@ use super::shared_arguments::{JsonOption, json};
 use super::status::{CommandError, CommandStatus};
 use crate::link::change::{change, collect};
 use crate::link::{self, Address, Link};
-use crate::scope::{Power, formatting};
+use crate::scope::{Power, formatting, modes};
 
 /// Arguments of `haptic tune`.
 #[derive(Debug, Args)]
@@ -37,7 +37,8 @@ pub struct Arguments {
     #[arg(long)]
     pub disarm: bool,
     /// Align the brushless motor of a motor board, after a change and before --arm: its field turns the handle
-    /// for some seconds. Keep the hand off. Needed once after each reset
+    /// for some seconds. Keep the hand off. Needed once after each reset, unless the program states the
+    /// offset of the encoder's index, which is printed once the index has come
     #[arg(long)]
     pub align: bool,
     #[command(flatten)]
@@ -155,13 +156,17 @@ fn print(
     }
     writeln!(out, "{}", formatting::reset(status))?;
     writeln!(out, "{}", formatting::numbers(running))?;
-    if let Some(modes) = formatting::modes(link.program(), running) {
+    if let Some(modes) = modes::modes(link.program(), running) {
         writeln!(out, "{modes}")?;
     }
     writeln!(out, "{}", formatting::reserves(running, status, board, None))?;
     writeln!(out, "{}", formatting::energy(status, board))?;
     if let Some(reading) = status.power {
-        writeln!(out, "{}", Power::from(reading))?;
+        let power = Power::from(reading);
+        writeln!(out, "{power}")?;
+        if let Some(offset) = power.index_offset() {
+            writeln!(out, "{offset}")?;
+        }
     }
     writeln!(out, "{}", formatting::losses(status, link.discarded()))?;
     Ok(())

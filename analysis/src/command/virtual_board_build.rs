@@ -2,42 +2,62 @@
 
 use std::path::PathBuf;
 
+use firmware::current::CurrentLoop;
+
 use super::status::CommandError;
+use crate::bridge_board::BridgeBoard;
 use crate::compare_run::Backend;
+use crate::program::Program;
 use crate::progress;
 use crate::toolchain::{self, Board, NumberFormat, Tools, TorqueOutput};
 use crate::virtual_board::{VirtualBoard, VirtualBoardError};
 
 /// A virtual board, and the program for its flash.
 pub struct VirtualBoardBuild {
-    program: PathBuf,
+    executable: PathBuf,
     board: Board,
     elf: PathBuf,
+    program: &'static Program,
 }
 
 impl VirtualBoardBuild {
     /// Builds both, after setting up what is missing for that.
-    pub fn build(board: Board, name: &str, format: NumberFormat) -> Result<Self, CommandError> {
+    pub fn build(
+        board: Board,
+        program: &'static Program,
+        format: NumberFormat,
+    ) -> Result<Self, CommandError> {
+        let name = program.name;
         let tools = Tools::CompilerAndVirtualBoard;
         let toolchain = toolchain::prepare(tools, |step| eprintln!("set-up: {step}"))?;
         let spinner = progress::spinner(&format!("building {name} and the virtual board"));
-        let output = toolchain.output_of(name)?;
-        if output == TorqueOutput::Bridge {
-            return Err(CommandError::BridgeInLockstep { program: name.to_owned() });
-        }
+        let output =
+            if program.bridge.is_some() { TorqueOutput::Bridge } else { TorqueOutput::Dac };
         let elf = toolchain.build_for(board, output, &[name], format)?.swap_remove(0).path;
-        let program = toolchain.build_virtual_board()?;
+        let executable = toolchain.build_virtual_board()?;
         spinner.finish_and_clear();
-        Ok(Self { program, board, elf })
+        Ok(Self { executable, board, elf, program })
     }
 
-    /// Switches it on.
+    /// Switches on one whose program drives a DAC.
     pub fn boot(&self) -> Result<VirtualBoard, VirtualBoardError> {
-        VirtualBoard::boot(&self.program, self.board, &self.elf)
+        VirtualBoard::boot(&self.executable, self.board, &self.elf, None)
+    }
+
+    /// Switches it on with a motor, where its program drives the board's own bridge.
+    pub fn boot_bridge(
+        &self,
+    ) -> Result<Option<(BridgeBoard, &'static CurrentLoop)>, VirtualBoardError> {
+        let Some(current_loop) = self.program.bridge else { return Ok(None) };
+        let (executable, transducers) = (&self.executable, self.program.transducers);
+        let board =
+            BridgeBoard::boot(executable, self.board, &self.elf, current_loop, transducers)?;
+        Ok(Some((board, current_loop)))
     }
 
     /// It as what runs beside the host; `period` is that of its servo in s.
     pub fn backend(&self, period: f64) -> Backend<'_> {
-        Backend::VirtualBoard { program: &self.program, board: self.board, elf: &self.elf, period }
+        let program = &self.executable;
+        Backend::VirtualBoard { program, board: self.board, elf: &self.elf, period }
     }
 }

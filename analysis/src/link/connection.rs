@@ -3,7 +3,6 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use firmware::tuning::{Parameters, RenderError};
 use firmware::wire::description::Description;
 use firmware::wire::message::{
     ActiveParameters, Board, Changes, Id, LONGEST_TO_BOARD, LONGEST_TO_HOST, Outcome,
@@ -11,36 +10,15 @@ use firmware::wire::message::{
 };
 use firmware::wire::{CHECKSUM, Decoder, Discarded, PROTOCOL, encode, largest_frame};
 
+use haptic_model::board::OtherProtocol;
+use haptic_model::board::request::{RequestResult, refusal_in_words};
+use haptic_model::board::timing::{QUERY, REQUEST, RetryTiming};
+
 use super::transport::{self, Transport, is_timeout};
 use super::{Address, LinkError};
 
 /// What a board said, kept.
 pub type Message = ToHost<String>;
-
-/// What became of a request, in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RequestResult {
-    /// The request has taken effect.
-    Done,
-    /// It is refused, for this reason, and nothing has changed.
-    Refused(String),
-}
-
-/// How long an answer is waited for.
-#[derive(Clone, Copy)]
-pub(crate) struct RetryTiming {
-    /// Until it is asked again: bytes get lost.
-    pub(crate) again: Duration,
-    /// In all.
-    pub(crate) end: Duration,
-}
-
-/// With what a board knows.
-const QUERY_TIMING: RetryTiming =
-    RetryTiming { again: Duration::from_millis(250), end: Duration::from_secs(3) };
-/// With what a board does: it certifies a set, fades the torque out, swaps, and fades it in.
-pub(crate) const REQUEST_TIMING: RetryTiming =
-    RetryTiming { again: Duration::from_secs(2), end: Duration::from_secs(10) };
 
 /// A connection to a board that has said who it is.
 pub struct Link {
@@ -123,15 +101,6 @@ fn is_closed(error: &io::Error) -> bool {
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }
 
-impl From<Outcome> for RequestResult {
-    fn from(outcome: Outcome) -> Self {
-        match outcome {
-            Outcome::Done => Self::Done,
-            Outcome::Refused(refusal) => Self::Refused(refusal.to_string()),
-        }
-    }
-}
-
 impl Link {
     /// Connects and says hello.
     ///
@@ -143,7 +112,7 @@ impl Link {
         let (decoder, bytes) = (Decoder::new(), Box::new([0; 4096]));
         let mut wire = Wire { transport, decoder, bytes, filled: 0, used: 0 };
         let (mut welcome, mut previous_fault) = (None, None);
-        let greeted = wire.ask(&ToBoard::Hello, QUERY_TIMING, |message| match message {
+        let greeted = wire.ask(&ToBoard::Hello, QUERY, |message| match message {
             ToHost::Welcome { protocol, program } if protocol == PROTOCOL => {
                 welcome = Some(program);
                 None
@@ -168,9 +137,10 @@ impl Link {
                 last_id: fastrand::u16(..),
             }),
             Ok(Some(Err((theirs, program)))) => {
-                Err(LinkError::Protocol { address, program, theirs })
+                let address = address.to_string();
+                Err(LinkError::Protocol(OtherProtocol { address, program, theirs }))
             }
-            Ok(None) => Err(LinkError::Silent { address, after: QUERY_TIMING.end }),
+            Ok(None) => Err(LinkError::Silent { address, after: QUERY.end }),
             // A socket reports it; a serial line is silent.
             Err(source) if is_closed(&source) && !matches!(address, Address::Serial { .. }) => {
                 Err(LinkError::InUse { address })
@@ -226,16 +196,7 @@ impl Link {
     ) -> Result<RequestResult, LinkError> {
         if let Outcome::Refused(Refusal::Set(step)) = outcome {
             let (description, parameters) = (self.description()?, self.parameters()?);
-            let has = Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter));
-            if let Err(reason) = description.explain(has, changes)
-                && reason.step() == step
-            {
-                return Ok(RequestResult::Refused(reason.to_string()));
-            }
-            if let Some(mode) = description.other_mode(changes) {
-                let reason = RenderError::OtherMode { mode };
-                return Ok(RequestResult::Refused(reason.to_string()));
-            }
+            return Ok(refusal_in_words(step, changes, &description, &parameters));
         }
         Ok(outcome.into())
     }
@@ -269,7 +230,7 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn description(&mut self) -> Result<Description, LinkError> {
-        self.ask("the request for its description", &ToBoard::Describe, QUERY_TIMING, |message| {
+        self.ask("the request for its description", &ToBoard::Describe, QUERY, |message| {
             match message {
                 ToHost::Described(description) => Some(description),
                 _ => None,
@@ -282,11 +243,9 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn parameters(&mut self) -> Result<ActiveParameters, LinkError> {
-        self.ask("the request for its parameters", &ToBoard::Get, QUERY_TIMING, |message| {
-            match message {
-                ToHost::ActiveParameters(parameters) => Some(parameters),
-                _ => None,
-            }
+        self.ask("the request for its parameters", &ToBoard::Get, QUERY, |message| match message {
+            ToHost::ActiveParameters(parameters) => Some(parameters),
+            _ => None,
         })
     }
 
@@ -295,11 +254,9 @@ impl Link {
     /// # Errors
     /// Where the board does not answer.
     pub fn status(&mut self) -> Result<Status, LinkError> {
-        self.ask("the request for its status", &ToBoard::Status, QUERY_TIMING, |message| {
-            match message {
-                ToHost::Status(status) => Some(status),
-                _ => None,
-            }
+        self.ask("the request for its status", &ToBoard::Status, QUERY, |message| match message {
+            ToHost::Status(status) => Some(status),
+            _ => None,
         })
     }
 
@@ -331,7 +288,7 @@ impl Link {
         message: impl Fn(Id) -> ToBoard,
     ) -> Result<Outcome, LinkError> {
         let sent = self.next_id();
-        self.ask(what, &message(sent), REQUEST_TIMING, |message| match message {
+        self.ask(what, &message(sent), REQUEST, |message| match message {
             ToHost::Answer { id, outcome } if id == sent => Some(outcome),
             _ => None,
         })

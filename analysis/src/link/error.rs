@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 use std::time::Duration;
 
-use firmware::wire::PROTOCOL;
+use haptic_model::board::OtherProtocol;
 use thiserror::Error;
 
 use super::Address;
@@ -43,18 +43,8 @@ pub enum LinkError {
         address: Address,
     },
     /// A board of another version.
-    #[error(
-        "the board on {address} runs `{program}` with version {theirs} of the protocol, but this \
-         program speaks version {PROTOCOL}: flash the board again"
-    )]
-    Protocol {
-        /// The address.
-        address: Address,
-        /// The board's program.
-        program: String,
-        /// The board's version.
-        theirs: u16,
-    },
+    #[error(transparent)]
+    Protocol(#[from] OtherProtocol),
     /// The board answered before and does no longer.
     #[error("the board on {address} has not answered {what} within {} s", .after.as_secs_f64())]
     Unanswered {

@@ -1,14 +1,14 @@
 //! A board at the other end of a serial line or a socket.
 
 mod address;
-pub mod change;
 mod connection;
 mod error;
 mod holder;
 mod transport;
 
 pub use address::{Address, AddressError};
-pub(crate) use connection::REQUEST_TIMING;
-pub use connection::{Link, Message, RequestResult};
+pub use connection::{Link, Message};
 pub use error::LinkError;
+pub use haptic_model::board::change;
+pub use haptic_model::board::request::RequestResult;
 pub(crate) use transport::{Transport, is_timeout, open};

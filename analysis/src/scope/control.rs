@@ -1,83 +1,9 @@
 //! Commands to the board that the scope has keys for.
 
-use firmware::wire::message::{Changes, Id, ToBoard};
+pub use haptic_model::board::request::{Reply, Request};
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use crate::link::{RequestResult, change};
-
-/// A request to a board.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Request {
-    /// Other parameters, all or none.
-    Set(Changes),
-    /// Switch the amplifier on; clears a fault.
-    Arm,
-    /// Fade the torque out and switch the amplifier off.
-    Disarm,
-}
-
-impl Request {
-    /// Its message to the board.
-    pub fn message(&self, id: Id) -> ToBoard {
-        match self {
-            Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
-            Self::Arm => ToBoard::Arm { id },
-            Self::Disarm => ToBoard::Disarm { id },
-        }
-    }
-
-    /// The parameters that are to be changed.
-    pub fn changes(&self) -> Changes {
-        match self {
-            Self::Set(changes) => changes.clone(),
-            Self::Arm | Self::Disarm => Changes::new(),
-        }
-    }
-
-    /// The request, in words.
-    pub fn words(&self) -> String {
-        match self {
-            Self::Set(changes) => super::formatting::changes(changes),
-            Self::Arm => "arm".to_owned(),
-            Self::Disarm => "disarm".to_owned(),
-        }
-    }
-}
-
-/// What became of a request.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reply {
-    /// It was sent.
-    Asked,
-    /// The board has answered.
-    Answered(RequestResult),
-    /// There was no answer.
-    Unanswered,
-    /// It was not sent: the board has not answered the request before.
-    Busy,
-    /// It was not sent: there was no link.
-    NoLink,
-}
-
-impl Reply {
-    /// Its line in the view.
-    pub fn line(&self, request: &Request) -> String {
-        let what = request.words();
-        match self {
-            Self::Asked => format!("{what} ..."),
-            Self::Answered(RequestResult::Done) => format!("{what}: done"),
-            Self::Answered(RequestResult::Refused(sentence)) => format!("{what}: {sentence}"),
-            Self::Unanswered => format!(
-                "{what}: the board has not answered; it may have executed \
-                                         the request"
-            ),
-            Self::Busy => {
-                format!("{what}: not sent; the board has not answered the last request yet")
-            }
-            Self::NoLink => format!("{what}: not sent; there was no link to the board"),
-        }
-    }
-}
+use crate::link::change;
 
 /// The action of a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,6 +79,7 @@ impl Control {
 #[cfg(test)]
 mod tests {
     use firmware::certificate::Parameter;
+    use firmware::wire::message::Changes;
 
     use super::*;
 

@@ -1,12 +1,9 @@
 //! A live view of a board: its messages, their history, and the screen.
 
 pub mod control;
-pub mod formatting;
-pub mod history;
+pub mod modes;
 pub mod poller;
-mod power;
 pub mod record;
-pub mod sample;
 #[cfg(test)]
 mod tests;
 pub mod tui;
@@ -14,10 +11,11 @@ pub mod tui;
 use firmware::wire::Discarded;
 use firmware::wire::message::{ActiveParameters, Board, PreviousFault, Status};
 
+pub use haptic_model::board::{Power, formatting, history, sample};
+
 use self::control::Control;
 use self::history::History;
 use self::poller::Event;
-pub use self::power::Power;
 use self::sample::{Sample, Scale};
 
 /// The state of a board.

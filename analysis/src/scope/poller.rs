@@ -13,20 +13,13 @@ use firmware::wire::Discarded;
 use firmware::wire::message::{
     ActiveParameters, Board, Id, PreviousFault, Status, ToBoard, ToHost,
 };
+use haptic_model::board::timing::{REQUEST, RETRY, SILENCE, STATUS_INTERVAL};
 
 use super::control::{Reply, Request};
-use crate::link::{Link, LinkError, REQUEST_TIMING};
+use crate::link::{Link, LinkError};
 
-/// Time between two questions how it is going; also what the board hears of us, where it stops
-/// without a host.
-const STATUS_INTERVAL: Duration = Duration::from_millis(100);
 /// Longest time until a request is passed on.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
-/// Time between two tries to connect again.
-const RETRY: Duration = Duration::from_millis(500);
-/// Silence after which a link that gives no error counts as lost all the same.
-const SILENCE: Duration = Duration::from_secs(3);
-
 /// A board's event.
 #[derive(Clone, Debug)]
 pub enum Event {
@@ -265,7 +258,7 @@ impl PollerThread {
             let id = link.next_id();
             link.send(&request.message(id))?;
             self.events.send(Event::Reply(request.clone(), Reply::Asked))?;
-            let (again, end) = (now + REQUEST_TIMING.again, now + REQUEST_TIMING.end);
+            let (again, end) = (now + REQUEST.again, now + REQUEST.end);
             *pending = Some(PendingRequest { id, request, again, end });
         }
         if let Some(PendingRequest { request, .. }) = pending.take_if(|pending| now >= pending.end)
@@ -275,7 +268,7 @@ impl PollerThread {
         if let Some(PendingRequest { id, request, again, .. }) = pending
             && now >= *again
         {
-            *again = now + REQUEST_TIMING.again;
+            *again = now + REQUEST.again;
             link.send(&request.message(*id))?;
         }
         Ok(())

@@ -1,20 +1,20 @@
 //! Ticks as a table that other programs read.
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
-use super::sample::{Row, Sample};
+use super::sample::{COLUMNS, Row, Sample};
 
 /// Writes ticks as CSV: tick, time, count, position, code, torque, state, limit, slack; in s, rad
 /// and N m.
 pub struct Recorder {
-    rows: csv::Writer<Box<dyn Write>>,
+    rows: BufWriter<Box<dyn Write>>,
     count: u64,
 }
 
 impl Recorder {
     /// Writes there.
     pub fn new(to: Box<dyn Write>) -> Self {
-        Self { rows: csv::Writer::from_writer(to), count: 0 }
+        Self { rows: BufWriter::new(to), count: 0 }
     }
 
     /// Adds a tick.
@@ -22,11 +22,11 @@ impl Recorder {
     /// # Errors
     /// Where it cannot be written.
     pub fn add(&mut self, sample: &Sample) -> io::Result<()> {
+        if self.count == 0 {
+            writeln!(self.rows, "{COLUMNS}")?;
+        }
         self.count += 1;
-        self.rows.serialize(Row::from(sample)).map_err(|error| match error.into_kind() {
-            csv::ErrorKind::Io(error) => error,
-            other => io::Error::other(format!("{other:?}")),
-        })
+        writeln!(self.rows, "{}", Row::from(sample))
     }
 
     /// Has everything written that was added.
@@ -40,5 +40,48 @@ impl Recorder {
     /// Ticks that were added.
     pub fn count(&self) -> u64 {
         self.count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware::dac::DacCode;
+    use firmware::servo_loop::{Frame, State};
+    use firmware::torque::LimitReason;
+    use firmware::wire::message::Board;
+
+    use super::super::sample::Scale;
+    use super::*;
+
+    /// The rows of a library for such tables, to the letter.
+    #[test]
+    fn rows_are_those_of_the_library_for_csv() {
+        let board = Board {
+            period: 0.001,
+            timer_counts: 170_000,
+            counts_per_turn: 4000.0,
+            full_scale_torque: 1.791,
+            energy_step: 1e-6,
+            longest_gap: 0.036,
+        };
+        let mut scale = Scale::new(board);
+        let (limit, state) = (LimitReason::Torque, State::Running);
+        let mut library = csv::Writer::from_writer(Vec::new());
+        let mut rows = format!("{COLUMNS}\n");
+        for (i, code) in [0, 2047, 2048, 2049, 4095].into_iter().enumerate() {
+            let code = DacCode::new(code).unwrap();
+            let frame = Frame {
+                tick: 3 * i as u32,
+                count: 1 - i as i32,
+                code,
+                limit,
+                state,
+                slack: 7 * i as u32,
+            };
+            let row = Row::from(&scale.sample(&frame));
+            library.serialize(&row).unwrap();
+            rows += &format!("{row}\n");
+        }
+        assert_eq!(rows, String::from_utf8(library.into_inner().unwrap()).unwrap());
     }
 }

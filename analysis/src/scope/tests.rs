@@ -103,8 +103,13 @@ fn shows_what_a_power_stage_measures() {
     const LINE: &str = "current -0.412 A of -0.400 A asked, supply 24.1 V, 31.5 C";
     let mut scope = connected();
     assert!(!screen(&scope, 120, 40).contains("asked"));
-    let power =
-        Some(PowerReading { current: -412, reference: -400, voltage: 24_070, temperature: 315 });
+    let power = Some(PowerReading {
+        current: -412,
+        reference: -400,
+        voltage: 24_070,
+        temperature: 315,
+        index: None,
+    });
     take(&mut scope, Event::Status(Status { power, ..STATUS }, Discarded::default()));
     let shown = screen(&scope, 120, 40);
     let lines: Vec<_> = shown.lines().map(|line| line.trim_matches('"').trim_end()).collect();

@@ -8,9 +8,8 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Chart, Dataset, GraphType, Paragraph};
 
 use super::control::{self, Control};
-use super::power::Power;
 use super::sample::Sample;
-use super::{Scope, formatting};
+use super::{Power, Scope, formatting};
 use crate::quantity::{shortened, significant};
 
 /// Dots side by side in a character.
@@ -115,7 +114,7 @@ fn facts_of(scope: &Scope) -> Vec<Line<'static>> {
     let mut lines = vec![
         Line::from(formatting::numbers(parameters)),
         Line::from(formatting::reserves(parameters, &status, &connected.board, slack)),
-        Line::from(format!("{energy}   {}", formatting::limits(scope))),
+        Line::from(format!("{energy}   {}", formatting::limits(&scope.history))),
     ];
     lines.extend(status.power.map(|reading| Line::from(Power::from(reading).to_string())));
     lines.push(Line::from(formatting::losses(&status, here)).dim());

@@ -11,7 +11,7 @@ use super::memory::{Memory, NoLength};
 use super::output::last_lines;
 use super::size::{SizeError, Sizes};
 use super::sources::{Sources, SourcesError, workspace_root};
-use super::{Board, TARGET, TorqueOutput};
+use super::{Board, TARGET, Target, TorqueOutput};
 
 /// The format that a scene's program computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
@@ -225,16 +225,35 @@ impl Toolchain {
         self.compile(name, &build)
     }
 
-    /// Builds the tests that run on a board as a user does, to check that they compile and fit; keeps
-    /// no output.
+    /// Builds the tests that run on a board as a user does, and gives their file: those of a board's own bridge
+    /// are others than those of its DAC.
     ///
     /// # Errors
-    /// Where they do not.
-    pub fn try_tests(&self, board: Board) -> Result<(), BuildError> {
-        let (name, features) = ("on_target", format!("{board},on-target"));
+    /// Where they do not compile or do not fit, and where the board has no such output.
+    pub fn build_tests(&self, board: Board, output: TorqueOutput) -> Result<PathBuf, BuildError> {
+        if output == TorqueOutput::Bridge && !board.has_bridge() {
+            return Err(BuildError::NoBridge { board });
+        }
+        let name = match output {
+            TorqueOutput::Dac => "on_target",
+            TorqueOutput::Bridge => "bridge_load",
+        };
+        let features = format!("{board},on-target{}", output.features());
         let build = ["--release", "--package", "firmware", "--target", TARGET];
+        let tests = ["--features", &features, "--test", name];
         let _lock = self.workspace.lock("build")?;
-        self.compile(name, &[&build[..], &["--features", &features, "--test", name]].concat())
+        let mut cargo = self.cargo();
+        // Cargo names the file of a test as it likes, and says how.
+        let printed = output_of(
+            name,
+            cargo.args(build).args(tests).arg("--message-format=json-render-diagnostics"),
+        )?;
+        let built = printed.lines().find_map(|line| executable(line, name));
+        let built = built.ok_or_else(|| BuildError::Compile {
+            program: name.into(),
+            output: "cargo has built no such test".into(),
+        })?;
+        self.workspace.keep(&built, &format!("{name}-{board}{}", output.suffix()))
     }
 
     /// Builds a foreign package, in a folder outside of the workspace, for the boards, like programs
@@ -305,6 +324,18 @@ impl Toolchain {
         Ok(self.build(&["pedal"], &variant)?.swap_remove(0))
     }
 
+    /// Builds the program of a board that is not in the firmware, for that board.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_own_board(&self) -> Result<Program, BuildError> {
+        const NAME: &str = "own-board";
+        let _lock = self.workspace.lock("build")?;
+        self.compile(NAME, &["--release", "--package", NAME, "--target", TARGET])?;
+        let built = self.target_folder().join(TARGET).join("release").join(NAME);
+        Program::at(self.workspace.keep(&built, NAME)?)
+    }
+
     /// Builds the virtual board: a program for this machine, beside this one and not a part of it.
     ///
     /// # Errors
@@ -319,6 +350,22 @@ impl Toolchain {
         let target = &self.workspace.target;
         ran(NAME, cargo.env("CARGO_TARGET_DIR", target))?;
         Ok(target.join("debug").join(NAME))
+    }
+
+    /// Builds what the page of `haptic explore` runs: WebAssembly.
+    ///
+    /// # Errors
+    /// Where it does not compile.
+    pub fn build_browser_module(&self) -> Result<PathBuf, BuildError> {
+        const PACKAGE: &str = "haptic-explore";
+        let _lock = self.workspace.lock("build")?;
+        let mut cargo = self.cargo_for(Target::Browser);
+        let target = Target::Browser.name();
+        cargo.args(["--profile", "browser", "--package", PACKAGE, "--lib", "--target", target]);
+        ran(PACKAGE, &mut cargo)?;
+        let name = "haptic_explore.wasm";
+        let built = self.target_folder().join(target).join("browser").join(name);
+        self.workspace.keep(&built, name)
     }
 
     /// Builds a program without a scene for the emulated board.
@@ -373,6 +420,10 @@ impl Toolchain {
 
     /// Cargo, with nothing of the command that may have started this program.
     fn cargo(&self) -> Command {
+        self.cargo_for(Target::Board)
+    }
+
+    fn cargo_for(&self, target: Target) -> Command {
         let mut command = match self.compiler {
             Compiler::Own => Command::new(variable("CARGO").unwrap_or_else(|| "cargo".into())),
             Compiler::Debian => Command::new("/usr/bin/cargo"),
@@ -383,12 +434,13 @@ impl Toolchain {
         }
         command.env("CARGO_TARGET_DIR", self.target_folder()).arg("build");
         if self.compiler == Compiler::Debian {
-            // Debian has no `core` for the target; its source is built with the program, which
+            // Debian has no `core` for these targets; its source is built with the program, which
             // needs what is not yet stable in cargo.
             command.env_remove("RUSTUP_TOOLCHAIN");
             command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
-            command.env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld");
-            command.args(["-Zbuild-std=core", "-Zbuild-std-features=compiler-builtins-mem"]);
+            let (variable, linker) = target.linker();
+            command.env(variable, linker).args(target.libraries());
+            command.envs(target.flags());
         }
         command
     }
@@ -415,11 +467,23 @@ pub fn build_haptic_with(scene: &str) -> Result<PathBuf, BuildError> {
     workspace.keep(&workspace.target.join(folder).join(NAME), &format!("haptic-{scene}"))
 }
 
+/// The file of a test, where a line of cargo's messages says that it was built.
+fn executable(message: &str, name: &str) -> Option<PathBuf> {
+    let message: serde_json::Value = serde_json::from_str(message).ok()?;
+    let is_it = message["target"]["name"] == name && message["target"]["kind"][0] == "test";
+    is_it.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
+}
+
 /// Has cargo build a program.
 fn ran(program: &str, cargo: &mut Command) -> Result<(), BuildError> {
+    output_of(program, cargo).map(drop)
+}
+
+/// The same; gives what cargo has printed.
+fn output_of(program: &str, cargo: &mut Command) -> Result<String, BuildError> {
     let output = cargo.output().map_err(BuildError::NoCargo)?;
     if output.status.success() {
-        return Ok(());
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
     let output = last_lines(&String::from_utf8_lossy(&output.stderr), 60);
     Err(BuildError::Compile { program: program.into(), output })

@@ -26,7 +26,7 @@ pub struct HostEnvironment {
 pub struct Rust {
     /// Its version.
     pub version: Version,
-    /// Whether it has `core` for the target.
+    /// Whether it has `core` for the target that programs are built for.
     pub has_target: bool,
 }
 

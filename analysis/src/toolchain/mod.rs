@@ -15,6 +15,7 @@ mod prepare;
 pub mod probe;
 mod size;
 mod sources;
+mod target;
 mod version;
 
 pub use apt::AptError;
@@ -25,6 +26,7 @@ pub use plan::Tools;
 pub use prepare::{SetupError, install, prepare};
 pub use size::Sizes;
 pub use sources::{Sources, SourcesError};
+pub use target::Target;
 pub use version::Version;
 
 /// The target that the boards' programs are built for: Cortex-M4 with its single-precision unit.

@@ -8,13 +8,14 @@ use std::process::{Command, Stdio};
 use super::host_environment::{
     Debian, HostEnvironment, NativeBuildTools, Package, PackageState, Rust,
 };
-use super::{TARGET, Version};
+use super::{Target, Version};
 use crate::emulator::QEMU;
 
-/// Looks at the machine. `lists_are_fresh`: the lists of packages have just been fetched.
-pub fn observe(lists_are_fresh: bool) -> HostEnvironment {
+/// Looks at the machine, on which programs are to be built for `target`. `lists_are_fresh`: the lists of
+/// packages have just been fetched.
+pub fn observe(target: Target, lists_are_fresh: bool) -> HostEnvironment {
     HostEnvironment {
-        rust: rust(),
+        rust: rust(target),
         rustup: output_of("rustup", &["--version"]).is_some(),
         fetching_forbidden: std::env::var_os("RUSTUP_AUTO_INSTALL").is_some_and(|v| v == "0"),
         qemu: output_of(QEMU, &["--version"]).as_deref().and_then(Version::find),
@@ -30,10 +31,10 @@ pub fn observe(lists_are_fresh: bool) -> HostEnvironment {
     }
 }
 
-fn rust() -> Option<Rust> {
+fn rust(target: Target) -> Option<Rust> {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let version = Version::find(&output_of(&rustc, &["--version"])?)?;
-    let folder = output_of(&rustc, &["--print", "target-libdir", "--target", TARGET]);
+    let folder = output_of(&rustc, &["--print", "target-libdir", "--target", target.name()]);
     let has_target = folder.is_some_and(|folder| has_core(Path::new(folder.trim())));
     Some(Rust { version, has_target })
 }

@@ -10,7 +10,7 @@ use std::fmt;
 
 use super::build::Compiler;
 use super::host_environment::{HostEnvironment, NativeBuildTools, Package, PackageState, Rust};
-use super::{TARGET, Version, apt};
+use super::{Target, Version, apt};
 use crate::emulator::QEMU;
 
 /// What is wanted of the machine.
@@ -22,6 +22,20 @@ pub enum Tools {
     CompilerAndEmulator,
     /// To build them and to run them on a virtual board, which is built here, too.
     CompilerAndVirtualBoard,
+    /// To build what a page runs in a browser.
+    CompilerForBrowser,
+}
+
+impl Tools {
+    /// What programs are built for.
+    pub const fn target(self) -> Target {
+        match self {
+            Self::Compiler | Self::CompilerAndEmulator | Self::CompilerAndVirtualBoard => {
+                Target::Board
+            }
+            Self::CompilerForBrowser => Target::Browser,
+        }
+    }
 }
 
 /// What to do.
@@ -39,7 +53,7 @@ pub enum Plan {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// `rustup target add`.
-    AddTarget,
+    AddTarget(Target),
     /// `apt-get update`.
     FetchLists,
     /// `apt-get install`.
@@ -57,6 +71,8 @@ pub enum ManualStep {
         found: Option<Version>,
         /// Whether it may be had by rustup.
         rustup: bool,
+        /// What it builds for.
+        target: Target,
     },
     /// Get the emulator.
     Emulator {
@@ -77,14 +93,15 @@ enum Need {
 
 /// Chooses the route.
 pub fn plan(host: &HostEnvironment, tools: Tools) -> Plan {
-    let (compiler, compiler_need) = compiler(host);
+    let target = tools.target();
+    let (compiler, compiler_need) = compiler(host, target);
     let emulator = match tools {
-        Tools::Compiler | Tools::CompilerAndVirtualBoard => Need::Nothing,
         Tools::CompilerAndEmulator => emulator(host),
+        _ => Need::Nothing,
     };
     let native = match tools {
-        Tools::Compiler | Tools::CompilerAndEmulator => Need::Nothing,
         Tools::CompilerAndVirtualBoard => native(host),
+        _ => Need::Nothing,
     };
     let needs = [compiler_need, emulator, native];
     let requests: Vec<_> = needs.iter().filter_map(Need::request).collect();
@@ -102,12 +119,12 @@ pub fn plan(host: &HostEnvironment, tools: Tools) -> Plan {
         return Plan::Do(Step::Install(packages));
     }
     if needs.iter().any(|need| matches!(need, Need::AddTarget)) {
-        return Plan::Do(Step::AddTarget);
+        return Plan::Do(Step::AddTarget(target));
     }
     Plan::Ready(compiler)
 }
 
-fn compiler(host: &HostEnvironment) -> (Compiler, Need) {
+fn compiler(host: &HostEnvironment, target: Target) -> (Compiler, Need) {
     let own = host.rust.filter(|rust| rust.version >= Version::RUST);
     let may_fetch = host.rustup && !host.fetching_forbidden;
     match own {
@@ -115,7 +132,7 @@ fn compiler(host: &HostEnvironment) -> (Compiler, Need) {
         Some(_) if may_fetch => (Compiler::Own, Need::AddTarget),
         _ => {
             let found = host.rust.map(|rust| rust.version);
-            let otherwise = ManualStep::Compiler { found, rustup: may_fetch };
+            let otherwise = ManualStep::Compiler { found, rustup: may_fetch, target };
             (Compiler::Debian, host.packages(&Package::COMPILER, otherwise))
         }
     }
@@ -183,7 +200,7 @@ impl Need {
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AddTarget => write!(f, "rustup target add {TARGET}"),
+            Self::AddTarget(target) => write!(f, "rustup target add {target}"),
             Self::FetchLists => f.write_str("apt-get update"),
             Self::Install(packages) => {
                 let names: Vec<_> = packages.iter().map(|package| package.name()).collect();
@@ -199,9 +216,9 @@ impl fmt::Display for ManualStep {
             Self::Packages(packages) => {
                 write!(f, "install packages: sudo {}", Step::Install(packages.clone()))
             }
-            Self::Compiler { found, rustup } => {
+            Self::Compiler { found, rustup, target } => {
                 let oldest = Version::RUST;
-                write!(f, "install Rust {oldest} or later with the target {TARGET}: ")?;
+                write!(f, "install Rust {oldest} or later with the target {target}: ")?;
                 match found {
                     Some(version) if *version < oldest && *rustup => {
                         write!(f, "this is Rust {version}; rustup update stable, then ")?;
@@ -209,7 +226,7 @@ impl fmt::Display for ManualStep {
                     Some(version) => write!(f, "this is Rust {version} without it; ")?,
                     None => f.write_str("from https://rustup.rs; ")?,
                 }
-                write!(f, "{}", Step::AddTarget)
+                write!(f, "{}", Step::AddTarget(*target))
             }
             Self::Emulator { found } => {
                 let oldest = Version::QEMU;

@@ -8,7 +8,7 @@ use super::build::{Toolchain, Workspace};
 use super::observe::observe;
 use super::output::last_lines;
 use super::plan::{ManualStep, Plan, Step, Tools, plan};
-use super::{BuildError, TARGET};
+use super::{BuildError, Target};
 
 /// Why programs for the board cannot be built here.
 #[derive(Debug, thiserror::Error)]
@@ -64,7 +64,7 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
     let _lock = workspace.lock("setup")?;
     let mut taken = Vec::new();
     loop {
-        let step = match plan(&observe(taken.contains(&Step::FetchLists)), tools) {
+        let step = match plan(&observe(tools.target(), taken.contains(&Step::FetchLists)), tools) {
             Plan::Ready(compiler) => return Ok(Toolchain::new(compiler, workspace)),
             Plan::Ask(requests) => return Err(SetupError::Missing(requests)),
             Plan::Do(step) => step,
@@ -90,9 +90,9 @@ pub fn prepare(tools: Tools, progress: impl Fn(&str)) -> Result<Toolchain, Setup
 /// Takes a step, and says before what it does.
 fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
     match step {
-        Step::AddTarget => {
+        Step::AddTarget(target) => {
             progress(&step.to_string());
-            add_target(step)
+            add_target(step, *target)
         }
         Step::FetchLists => {
             progress(&step.to_string());
@@ -105,9 +105,9 @@ fn take(step: &Step, progress: &impl Fn(&str)) -> Result<(), SetupError> {
     }
 }
 
-fn add_target(step: &Step) -> Result<(), SetupError> {
+fn add_target(step: &Step, target: Target) -> Result<(), SetupError> {
     let output = Command::new("rustup")
-        .args(["target", "add", TARGET])
+        .args(["target", "add", target.name()])
         .stdin(Stdio::null())
         .output()
         .map_err(|source| SetupError::Unrunnable { step: step.clone(), source })?;

@@ -85,6 +85,7 @@ const TAKEN: &[&str] = &[
     "board",
     "box",
     "break",
+    "bridge_load",
     "build",
     "certify_server",
     "clap",

@@ -20,6 +20,7 @@ mod readme;
 mod reference;
 mod report;
 mod scene_files;
+mod serve;
 mod set_up;
 mod simulate_program;
 mod simulation_reference;

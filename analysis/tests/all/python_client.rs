@@ -6,6 +6,7 @@ use std::process::{Command, Output, Stdio};
 
 use crate::common::{answer, program, root, tool};
 use firmware::certificate::Parameter;
+use firmware::current::IndexOffset;
 use firmware::dac::DacCode;
 use firmware::encoder::CounterWidth;
 use firmware::environment::{Environment, Wall};
@@ -83,6 +84,7 @@ fn status() -> Status {
             reference: i32::MIN,
             voltage: u32::MAX,
             temperature: -15,
+            index: Some(IndexOffset { counts: 16_777_215, is_reversed: true }),
         }),
     }
 }
@@ -165,7 +167,8 @@ fn reads_every_message_to_the_host() {
                     "discarded": {"broken": 7, "too_long": 8, "checksum": 9, "unknown": 10},
                     "stack_left": 2048, "reset": 3,
                     "power": {"current": -412, "reference": i32::MIN, "voltage": u32::MAX,
-                              "temperature": -15}}],
+                              "temperature": -15,
+                              "index": {"counts": 16_777_215, "is_reversed": true}}}],
         ["answer", {"id": 65_535, "refused": {"type": "set", "step": {"type": "servo"}}}],
         ["answer", {"id": 7, "refused": {"type": "fault", "fault": code}}],
         ["answer", {"id": 0, "refused": null}],

@@ -26,6 +26,72 @@ fn what_is_flashed_gives_the_codes_of_the_host() {
     }
 }
 
+/// Columns of the rows that `haptic run --csv` has printed.
+fn columns(csv: &[u8]) -> (Vec<f64>, Vec<f64>) {
+    let mut reader = csv::Reader::from_reader(csv);
+    let rows = reader.deserialize().map(|row| {
+        let (_, _, angle, torque, _, _): (u64, i64, f64, f64, u16, String) = row.unwrap();
+        (angle, torque)
+    });
+    rows.unzip()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Runs a program with its board's own bridge in the hand that shows it; then has it, and the servo on this
+/// machine, play the same counts. Gives angles and torques.
+fn with_its_bridge(scene: &str, ticks: &str) -> (Vec<f64>, Vec<f64>) {
+    const TARGET: &str = "board:b-g431b-esc1";
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("counts.csv");
+    let replay = ["--replay", file.to_str().unwrap()];
+    let run = |target: &str, more: &[&str]| {
+        let run = haptic(&[&["run", scene, "--target", target, "--ticks", ticks], more].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+        run
+    };
+    let in_hand = run(TARGET, &["--csv"]);
+    std::fs::write(&file, &in_hand.stdout).unwrap();
+    assert_eq!(run("host", &[&replay[..], &["--csv"]].concat()).stdout, in_hand.stdout);
+    let replayed = answer(&run(TARGET, &[&replay[..], &["--json"]].concat()));
+    assert_eq!(replayed["codes_equal"].to_string(), ticks, "{replayed}");
+    assert_eq!((&replayed["difference"], &replayed["energy"]), (&Value::Null, &Value::Null));
+    // The code is not put out: it waits in memory for the current loop.
+    assert_eq!(replayed["instructions"]["compute_max"], Value::Null);
+    assert!(replayed["instructions"]["interrupt_mean"].as_f64().unwrap() > 100.0, "{replayed}");
+    columns(&in_hand.stdout)
+}
+
+/// The hand's spring of 6 N m/rad to where it wants to be, 0.12 rad: the torque that the motor makes is the
+/// one that the servo has written, or the device would rest elsewhere.
+#[test]
+fn a_hand_rests_in_the_wall_of_a_motor_board_by_the_motor_s_torque() {
+    let (angles, torques) = with_its_bridge("bridge_wall", "1700");
+    let (angles, torques) = (&angles[1500..], &torques[1500..]);
+    let count = std::f64::consts::TAU / 61_440.0;
+    let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(angles.iter().all(|angle| angle - least < 2.5 * count), "{angles:?}");
+    // The middle of the count.
+    let angle = mean(angles) + 0.5 * count;
+    let (torque, hand) = (mean(torques), 6.0 * (0.12 - angle));
+    println!("{torque:.4} N m at {angle:.5} rad, where the hand pushes with {hand:.4} N m");
+    // What the steps of the current's converter leave.
+    assert!((torque - hand).abs() < 0.01, "{torque} N m against {hand} N m of the hand");
+    assert!(torque > 0.4);
+}
+
+/// Aligned before that, as a person would have it aligned.
+#[test]
+fn a_brushless_motor_is_aligned_and_then_gives_the_codes_of_the_host() {
+    let (angles, torques) = with_its_bridge("brushless_wall", "9500");
+    // The hand comes from outside, where there is no torque.
+    assert_eq!((angles[0], torques[0]), (0.0, 0.0));
+    assert!(angles.iter().any(|&angle| angle < -0.01), "{angles:?}");
+    assert!(torques.iter().any(|&torque| torque > 0.02), "{torques:?}");
+}
+
 #[test]
 fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
     for (arguments, parts) in [
@@ -34,6 +100,14 @@ fn only_a_program_runs_on_a_virtual_board_and_only_on_one_that_there_is() {
             ["no board arduino", "nucleo-g474re, b-g431b-esc1, stm32f405"],
         ),
         (&["run", "--target", "board", "damper_wall"], ["no target board", "board:NAME"]),
+        (
+            &["run", "--target", "board:nucleo-g474re", "bridge_wall"],
+            ["nucleo-g474re has no bridge", "b-g431b-esc1 has"],
+        ),
+        (
+            &["twin", "bridge_wall", "--board", "stm32f405", "--port", "unix:x"],
+            ["stm32f405 has no bridge", "b-g431b-esc1 has"],
+        ),
         (
             &["run", "--target", "board:stm32f405", "--full-scale", "3.5", "damper_wall"],
             ["is built for", "run it on the host"],
@@ -107,4 +181,20 @@ fn the_parameters_of_what_is_flashed_are_tuned_over_its_serial_port() {
         assert_eq!(running["parameters"]["damping"], 0.01);
         assert_eq!(running["missed"], 0, "{running}");
     }
+}
+
+/// With what its power stage measures.
+#[test]
+fn a_board_with_a_bridge_is_armed_and_watched_over_its_serial_port() {
+    let board = SimulatedBoard::of(Board::BG431bEsc1, "bridge_wall");
+    let (status, running) = board.tune(&["--arm"]);
+    assert_eq!((status, &running["refused"]), (Some(0), &Value::Null), "{running}");
+    let (_, running) = board.tune(&["stiffness=15"]);
+    assert_eq!(running["refused"], Value::Null, "{running}");
+    assert_eq!(running["parameters"]["stiffness"], 15.0);
+    let power = |which| running["power"][which].as_f64().unwrap();
+    // The middle of the supply's range, and the room, by the steps of the converters.
+    assert!((power("voltage") - 24.1).abs() < 0.1, "{running}");
+    assert!((power("temperature") - 25.0).abs() < 1.0, "{running}");
+    assert!(power("current").abs() < 4.0 && power("reference").abs() < 4.0, "{running}");
 }

@@ -74,7 +74,7 @@ impl Held {
 }
 
 /// A board with the damper wall that was armed, and where it listens.
-struct Rig {
+pub struct Rig {
     held: Held,
     board: SimulatedBoard,
     _folder: TempDir,
@@ -88,7 +88,7 @@ impl Rig {
     }
 
     /// The same as it is when it is switched on.
-    fn off(pacing: Pacing) -> Self {
+    pub fn off(pacing: Pacing) -> Self {
         let folder = TempDir::new().unwrap();
         let address = Address::Unix(folder.path().join("board"));
         let held = Held::default();
@@ -97,7 +97,7 @@ impl Rig {
         Self { held, board, _folder: folder }
     }
 
-    fn port(&self) -> String {
+    pub fn port(&self) -> String {
         self.board.address().to_string()
     }
 
@@ -521,7 +521,8 @@ fn a_twin_is_a_board_to_try_things_on() {
     assert_eq!(board.wait().unwrap().code(), Some(0));
     let unknown = haptic(&["twin", "freemode", "--port", &port]);
     assert!(
-        text(&unknown.stderr).contains("the programs are bridge_wall, brushless_wall, damper_wall"),
+        text(&unknown.stderr)
+            .contains("the programs are bridge_wall, brushless_index, brushless_wall, damper_wall"),
         "{unknown:?}"
     );
 }

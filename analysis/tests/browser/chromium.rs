@@ -11,7 +11,20 @@ use crate::common::set_up_tool;
 const TIMEOUT: Duration = Duration::from_secs(120);
 
 /// The browser.
-const NAME: &str = "chromium";
+pub const NAME: &str = "chromium";
+
+/// No window, no sandbox, which root has none of, and nothing of its own on the network.
+pub const ARGUMENTS: [&str; 9] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+];
 
 /// Makes sure that there is one.
 ///
@@ -25,9 +38,7 @@ pub fn set_up() -> Result<(), String> {
 pub fn dom(page: &Path, width: u32) -> String {
     let profile = tempfile::tempdir().unwrap();
     let mut child = Command::new(NAME)
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
-        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
-        .arg("--disable-dev-shm-usage")
+        .args(ARGUMENTS)
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .arg(format!("--window-size={width},1200"))
         .args(["--virtual-time-budget=2000", "--dump-dom"])

@@ -9,11 +9,11 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::Curve;
-use super::nyquist_scene::Branch;
 use crate::chart::dash::Dash;
 use crate::chart::plot_area::{DrawingPoint, Frame, PlotArea};
 use crate::chart::{Drawn, anchored, units};
-use crate::unit_circle_poles::{Kind, UnitCirclePole};
+use crate::nyquist::Branch;
+use crate::unit_circle_poles::UnitCirclePole;
 
 /// What stands for infinity.
 const FAR: Dash = Dash::new(&[4, 4]);
@@ -26,12 +26,6 @@ const ROOM: i32 = units(10);
 const STEP: i32 = units(7);
 /// Radius of a frame's corners.
 const CORNER: f64 = units(14) as f64;
-
-/// Whether the way through infinity is drawn: around several poles at one place it is longer than
-/// a picture's frame.
-pub(super) fn is_drawn(pole: &UnitCirclePole) -> bool {
-    matches!(pole.kind, Kind::Simple(_))
-}
 
 /// The frame of each pole of each curve, the later ones inside of the earlier.
 pub(super) fn frames(plot: &PlotArea<'_>, curves: &[&Curve]) -> Vec<Vec<Frame>> {
@@ -56,7 +50,7 @@ pub(super) fn draw(
     curve: &Curve,
     frames: &[Frame],
 ) -> Drawn<Vec<Vec<DrawingPoint>>> {
-    let drawn = (0..curve.poles.len()).filter(|&pole| is_drawn(&curve.poles[pole]));
+    let drawn = (0..curve.poles.len()).filter(|&pole| curve.poles[pole].is_simple());
     let way = |pole: usize| {
         let (from, to) = ends(plot, curve, pole, &frames[pole])?;
         Some(around(&frames[pole], from, to))

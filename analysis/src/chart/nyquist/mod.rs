@@ -3,7 +3,6 @@
 mod infinity;
 mod legend;
 mod marks;
-mod nyquist_scene;
 
 use firmware::scene::Scene;
 use plotters::prelude::*;
@@ -12,9 +11,8 @@ use super::axes::Axes;
 use super::dash::Dash;
 use super::plot_area::{DrawingPoint, Frame, PlotArea};
 use super::*;
+use crate::nyquist::{Curve, NyquistScene, Role, critical_lines, usual_window};
 use crate::quantity::shortened;
-
-pub use nyquist_scene::{Curve, NyquistScene, Role};
 
 /// A line that is hardly there.
 const HAIRLINE: Dash = Dash::new(&[1, 7]);
@@ -90,7 +88,7 @@ pub fn nyquist(
 }
 
 fn judged(scenes: &[(String, Scene)]) -> Result<Vec<NyquistScene>, ChartError> {
-    scenes.iter().map(|(name, scene)| NyquistScene::of(name, scene)).collect()
+    scenes.iter().map(|(name, scene)| Ok(NyquistScene::of(name, scene)?)).collect()
 }
 
 /// The curves as numbers, at rising angles from 0 to the Nyquist frequency.
@@ -136,7 +134,7 @@ pub fn data(scenes: &[(String, Scene)]) -> Result<Data, ChartError> {
 }
 
 fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()> {
-    let (x, y) = window(scenes, wanted);
+    let (x, y) = usual_window(scenes, wanted.x.clone(), wanted.y.clone());
     let mut chart = axes::chart(area).build_cartesian_2d(x.clone(), y.clone())?;
     let criticals = critical_lines(scenes);
     // What lies left of all the lines is forbidden whatever the scene; everything, where none of
@@ -171,16 +169,6 @@ fn paint(area: &Area<'_>, scenes: &[NyquistScene], wanted: &Window) -> Drawn<()>
     marks::draw(&plot, scenes, inner, &names)
 }
 
-/// The lines at minus the largest index that passes, each once and from the left, with what they are
-/// called.
-fn critical_lines(scenes: &[NyquistScene]) -> Vec<(f64, &'static str)> {
-    let line = |scene: &NyquistScene| Some((-scene.limit?, scene.limit_name));
-    let mut lines: Vec<_> = scenes.iter().filter_map(line).collect();
-    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-    lines.dedup_by_key(|line| line.0);
-    lines
-}
-
 /// What is judged in place of a curve: an upright line that all of the scene's motion keeps right
 /// of.
 fn draw_bounds(
@@ -195,41 +183,6 @@ fn draw_bounds(
         chart.draw_series([PathElement::new([(line, y.start), (line, y.end)], style)])?;
     }
     Ok(())
-}
-
-/// Ranges of the axes.
-fn window(scenes: &[NyquistScene], wanted: &Window) -> (Range<f64>, Range<f64>) {
-    let curves = || scenes.iter().flat_map(|scene| &scene.curves);
-    let is_endless = |curve: &Curve| !curve.poles.is_empty();
-    let endless = curves().any(is_endless);
-    let lines = critical_lines(scenes).into_iter().map(|line| line.0);
-    let bounds = scenes.iter().filter_map(|scene| Some(-scene.bound?));
-    // Near a pole away from z = 1 the curve may go to infinity in any direction; it is cut off far
-    // beyond the critical line. So are the curves that the verdict does not use.
-    let limits = scenes.iter().filter_map(|scene| scene.limit.or(scene.bound));
-    let far = 8.0 * limits.fold(f64::MIN_POSITIVE, f64::max);
-    let askew = curves().flat_map(|curve| &curve.poles).any(|pole| pole.residue().is_none());
-    let seen = curves().flat_map(|curve| {
-        let cut = askew || curve.role == Role::Alone;
-        curve.values().map(|point| point.0).filter(move |re| !cut || re.abs() <= far)
-    });
-    let right = span(seen.chain(lines).chain(bounds).chain([0.0]));
-    // Room on the left for the name of the critical line.
-    let width = right.end - right.start;
-    // More on the right where there is infinity.
-    let ways = curves().flat_map(|curve| &curve.poles).filter(|pole| infinity::is_drawn(pole));
-    let room = [0.1, 0.16 + 0.015 * ways.clone().count() as f64][usize::from(ways.count() > 0)];
-    let usual = right.start - 0.3 * width..right.end + room * width;
-    let x = wanted.x.clone().unwrap_or(usual);
-    let finite = curves().filter(|curve| !is_endless(curve));
-    let tallest = span(finite.flat_map(|curve| curve.values()).map(|p| p.1.abs()));
-    let height = if endless {
-        // The curve has no end; as much of it as is wide is enough to see where it goes.
-        (1.2 * (x.end - x.start)).max(1.1 * tallest.end)
-    } else {
-        (1.3 * tallest.end).max(0.1 * width)
-    };
-    (x, wanted.y.clone().unwrap_or(-height..height))
 }
 
 /// The curve, and in a thinner line its mirror image for negative angles, with arrows in the
@@ -250,7 +203,7 @@ fn draw_curve(
     }
     for branch in &curve.branches {
         let [first, last] = branch.poles.map(|pole| {
-            let drawn = pole.filter(|&pole| infinity::is_drawn(&curve.poles[pole]));
+            let drawn = pole.filter(|&pole| curve.poles[pole].is_simple());
             drawn.map_or(plot.all(), |pole| frames[pole])
         });
         let places: Vec<_> = branch.values.iter().map(|&value| plot.place(value)).collect();

@@ -10,7 +10,7 @@ use firmware::scene::{Coupling, Scene};
 use firmware::servo::Transducers;
 
 use super::report::{FormatReport, SimulationMethod, message, text};
-use crate::command::file_scene::{hand_trajectory, scene_file, transducers_of};
+use crate::command::file_scene::{hand_trajectory, scene_file};
 use crate::command::shared_arguments::JsonOption;
 use crate::command::status::{CommandError, CommandStatus};
 use crate::command::value_parsers::positive;
@@ -131,7 +131,7 @@ fn query(scene: &str, arguments: &FormatArguments) -> Result<FormatQuery, Comman
         }
         None => {
             let file = scene_file(scene)?;
-            let transducers = transducers_of(&file, counts, None);
+            let transducers = file.transducers(counts, None);
             let said = file.steps();
             let steps = Resolution {
                 encoder: counts.map(|counts| TAU / counts).or(said.encoder),

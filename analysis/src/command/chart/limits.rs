@@ -8,7 +8,6 @@ use firmware::scene::Coupling;
 use super::output::OutputArguments;
 use crate::chart::limits::{DelayCurve, Own};
 use crate::chart::{self, Chart, ChartError, Data};
-use crate::command::file_scene::transducers_of;
 use crate::command::shared_arguments::SceneArgument;
 use crate::command::status::CommandError;
 use crate::command::value_parsers::{number, positive_range};
@@ -58,7 +57,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
     let curves = Curves {
         rates: arguments.rates.clone(),
         points: RATES,
-        counts_per_turn: transducers_of(&file, arguments.counts_per_rev, None).counts_per_turn,
+        counts_per_turn: file.transducers(arguments.counts_per_rev, None).counts_per_turn,
         used: arguments.used,
     };
     let bar = progress::bar(DELAYS as u64 + 1, "limits");

@@ -6,7 +6,7 @@ use firmware::servo::Transducers;
 
 use super::output::OutputArguments;
 use crate::chart::{self, Chart, Data};
-use crate::command::file_scene::{scene_file, transducers_of};
+use crate::command::file_scene::scene_file;
 use crate::command::status::CommandError;
 use crate::device::Hand;
 use crate::felt_turn::{FINGERS, FeltTurn, FeltTurnError};
@@ -32,8 +32,7 @@ pub fn draw(arguments: &Arguments) -> Result<Chart, CommandError> {
         }
         None => {
             let file = scene_file(&arguments.scene)?;
-            let (hand, transducers) =
-                (file.hand.unwrap_or(FINGERS), transducers_of(&file, None, None));
+            let (hand, transducers) = (file.hand.unwrap_or(FINGERS), file.transducers(None, None));
             of_scene(&file.name, &file.scene, &transducers, hand)
         }
     }

@@ -8,12 +8,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use firmware::current::TorqueSource;
 use serde::Serialize;
 
 use super::shared_arguments::JsonOption;
 use super::status::{CommandError, CommandStatus};
 use super::value_parsers::{bounded, not_negative, positive};
-use crate::identify::{self, Correction, Disk, Estimate, Identification, Latency, Record};
+use crate::identify::{
+    self, Correction, Disk, Estimate, Identification, Latency, Record, torque_source,
+};
 use crate::link::Address;
 use crate::quantity::significant;
 use target::Origin;
@@ -71,6 +74,10 @@ pub struct Reading {
     /// 1/(2 pi f). The shorter, the narrower are the intervals of lag and delay; default: half a period
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     pub longest_lag: Option<f64>,
+    /// The current loop of the board's own bridge that the record is from, as eight numbers with commas between,
+    /// which the measurement with --port has printed; default with --port: those of the board
+    #[arg(long, value_name = "NUMBERS", value_parser = current_loop)]
+    pub current_loop: Option<TorqueSource>,
 }
 
 impl Reading {
@@ -81,6 +88,7 @@ impl Reading {
             count_delay: self.count_delay,
             settle: self.settle.unwrap_or(settle),
             longest_lag: self.longest_lag,
+            source: self.current_loop,
             ..Correction::of_encoder(counts_per_turn)
         }
     }
@@ -151,6 +159,8 @@ struct Report<'a> {
     /// Why there is no `latency`.
     no_latency: Option<String>,
     taken_out: TakenOut,
+    /// The board's own current loop, where there is one.
+    current_loop: Option<TorqueSource>,
     bias: f64,
     disk: Disk,
     misfit: f64,
@@ -165,9 +175,10 @@ struct Report<'a> {
 /// Answers with the device; no if it has no passivity that could be certified with, or if a code of
 /// the emulated board differs from this machine's.
 pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
-    let (record, origin, counts_per_turn) = record(arguments)?;
+    let Measured { record, origin, counts_per_turn, torque_source } = measured(arguments)?;
     let settle = if origin.is_some() { 0.0 } else { SETTLE };
-    let correction = arguments.reading.correction(counts_per_turn, settle);
+    let stated = arguments.reading.correction(counts_per_turn, settle);
+    let correction = Correction { source: stated.source.or(torque_source), ..stated };
     let found = identify::identify(&record, &correction)?;
     let notes = notes(&found);
     if let Some(path) = &arguments.output {
@@ -188,21 +199,34 @@ pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
     })
 }
 
-/// The record of a file, or one that is made, and the counts in a turn.
-fn record(arguments: &Arguments) -> Result<(Record, Option<Origin>, f64), CommandError> {
+/// A record, and what is known of it.
+struct Measured {
+    record: Record,
+    /// Who has measured it, where that was not a board or another instrument.
+    origin: Option<Origin>,
+    counts_per_turn: f64,
+    /// The current loop of a board that has one.
+    torque_source: Option<TorqueSource>,
+}
+
+/// The record of a file, or one that is made.
+fn measured(arguments: &Arguments) -> Result<Measured, CommandError> {
     let (file, stated) = (arguments.file.as_deref(), arguments.counts_per_rev);
     let counts_per_turn = stated.unwrap_or(target::COUNTS_PER_TURN);
     let keep = arguments.record.as_deref();
     if let Some(address) = &arguments.port {
-        let (record, counts) = port::measure(address, keep)?;
-        return Ok((record, None, stated.unwrap_or(counts)));
+        let (record, board) = port::measure(address, keep)?;
+        let counts_per_turn = stated.unwrap_or(board.counts_per_turn);
+        return Ok(Measured { record, origin: None, counts_per_turn, torque_source: board.source });
     }
     if let Some(target) = arguments.target.target {
         let simulated = &arguments.target;
         let (measured, origin) = target::measure(simulated, target, file, keep, counts_per_turn)?;
-        return Ok((measured.record, Some(origin), counts_per_turn));
+        let (record, origin) = (measured.record, Some(origin));
+        return Ok(Measured { record, origin, counts_per_turn, torque_source: None });
     }
-    Ok((load(file.unwrap_or(Path::new("-")))?, None, counts_per_turn))
+    let record = load(file.unwrap_or(Path::new("-")))?;
+    Ok(Measured { record, origin: None, counts_per_turn, torque_source: None })
 }
 
 /// Identifies the device of a recorded file.
@@ -246,6 +270,7 @@ fn report<'a>(
         told_apart: found.latency.is_ok_and(|latency| latency.is_told_apart()),
         no_latency: found.latency.err().map(|reason| reason.to_string()),
         taken_out,
+        current_loop: found.model.source,
         bias: found.bias,
         disk: found.disk,
         misfit: found.misfit,
@@ -347,9 +372,13 @@ fn latency_lines(found: &Identification) -> String {
 /// The table for a scene file.
 pub fn device_table(found: &Identification) -> String {
     let range = |e: &Estimate| format!("{} to {}", significant(e.lo, 4), significant(e.hi, 4));
+    let less = match found.motion_loss() {
+        loss if loss > 0.0 => format!(" less {} by the current loop", significant(loss, 3)),
+        _ => String::new(),
+    };
     let passivity = match found.passivity() {
         Some(passivity) => format!(
-            "passivity = {} # N m s/rad, lower end of the damping; valid if the device is rigid \
+            "passivity = {} # N m s/rad, lower end of the damping{less}; valid if the device is rigid \
              from motor to hand\n",
             significant(passivity, 4),
         ),
@@ -399,10 +428,19 @@ fn text(
         rows.extend([("lag", range(actuator_lag)), ("delay", range(output_delay))]);
     }
     rows.push(("taken out", report.taken_out.row()));
+    rows.extend(found.model.source.map(|source| ("current loop", current_loop_row(&source))));
     rows.extend(origin.map(Origin::row));
     rows.extend(notes.iter().map(|note| ("note", note.clone())));
     let rows: String = rows.iter().map(|(label, value)| format!("{label:<12} {value}\n")).collect();
     format!("{rows}\n{}\n{}", points(found), device_table(found))
+}
+
+fn current_loop_row(source: &TorqueSource) -> String {
+    format!(
+        "that of the board's bridge; what the motion moves through it is not counted as inertia or damping. To \
+         read the record again: --current-loop {}",
+        torque_source::numbers(source)
+    )
 }
 
 fn points(found: &Identification) -> String {
@@ -419,6 +457,12 @@ fn points(found: &Identification) -> String {
         ]);
     }
     format!("{table}\n")
+}
+
+fn current_loop(text: &str) -> Result<TorqueSource, String> {
+    torque_source::parse(text).ok_or_else(|| {
+        format!("expected the eight numbers of a current loop, above 0 and with commas between, got `{text}`")
+    })
 }
 
 fn part(text: &str) -> Result<f64, String> {

@@ -48,6 +48,10 @@ pub fn device(program: &Program, friction: f64) -> LoadedDevice {
 /// The Coulomb friction in N m with which a device comes to rest, by the certificate of a program in `f32`.
 pub fn friction_to_rest(program: &Program) -> f64 {
     let steps = Resolution::of(&program.transducers, None);
+    let steps = match program.bridge {
+        Some(current_loop) => steps.with_current_loop(&current_loop.resolution()),
+        None => steps,
+    };
     QuantizationBound::of(&program.scene, Format::F32, &steps).map_or(f64::NAN, |rest| rest.hum())
 }
 

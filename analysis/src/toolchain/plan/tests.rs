@@ -76,11 +76,11 @@ fn a_complete_machine_is_ready() {
 #[test]
 fn rustup_adds_the_target_where_it_may() {
     let host = HostEnvironment { rust: rust(NEW, false), ..complete() };
-    check(&host, Plan::Do(Step::AddTarget));
+    check(&host, Plan::Do(Step::AddTarget(Target::Board)));
     // Before Debian's packages, which would be a second compiler.
     check(
         &HostEnvironment { debian: Some(debian()), root: true, ..host },
-        Plan::Do(Step::AddTarget),
+        Plan::Do(Step::AddTarget(Target::Board)),
     );
 }
 
@@ -124,7 +124,7 @@ fn lists_are_fetched_before_a_package_is_given_up() {
     let fresh = Debian { lists_are_fresh: true, packages: unknown };
     let host = HostEnvironment { debian: Some(stale.clone()), ..bare_container() };
     check(&host, Plan::Do(Step::FetchLists));
-    let compiler = ManualStep::Compiler { found: Some(NEW), rustup: false };
+    let compiler = ManualStep::Compiler { found: Some(NEW), rustup: false, target: Target::Board };
     let both = vec![compiler, ManualStep::Emulator { found: None }];
     check(&HostEnvironment { debian: Some(fresh), ..host.clone() }, Plan::Ask(both.clone()));
     // Only root can fetch them.
@@ -138,7 +138,7 @@ fn packages_that_are_too_old_do_not_serve() {
     old.packages[0] = PackageState::Available(OLD);
     let host =
         HostEnvironment { qemu: Some(QEMU_7), debian: Some(old.clone()), ..bare_container() };
-    let request = ManualStep::Compiler { found: Some(NEW), rustup: false };
+    let request = ManualStep::Compiler { found: Some(NEW), rustup: false, target: Target::Board };
     check(&host, Plan::Ask(vec![request.clone()]));
     old.packages[0] = PackageState::Installed(OLD);
     check(&HostEnvironment { debian: Some(old), ..host }, Plan::Ask(vec![request]));
@@ -148,12 +148,19 @@ fn packages_that_are_too_old_do_not_serve() {
 fn elsewhere_the_person_is_told_what_to_get() {
     let host = HostEnvironment { rust: None, rustup: false, qemu: None, ..complete() };
     let requests = vec![
-        ManualStep::Compiler { found: None, rustup: false },
+        ManualStep::Compiler { found: None, rustup: false, target: Target::Board },
         ManualStep::Emulator { found: None },
     ];
     check(&host, Plan::Ask(requests));
     let host = HostEnvironment { rust: rust(OLD, true), ..complete() };
-    check(&host, Plan::Ask(vec![ManualStep::Compiler { found: Some(OLD), rustup: true }]));
+    check(
+        &host,
+        Plan::Ask(vec![ManualStep::Compiler {
+            found: Some(OLD),
+            rustup: true,
+            target: Target::Board,
+        }]),
+    );
     let host = HostEnvironment { qemu: Some(QEMU_5), ..complete() };
     check(&host, Plan::Ask(vec![ManualStep::Emulator { found: Some(QEMU_5) }]));
 }
@@ -177,7 +184,7 @@ fn requests_are_commands() {
         "install packages: sudo apt-get install --no-install-recommends lld qemu-system-arm"
     );
     assert_eq!(
-        ManualStep::Compiler { found: Some(OLD), rustup: true }.to_string(),
+        ManualStep::Compiler { found: Some(OLD), rustup: true, target: Target::Board }.to_string(),
         "install Rust 1.95 or later with the target thumbv7em-none-eabihf: this is Rust 1.85; \
          rustup update stable, then rustup target add thumbv7em-none-eabihf"
     );
@@ -208,11 +215,13 @@ fn following_the_plan_ends() {
                 .debian
                 .map(|d| Debian { packages: [PackageState::Unknown; Package::ALL.len()], ..d });
         }
-        for tools in [Tools::CompilerAndEmulator, Tools::CompilerAndVirtualBoard] {
+        for tools in
+            [Tools::CompilerAndEmulator, Tools::CompilerAndVirtualBoard, Tools::CompilerForBrowser]
+        {
             let mut host = host.clone();
             let mut steps = 0;
             while let Plan::Do(step) = plan(&host, tools) {
-                assert!(step != Step::AddTarget || !host.fetching_forbidden);
+                assert!(!matches!(step, Step::AddTarget(_)) || !host.fetching_forbidden);
                 take(&mut host, step);
                 steps += 1;
                 assert!(steps <= 3, "{host:?}");
@@ -224,7 +233,7 @@ fn following_the_plan_ends() {
 /// What a step does to the machine.
 fn take(host: &mut HostEnvironment, step: Step) {
     match (step, &mut host.debian) {
-        (Step::AddTarget, _) => host.rust = rust(NEW, true),
+        (Step::AddTarget(_), _) => host.rust = rust(NEW, true),
         (Step::FetchLists, Some(debian)) => debian.lists_are_fresh = true,
         (Step::Install(packages), Some(debian)) => {
             for package in packages {
@@ -284,4 +293,19 @@ fn a_virtual_board_is_built_with_cmake_and_libclang_and_needs_no_emulator() {
         ManualStep::NativeBuildTools(NativeBuildTools { cmake: false, ..complete().native })
             .to_string();
     assert!(sentence.starts_with("install cmake, to build"), "{sentence}");
+}
+
+#[test]
+fn a_page_is_built_for_a_browser_and_needs_no_emulator() {
+    let tools = Tools::CompilerForBrowser;
+    let host = HostEnvironment { rust: rust(NEW, false), qemu: None, ..complete() };
+    assert_eq!(plan(&host, tools), Plan::Do(Step::AddTarget(Target::Browser)));
+    assert_eq!(
+        Step::AddTarget(Target::Browser).to_string(),
+        "rustup target add wasm32-unknown-unknown"
+    );
+    let compiler = Package::COMPILER.to_vec();
+    assert_eq!(plan(&bare_container(), tools), Plan::Do(Step::Install(compiler)));
+    let debian = HostEnvironment { debian: Some(installed()), ..bare_container() };
+    assert_eq!(plan(&debian, tools), Plan::Ready(Compiler::Debian));
 }

@@ -1,0 +1,35 @@
+// Starts the page.
+
+async function main() {
+  const bytes = await unpacked(document.getElementById("module"));
+  const module = await WebAssembly.compile(bytes);
+  const engine = await Engine.start(module);
+  const start = JSON.parse(document.getElementById("start").textContent);
+  const store = new Store(engine, await sceneOfAddress(engine) ?? start.scene);
+  const table = engine.json("keys");
+  window.haptic = forPrograms(engine, store);
+  showVerdict(store);
+  showHandle(engine, store);
+  showPictures(engine, store, module);
+  showBoard(engine);
+  store.judge();
+  new Fields(store, table).show();
+  showActions(store, engine, table);
+  linkScene(store, engine);
+}
+
+/** What other programs call. */
+function forPrograms(engine, store) {
+  return {
+    /** The scene that is shown, as text. */
+    scene: () => store.text(),
+    /** What `haptic certify --json` prints of a scene, which is a text or an object. The answer is an object
+     * whose text is what is printed, to the last digit. */
+    certify: (scene) => {
+      const printed = engine.ask("certify", typeof scene === "string" ? scene : JSON.stringify(scene));
+      return Object.defineProperty(JSON.parse(printed), "toString", { value: () => printed });
+    },
+  };
+}
+
+main();

@@ -1,0 +1,52 @@
+//! What is rendered, and the hand that holds it.
+
+use haptic_model::device::Hand;
+use serde::Deserialize;
+
+/// What is rendered, and by what hand it is held.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Text of the scene.
+    pub scene: String,
+    /// Encoder counts a turn; those of the scene where there is none.
+    pub counts_per_turn: Option<f64>,
+    /// The hand.
+    pub hand: HandSettings,
+    /// Whether only a certified scene gives torque.
+    pub is_checked: bool,
+}
+
+/// A hand as it was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandSettings {
+    /// In N m/rad.
+    pub stiffness: f64,
+    /// In N m s/rad.
+    pub damping: f64,
+    /// In kg m^2.
+    pub inertia: f64,
+}
+
+impl HandSettings {
+    /// The hand, if it is passive.
+    ///
+    /// # Errors
+    /// The number that is out of its bounds.
+    pub fn hand(self) -> Result<Hand, String> {
+        let Self { stiffness, damping, inertia } = self;
+        for (name, value, unit) in [
+            ("stiffness", stiffness, "N m/rad"),
+            ("damping", damping, "N m s/rad"),
+            ("inertia", inertia, "kg m^2"),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(format!(
+                    "the hand's {name} of {value} {unit} must be 0 or more, and finite"
+                ));
+            }
+        }
+        Ok(Hand { inertia, damping, stiffness })
+    }
+}

@@ -1,0 +1,261 @@
+//! A scene's servo with its device, tick by tick.
+
+use std::f64::consts::TAU;
+
+use firmware::dac::DacCode;
+use firmware::scene::Scene;
+use firmware::servo::Transducers;
+use haptic_model::device::{Energy, HandSetpoint};
+use serde::{Deserialize, Serialize};
+
+use super::device_in_hand::DeviceInHand;
+use super::oscillation::{Oscillation, Watch};
+use super::push::Push;
+use super::record::Record;
+use super::servo::{Rendered, Rendering};
+use super::settings::Settings;
+use crate::judge::read;
+
+/// The most ticks in which a servo settles at the angle at which it takes over.
+const MOST_SETTLING: u32 = 1000;
+/// Ticks with the same code after which it has settled.
+const SETTLED: u32 = 16;
+/// The fastest in rad/s that the hand's set-point moves, also where a pointer jumps.
+const FASTEST: f64 = 40.0;
+
+/// A servo with its device.
+pub struct Simulated {
+    settings: Settings,
+    scene: Scene,
+    transducers: Transducers,
+    rendered: Rendered,
+    device: DeviceInHand,
+    /// The hand's set-point in rad; the device's angle where no hand holds it.
+    setpoint: f64,
+    push: Option<Push>,
+    record: Record,
+    watch: Watch,
+}
+
+/// What the page draws around the handle.
+#[derive(Serialize)]
+pub struct Held<'a> {
+    rendering: Rendering,
+    /// Why it is not the servo of a certified scene.
+    refusal: Option<&'a str>,
+    /// In s.
+    period: f64,
+    counts_per_turn: f64,
+    /// Torque in N m at the largest code.
+    full_scale: f64,
+    /// The most torque in N m that there is.
+    torque_limit: f64,
+    /// Whether it is drawn as a knob, and not as a paddle.
+    is_knob: bool,
+    /// Where a wall begins, in rad.
+    face: Option<f64>,
+    /// Whether it pushes in one direction only.
+    one_sided: bool,
+}
+
+/// How the hand moves over the next ticks.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// How many.
+    pub ticks: u32,
+    /// The set-point in rad at their end, as far as a hand is as fast.
+    pub setpoint: f64,
+    /// Whether it holds the device.
+    pub is_held: bool,
+    /// Whether it takes over from a push, which goes on otherwise.
+    #[serde(default)]
+    pub takes_over: bool,
+}
+
+/// The set-point's way over some ticks, at a steady speed that a hand can have.
+struct Path {
+    from: f64,
+    to: f64,
+    ticks: f64,
+}
+
+impl Path {
+    fn new(from: f64, motion: &Motion, period: f64) -> Self {
+        let ticks = f64::from(motion.ticks);
+        let farthest = FASTEST * ticks * period;
+        Self { from, to: motion.setpoint.clamp(from - farthest, from + farthest), ticks }
+    }
+
+    /// Angle in rad at the end of a tick; at that of the last one it is there to the last bit, so that a hand
+    /// that rests is seen to rest.
+    fn after(&self, tick: u32) -> f64 {
+        let left = (self.ticks - f64::from(tick) - 1.0) / self.ticks;
+        self.to + (self.from - self.to) * left
+    }
+}
+
+/// What is there after some ticks.
+#[derive(Debug, Serialize)]
+pub struct Moved {
+    /// Whether a push is played.
+    pub is_pushing: bool,
+    /// Whether a hand holds the device.
+    pub is_held: bool,
+    /// Its set-point in rad; the device's angle where none does.
+    pub setpoint: f64,
+    /// What passed between hand and device since the scene was taken into the hand.
+    pub energy: Energy,
+    /// The torque's oscillation while the hand rests.
+    pub oscillation: Option<Oscillation>,
+}
+
+impl Simulated {
+    /// A scene, with its device as it moved before.
+    ///
+    /// # Errors
+    /// Where the scene cannot be read, or has no motion.
+    pub fn new(settings: Settings, before: Option<&Self>) -> Result<Self, String> {
+        let file = read(&settings.scene).map_err(|error| error.to_string())?;
+        let hand = settings.hand.hand()?;
+        let transducers = file.transducers(settings.counts_per_turn, None);
+        let counts = transducers.counts_per_turn;
+        if !(counts > 0.0 && counts.is_finite()) {
+            return Err(format!(
+                "an encoder of {counts} counts a turn; they must be positive and finite"
+            ));
+        }
+        let old = before.map(|before| (&before.device, &before.scene));
+        let device = DeviceInHand::new(&file.scene, hand, &transducers, old)
+            .map_err(|error| error.to_string())?;
+        let period = file.scene.timing.period;
+        let step = transducers.full_scale_torque / f64::from(DacCode::CODES_TO_FULL_SCALE);
+        let mut simulated = Self {
+            rendered: Rendered::of(&file, &transducers, settings.is_checked),
+            setpoint: before.map_or(0.0, |before| before.setpoint),
+            settings,
+            scene: file.scene,
+            transducers,
+            device,
+            push: None,
+            record: Record::default(),
+            watch: Watch::new(period, step, TAU / counts),
+        };
+        simulated.settle();
+        Ok(simulated)
+    }
+
+    /// Whether it renders the scene of these settings, in whatever hand.
+    pub fn renders(&self, settings: &Settings) -> bool {
+        self.settings == Settings { hand: self.settings.hand, ..settings.clone() }
+    }
+
+    /// Changes the hand alone.
+    ///
+    /// # Errors
+    /// Where there is no such hand, or no motion in it.
+    pub fn change_hand(&mut self, settings: Settings) -> Result<(), String> {
+        let hand = settings.hand.hand()?;
+        self.device.change_hand(&self.scene, hand).map_err(|error| error.to_string())?;
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// What the page draws.
+    pub fn held(&self) -> Held<'_> {
+        let (environment, full_scale) =
+            (&self.scene.environment, self.transducers.full_scale_torque);
+        let is_paddle = environment.wall().is_some() && environment.profile().is_none();
+        Held {
+            rendering: self.rendered.rendering,
+            refusal: self.rendered.refusal.as_deref(),
+            period: self.scene.timing.period,
+            counts_per_turn: self.transducers.counts_per_turn,
+            full_scale,
+            torque_limit: self.scene.torque_limit.unwrap_or(full_scale),
+            is_knob: !is_paddle,
+            face: environment.wall().map(|wall| wall.face),
+            one_sided: environment.wall().is_some_and(|wall| wall.one_sided),
+        }
+    }
+
+    /// Text of the scene.
+    pub fn scene_text(&self) -> &str {
+        &self.settings.scene
+    }
+
+    /// Count and code of each tick of the servo.
+    pub fn recorded(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.record.numbers());
+    }
+
+    /// Begins the push that shows the environment.
+    pub fn push(&mut self) {
+        let period = self.scene.timing.period;
+        self.push = Some(Push::new(&self.scene.environment, self.setpoint, period));
+    }
+
+    /// The next ticks, whose numbers are those of [`super::motion`].
+    pub fn run(&mut self, motion: &Motion, numbers: &mut Vec<f64>) -> Moved {
+        if motion.takes_over {
+            self.push = None;
+        }
+        let path = Path::new(self.setpoint, motion, self.scene.timing.period);
+        let mut is_held = motion.is_held;
+        for tick in 0..motion.ticks {
+            let setpoint = match &mut self.push {
+                Some(push) => {
+                    let next = push.next();
+                    is_held = next.is_some();
+                    if next.is_none() {
+                        self.push = None;
+                    }
+                    next
+                }
+                None => is_held.then(|| HandSetpoint { from: self.setpoint, to: path.after(tick) }),
+            };
+            self.tick(setpoint, numbers);
+        }
+        Moved {
+            is_pushing: self.push.is_some(),
+            is_held,
+            setpoint: self.setpoint,
+            energy: self.device.energy(),
+            oscillation: self.watch.oscillation(),
+        }
+    }
+
+    fn tick(&mut self, setpoint: Option<HandSetpoint>, numbers: &mut Vec<f64>) {
+        let raw = self.device.count();
+        let tick = self.rendered.servo.tick(raw);
+        self.record.add(raw, tick.code);
+        self.device.step(tick.code, setpoint);
+        self.setpoint = setpoint.map_or(self.device.position(), |setpoint| setpoint.to);
+        let rests = setpoint.is_none_or(|setpoint| setpoint.from == setpoint.to);
+        self.watch.add(tick.torque, self.device.position(), rests);
+        numbers.extend([
+            tick.count as f64,
+            tick.angle,
+            tick.torque,
+            f64::from(tick.code),
+            f64::from(tick.limit as u8),
+            self.setpoint,
+            self.device.position(),
+        ]);
+    }
+
+    /// Shows the servo the device where it is, until its memory has forgotten where it was built.
+    fn settle(&mut self) {
+        let count = self.device.count();
+        let (mut code, mut same) = (DacCode::MID_SCALE.get(), 0);
+        for _ in 0..MOST_SETTLING {
+            let next = self.rendered.servo.tick(count).code;
+            self.record.add(count, next);
+            same = if next == code { same + 1 } else { 0 };
+            code = next;
+            if same == SETTLED {
+                break;
+            }
+        }
+    }
+}

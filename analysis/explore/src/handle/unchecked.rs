@@ -1,0 +1,66 @@
+//! A servo that no certificate covers, between the encoder's counts and the converter's codes: for simulation
+//! only. Its law is the firmware's, in `f64`.
+
+use std::f64::consts::TAU;
+
+use firmware::dac::DacCode;
+use firmware::encoder::{Position, RawCount};
+use firmware::number::{Number, OutOfRange};
+use firmware::scene::Scene;
+use firmware::servo::{BuildError, Transducers};
+use firmware::torque::LimitReason;
+use haptic_model::controller::{Controller, Tick};
+use haptic_model::simulation::unquantized_servo::UnquantizedServo;
+
+/// An uncertified servo, initially at rest at zero.
+#[derive(Clone, Debug)]
+pub struct Unchecked {
+    servo: UnquantizedServo,
+    position: Position,
+    radians_per_count: f64,
+    code_scale: f64,
+    /// What a torque at its limit is limited by.
+    limit: LimitReason,
+}
+
+impl Unchecked {
+    /// The servo of a scene, whose torque is limited as on a board: by the scene, or else by the converter.
+    ///
+    /// # Errors
+    /// Where coupling and environment have no unique solution, or no law.
+    pub fn new(scene: &Scene, transducers: &Transducers) -> Result<Self, BuildError> {
+        transducers.check(scene.timing, scene.torque_limit)?;
+        let full_scale = transducers.full_scale_torque;
+        let torque_limit = Some(scene.torque_limit.unwrap_or(full_scale));
+        let has_limit = scene.torque_limit.is_some();
+        let code_scale = f64::code_scale(f64::from(DacCode::CODES_TO_FULL_SCALE) / full_scale)
+            .map_err(|reason| BuildError::Unrepresentable { name: "codes per N m", reason })?;
+        Ok(Self {
+            servo: UnquantizedServo::new(&Scene { torque_limit, ..*scene })?,
+            position: Position::new(transducers.counter),
+            radians_per_count: TAU / transducers.counts_per_turn,
+            code_scale,
+            limit: if has_limit { LimitReason::Torque } else { LimitReason::DacRange },
+        })
+    }
+}
+
+impl Controller for Unchecked {
+    fn tick(&mut self, raw: i32) -> Tick {
+        self.position.update(RawCount::from(raw));
+        let count = self.position.count();
+        let angle = count as f64 * self.radians_per_count;
+        let (torque, limit) = self.servo.tick(angle, LimitReason::None);
+        Tick {
+            count,
+            angle,
+            torque,
+            code: torque.codes_below(DacCode::MID_SCALE.get(), self.code_scale),
+            limit: if limit == LimitReason::Torque { self.limit } else { limit },
+        }
+    }
+
+    fn tick_at(&mut self, angle: f64) -> Result<f64, OutOfRange> {
+        Ok(self.servo.tick(angle, LimitReason::None).0)
+    }
+}

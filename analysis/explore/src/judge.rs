@@ -1,0 +1,122 @@
+//! The certificate, as `haptic certify` has it.
+
+use firmware::number::Format;
+use haptic_model::file::{self, FileError, SceneFile};
+use haptic_model::remedy_change::{RemedyChange, remedy_changes};
+use haptic_model::verdict::{self, VerdictReport, judge_in};
+use haptic_model::verdict_text::rows;
+use serde::Serialize;
+
+use crate::Answer;
+use crate::scene_text::{Wrong, format};
+
+/// What the page calls the text in its fields.
+pub const NAME: &str = "scene";
+
+/// A file that cannot be judged.
+#[derive(Serialize)]
+struct Unreadable {
+    error: String,
+}
+
+/// A judged scene for the page.
+#[derive(Serialize)]
+struct Judged {
+    report: VerdictReport,
+    rows: Vec<(&'static str, String)>,
+    remedies: Vec<RemedyChange>,
+}
+
+/// What `haptic certify --json` prints for a scene as JSON; `{"error": ..}` where there is nothing to judge.
+pub fn certify(text: &str, _: &mut Vec<f64>) -> Answer {
+    match read(text) {
+        Ok(file) => json(&report(&file)),
+        Err(error) => json(&Unreadable { error: error.to_string() }),
+    }
+}
+
+/// Verdict, numbers, rows of words and remedies of a scene, or what is wrong with it.
+pub fn judge(text: &str, _: &mut Vec<f64>) -> Answer {
+    judged(text, report)
+}
+
+/// The same without remedies, which take long where times are known to lie in ranges.
+pub fn judge_without_remedies(text: &str, _: &mut Vec<f64>) -> Answer {
+    judged(text, |file| verdict::judge_without_remedies(&file.name, &file.scene, &file.steps()))
+}
+
+fn judged(text: &str, report: impl FnOnce(&SceneFile) -> VerdictReport) -> Answer {
+    match read(text) {
+        Ok(file) => {
+            let report = report(&file);
+            json(&Judged { rows: rows(&report), remedies: remedy_changes(&file, &report), report })
+        }
+        Err(error) => json(&Wrong::of(&error)),
+    }
+}
+
+/// The scene of a text.
+pub fn read(text: &str) -> Result<SceneFile, FileError> {
+    file::parse(NAME, format(text)?, text)
+}
+
+fn report(file: &SceneFile) -> VerdictReport {
+    judge_in(&file.name, &file.scene, Format::F64, &file.steps())
+}
+
+/// As JSON.
+pub fn json(answer: &impl Serialize) -> Answer {
+    serde_json::to_string(answer).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+
+    fn judged(text: &str) -> Value {
+        serde_json::from_str(&judge(text, &mut Vec::new()).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn each_wrong_value_is_named_with_its_key() {
+        let text = r#"{"name": "a", "device": {"inertia": "1,5", "damping": 0.02, "actuator_lag": [0, -1]},
+            "servo": {}, "environment": {"type": "profile", "delay": 1, "shape": [
+            {"type": "detents", "count": 24, "torque": -1}, {"type": "table", "knots": [[0, "a"], [1, 0]]}]},
+            "limit": {}}"#;
+        let judged = judged(text);
+        let keys: Vec<_> =
+            judged["errors"].as_array().unwrap().iter().map(|error| error["key"].clone()).collect();
+        let expected = [
+            "device.inertia",
+            "device.actuator_lag[1]",
+            "servo.period",
+            "environment.shape[0].torque",
+            "environment.shape[1].knots[0][1]",
+            "limit",
+        ];
+        assert_eq!(keys, expected.map(Value::from), "{judged}");
+        assert!(judged["report"].is_null());
+    }
+
+    #[test]
+    fn a_rejected_preset_has_its_rows_and_its_remedies() {
+        let preset = crate::presets::ALL.last().unwrap();
+        let judged = judged(preset.toml);
+        let remedies = judged["remedies"].as_array().unwrap();
+        let words: Vec<_> = remedies.iter().map(|remedy| remedy["sentence"].clone()).collect();
+        assert_eq!(Value::from(words), judged["report"]["remedies"]);
+        assert_eq!(remedies[0]["changes"][0][0], "environment.stiffness");
+        let rows = judged["rows"].as_array().unwrap();
+        assert!(rows.iter().any(|row| row[1] == remedies[0]["sentence"]), "{judged}");
+        let quick = judge_without_remedies(preset.toml, &mut Vec::new()).unwrap();
+        let quick: Value = serde_json::from_str(&quick).unwrap();
+        assert_eq!(quick["remedies"], Value::Array(vec![]));
+        for same in
+            ["verdict", "rules", "reason", "alpha", "bound", "delta", "theta", "assumptions"]
+        {
+            assert_eq!(quick["report"][same], judged["report"][same], "{same}");
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Scenes as texts: read without a judgement, and written as a scene file.
+
+use haptic_model::file::{self, FileError, Format, Problem, write};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::Answer;
+use crate::judge::{NAME, read};
+
+/// What is wrong with a scene, each with its key and its place in the text.
+#[derive(Debug, Serialize)]
+pub struct Wrong {
+    errors: Vec<WrongValue>,
+}
+
+/// A value that is wrong.
+#[derive(Debug, Serialize)]
+struct WrongValue {
+    /// Full name with the numbers of lists; null: it belongs to no key.
+    key: Option<String>,
+    line: usize,
+    column: usize,
+    sentence: String,
+}
+
+impl Wrong {
+    /// All that is wrong.
+    pub fn of(error: &FileError) -> Self {
+        let each = std::iter::once(error).chain(&error.rest);
+        let value = |error: &FileError| WrongValue {
+            key: error.problem.key().map(ToOwned::to_owned),
+            line: error.line,
+            column: error.column,
+            sentence: error.problem.to_string(),
+        };
+        Self { errors: each.map(value).collect() }
+    }
+}
+
+/// A text as the format that it is in: as JSON where it begins with a brace.
+pub fn format(text: &str) -> Result<Format, FileError> {
+    if text.len() as u64 > file::MAX_BYTES {
+        return Err(FileError::whole(NAME, 1, 1, Problem::TooLong { bound: file::MAX_BYTES }));
+    }
+    Ok(Format::of(NAME, text))
+}
+
+/// TOML or JSON: `{"scene": ..}` with all its keys, whatever they are, or what is wrong with its grammar.
+pub fn parse(text: &str, _: &mut Vec<f64>) -> Answer {
+    let scene = format(text).and_then(|format| file::as_json(NAME, format, text));
+    Ok(match scene {
+        Ok(Value::Object(scene)) => json!({ "scene": scene }),
+        Ok(_) => json!(Wrong::of(&FileError::whole(NAME, 1, 1, Problem::Empty))),
+        Err(error) => json!(Wrong::of(&error)),
+    }
+    .to_string())
+}
+
+/// A scene as a scene file in TOML, which reads back as the same to the last bit.
+pub fn toml(text: &str, _: &mut Vec<f64>) -> Answer {
+    read(text).map(|file| write::toml(&file)).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::presets;
+
+    fn parsed(text: &str) -> Value {
+        serde_json::from_str(&parse(text, &mut Vec::new()).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_reads_back_as_the_same_scene() {
+        for preset in presets::ALL {
+            let first = parsed(preset.toml)["scene"].to_string();
+            let written = toml(&first, &mut Vec::new()).unwrap();
+            assert_eq!(read(&written).unwrap(), read(preset.toml).unwrap(), "{}", preset.name);
+        }
+    }
+
+    #[test]
+    fn keys_and_values_that_mean_nothing_are_kept_and_what_has_no_grammar_is_named() {
+        let text = "wrong = 1\n[device]\ninertia = \"heavy\"\n";
+        let scene = json!({ "wrong": 1.0, "device": { "inertia": "heavy" } });
+        assert_eq!(parsed(text)["scene"], scene);
+        let error = &parsed("[device]\ninertia = = 1\n")["errors"][0];
+        assert_eq!((&error["line"], &error["key"]), (&json!(2), &Value::Null));
+        for text in ["[1, 2]", "", "{}", "{\"a\": [1, 2}"] {
+            assert!(parsed(text)["errors"][0]["sentence"].is_string(), "{text}");
+        }
+    }
+}

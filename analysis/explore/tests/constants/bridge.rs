@@ -1,0 +1,24 @@
+use firmware::certificate::Certified;
+use firmware::environment::{DelayedSpring, Matched};
+use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+
+/// What the hand feels.
+pub type Environment = Matched<DelayedSpring<1>, 0, 1, true>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: Some(0.0215) },
+    timing: Timing { period: 0.0001, worst_period: None },
+    coupling: Coupling::Matched,
+    environment: Matched { environment: DelayedSpring { stiffness: 20.0 } },
+    latency: Latency {
+        output_delay: TimeRange::exactly(2.5e-5),
+        actuator_lag: TimeRange::exactly(7.957747154594768e-5),
+        actuator_updates: 4,
+        ..Latency::NONE
+    },
+    torque_limit: Some(1.5),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

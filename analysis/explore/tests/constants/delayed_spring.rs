@@ -1,0 +1,19 @@
+use firmware::certificate::Certified;
+use firmware::environment::DelayedSpring;
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+
+/// What the hand feels.
+pub type Environment = DelayedSpring<1>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 44.0 },
+    environment: DelayedSpring { stiffness: 22.0 },
+    latency: Latency::NONE,
+    torque_limit: Some(1.0),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

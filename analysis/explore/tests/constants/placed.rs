@@ -1,0 +1,19 @@
+use firmware::certificate::Certified;
+use firmware::environment::{DamperWall, Placed};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+
+/// What the hand feels.
+pub type Environment = Placed<DamperWall<1>>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.0005, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: Placed { face: -0.125, wall: DamperWall { stiffness: 3.0, damping: 0.001 } },
+    latency: Latency::NONE,
+    torque_limit: Some(1.5),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

@@ -1,0 +1,24 @@
+use firmware::certificate::Certified;
+use firmware::environment::{Coefficients, Rational};
+use firmware::scene::{Coupling, Device, Latency, Scene, Timing};
+
+/// What the hand feels.
+pub type Environment = Rational;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Spring { stiffness: 40.0 },
+    environment: Rational {
+        numerator: Coefficients::new(&[5.0, -2.0]).unwrap(),
+        denominator: Coefficients::new(&[1.0, -0.3, 0.1, 0.0]).unwrap(),
+        delay: 1,
+        unit_zeros: 0,
+    },
+    latency: Latency::NONE,
+    torque_limit: None,
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

@@ -1,0 +1,23 @@
+use firmware::certificate::Certified;
+use firmware::environment::{DelayedSpring, Matched};
+use firmware::scene::{Coupling, Device, Latency, Scene, TimeRange, Timing};
+
+/// What the hand feels.
+pub type Environment = Matched<DelayedSpring<1>>;
+
+/// The scene.
+pub const SCENE: Scene<Environment> = Scene {
+    device: Device { inertia: 2.2e-5, damping: 0.022, passivity: None },
+    timing: Timing { period: 0.001, worst_period: None },
+    coupling: Coupling::Matched,
+    environment: Matched { environment: DelayedSpring { stiffness: 2.0 } },
+    latency: Latency {
+        output_delay: TimeRange::exactly(6e-6),
+        actuator_response: TimeRange::between(2e-5, 0.00025),
+        ..Latency::NONE
+    },
+    torque_limit: Some(1.5),
+};
+
+/// Its certificate: a scene that could oscillate in a hand stops the compiler here.
+pub const CERTIFIED: Certified<Scene<Environment>> = SCENE.certified();

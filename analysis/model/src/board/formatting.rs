@@ -1,0 +1,87 @@
+//! The state of a board as text.
+
+use firmware::certificate::Parameter;
+use firmware::tuning;
+use firmware::wire::Discarded;
+use firmware::wire::message::{ActiveParameters, Board, Changes, PreviousFault, Status};
+
+use super::history::History;
+use crate::quantity::significant;
+
+/// The numbers that run, as they are typed: `stiffness=22 damping=0.01`.
+pub fn numbers(parameters: &ActiveParameters) -> String {
+    changes(&parameters.values)
+}
+
+/// Parameters as they are typed.
+pub fn changes(changes: &Changes) -> String {
+    let each = changes.iter().map(|(parameter, value)| format!("{}={value}", name(*parameter)));
+    each.collect::<Vec<_>>().join(" ")
+}
+
+/// A parameter as it is typed.
+pub fn name(parameter: Parameter) -> &'static str {
+    tuning::name(parameter).unwrap_or(parameter.name_and_unit().0)
+}
+
+/// What stopped the board before it was last started.
+pub fn previous_fault(previous_fault: &PreviousFault) -> String {
+    format!("before the last reset, in tick {}: {}", previous_fault.tick, previous_fault.fault)
+}
+
+/// Why the board was last reset.
+pub fn reset(status: &Status) -> String {
+    format!("last reset: {}", status.reset)
+}
+
+/// What the servo has to spare, of its certificate and of its time; `slack` in s is that of the
+/// last tick.
+pub fn reserves(
+    parameters: &ActiveParameters,
+    status: &Status,
+    board: &Board,
+    slack: Option<f64>,
+) -> String {
+    let margin = parameters.margin;
+    let margin = margin.map_or("none".to_owned(), |m| format!("{} N m s/rad", significant(m, 4)));
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let now = slack.map(|slack| format!("{}, ", percent(slack / board.period))).unwrap_or_default();
+    let worst = worst_slack(status, board).map_or("unknown".to_owned(), percent);
+    format!("margin {margin}   slack {now}worst {worst}   missed {}", status.missed)
+}
+
+/// The worst slack as a share of the period; `None` before the first tick.
+pub fn worst_slack(status: &Status, board: &Board) -> Option<f64> {
+    let counts = status.worst_slack;
+    (counts <= board.timer_counts).then(|| f64::from(counts) / f64::from(board.timer_counts))
+}
+
+/// What a change of its numbers costs a board that is armed.
+pub fn gap(board: &Board) -> String {
+    let gap = significant(1e3 * board.longest_gap, 3);
+    format!("the torque was released for up to {gap} ms while the set was swapped in")
+}
+
+/// Energy that went into the hand.
+pub fn energy(status: &Status, board: &Board) -> String {
+    let joule = |steps: i64| significant(steps as f64 * board.energy_step, 3);
+    let (net, worst) = (joule(status.energy), joule(status.worst_deficit));
+    format!("energy into the hand {net} J, at most {worst} J")
+}
+
+/// The reasons for limited torques.
+pub fn limits(history: &History) -> String {
+    let limits = history.limits();
+    if limits.is_empty() {
+        return "limited by nothing".to_owned();
+    }
+    let each = limits.iter().map(|(reason, share)| format!("{reason} {:.0} %", 100.0 * share));
+    format!("limited by {}", each.collect::<Vec<_>>().join(", "))
+}
+
+/// What got lost on the way; `here` is what the host could not read.
+pub fn losses(status: &Status, here: Discarded) -> String {
+    let (there, here) = (status.discarded.total(), here.total());
+    let Status { dropped, thinned, .. } = status;
+    format!("ticks dropped {dropped}, thinned {thinned}   bad frames: board {there}, host {here}")
+}

@@ -1,0 +1,128 @@
+//! Requests to a board, and what became of them, in words.
+
+use firmware::servo::Step;
+use firmware::tuning::{Parameters, RenderError};
+use firmware::wire::description::Description;
+use firmware::wire::message::{ActiveParameters, Changes, Id, Outcome, Refusal, ToBoard};
+
+use super::formatting;
+
+/// A request to a board.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// Other parameters, all or none.
+    Set(Changes),
+    /// Switch the amplifier on; clears a fault.
+    Arm,
+    /// Fade the torque out and switch the amplifier off.
+    Disarm,
+    /// Align a brushless motor, which moves the handle.
+    Align,
+}
+
+impl Request {
+    /// Its message to the board.
+    pub fn message(&self, id: Id) -> ToBoard {
+        match self {
+            Self::Set(changes) => ToBoard::Set { id, changes: changes.clone() },
+            Self::Arm => ToBoard::Arm { id },
+            Self::Disarm => ToBoard::Disarm { id },
+            Self::Align => ToBoard::Align { id },
+        }
+    }
+
+    /// The parameters that are to be changed.
+    pub fn changes(&self) -> Changes {
+        match self {
+            Self::Set(changes) => changes.clone(),
+            Self::Arm | Self::Disarm | Self::Align => Changes::new(),
+        }
+    }
+
+    /// The request, in words.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Set(changes) => formatting::changes(changes),
+            Self::Arm => "arm".to_owned(),
+            Self::Disarm => "disarm".to_owned(),
+            Self::Align => "align".to_owned(),
+        }
+    }
+}
+
+/// What became of a request.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// It was sent.
+    Asked,
+    /// The board has answered.
+    Answered(RequestResult),
+    /// There was no answer.
+    Unanswered,
+    /// It was not sent: the board has not answered the request before.
+    Busy,
+    /// It was not sent: there was no link.
+    NoLink,
+}
+
+impl Reply {
+    /// Its line in the view.
+    pub fn line(&self, request: &Request) -> String {
+        let what = request.words();
+        match self {
+            Self::Asked => format!("{what} ..."),
+            Self::Answered(RequestResult::Done) => format!("{what}: done"),
+            Self::Answered(RequestResult::Refused(sentence)) => format!("{what}: {sentence}"),
+            Self::Unanswered => format!(
+                "{what}: the board has not answered; it may have executed \
+                                         the request"
+            ),
+            Self::Busy => {
+                format!("{what}: not sent; the board has not answered the last request yet")
+            }
+            Self::NoLink => format!("{what}: not sent; there was no link to the board"),
+        }
+    }
+}
+
+/// What became of a request, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RequestResult {
+    /// The request has taken effect.
+    Done,
+    /// It is refused, for this reason, and nothing has changed.
+    Refused(String),
+}
+
+impl From<Outcome> for RequestResult {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Done => Self::Done,
+            Outcome::Refused(refusal) => Self::Refused(refusal.to_string()),
+        }
+    }
+}
+
+/// Why a board has refused changes at this step: what runs there is judged again here, with the remedies that
+/// a board has no room to look for.
+pub fn refusal_in_words(
+    step: Step,
+    changes: &Changes,
+    description: &Description,
+    parameters: &ActiveParameters,
+) -> RequestResult {
+    if let Err(reason) = description.explain(names(parameters), changes)
+        && reason.step() == step
+    {
+        return RequestResult::Refused(reason.to_string());
+    }
+    if let Some(mode) = description.other_mode(changes) {
+        return RequestResult::Refused(RenderError::OtherMode { mode }.to_string());
+    }
+    Outcome::Refused(Refusal::Set(step)).into()
+}
+
+/// The parameters that can be changed.
+pub fn names(parameters: &ActiveParameters) -> Parameters {
+    Parameters::of(parameters.values.iter().map(|(parameter, _)| *parameter))
+}

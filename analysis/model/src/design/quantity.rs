@@ -1,0 +1,113 @@
+//! The numbers of a scene that a design takes as far as they go.
+
+use firmware::latency::{LONGEST_DELAY, LONGEST_LAG};
+use firmware::parameter::Parameter;
+use firmware::scene::Scene;
+
+/// Unit of a delay.
+pub const SAMPLES: &str = "samples";
+
+/// A number of a scene that a design can take as far as it goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Quantity {
+    /// Stiffness in N m/rad.
+    Stiffness,
+    /// Damping in N m s/rad.
+    Damping,
+    /// Delay in samples.
+    Delay,
+    /// Cancellation: the damping in N m s/rad that free mode takes away.
+    Cancellation,
+    /// Time constant in s of the amplifier: that of the slowest current loop.
+    ActuatorLag,
+    /// Time in s from a count to its torque: the longest latency.
+    OutputDelay,
+    /// Torque in N m of a torque profile: the strongest detents.
+    Torque,
+    /// Repetitions of a torque profile in a turn: the most detents.
+    Count,
+}
+
+impl Quantity {
+    /// Name and unit.
+    pub fn name_and_unit(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Stiffness => ("stiffness", "N m/rad"),
+            Self::Damping => ("damping", "N m s/rad"),
+            Self::Delay => ("delay", SAMPLES),
+            Self::Cancellation => ("cancellation", "N m s/rad"),
+            Self::ActuatorLag => Parameter::ActuatorLag.name_and_unit(),
+            Self::OutputDelay => Parameter::OutputDelay.name_and_unit(),
+            Self::Torque => Parameter::ProfileTorque.name_and_unit(),
+            Self::Count => Parameter::Count.name_and_unit(),
+        }
+    }
+
+    /// The scene with this much of it; `None` where its environment has no such number.
+    pub(crate) fn set(self, scene: &Scene, value: f64) -> Option<Scene> {
+        match self {
+            Self::Stiffness => scene.with(Parameter::Stiffness, value),
+            Self::Damping => scene.with(Parameter::Damping, value),
+            Self::Delay => scene.with(Parameter::Delay, value),
+            Self::Cancellation => scene.with(Parameter::Residual, scene.device.damping - value),
+            Self::ActuatorLag => scene.with(Parameter::ActuatorLag, value),
+            Self::Torque => scene.with(Parameter::ProfileTorque, value),
+            // What does not repeat has no number of repetitions to choose.
+            Self::Count if !scene.environment.profile()?.outline().wraps => None,
+            Self::Count => scene.with(Parameter::Count, value),
+            Self::OutputDelay => {
+                let value = last_update(scene, value);
+                let mut delayed = scene.with(Parameter::OutputDelay, value)?;
+                delayed.latency.output_jitter =
+                    delayed.latency.output_jitter.min(delayed.largest_jitter());
+                Some(delayed)
+            }
+        }
+    }
+
+    /// How much of it a scene has that was set to a value: where the amplifier is updated some times in a period,
+    /// the delay of its last update.
+    pub(super) fn reached(self, scene: &Scene, value: f64) -> f64 {
+        match self {
+            Self::OutputDelay => last_update(scene, value),
+            _ => value,
+        }
+    }
+
+    /// The least of it that a scene may have: none, or next to none.
+    pub(super) fn least(self) -> f64 {
+        match self {
+            Self::Torque => 1e-12,
+            Self::Count => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it is a whole number.
+    pub(super) fn is_whole(self) -> bool {
+        matches!(self, Self::Delay | Self::Count)
+    }
+
+    /// The largest that a scene of this period in s may have, whatever its certificate says; `None` where
+    /// there is no such bound.
+    pub(super) fn longest(self, period: f64) -> Option<f64> {
+        match self {
+            Self::ActuatorLag => Some(LONGEST_LAG * period),
+            Self::OutputDelay => Some(LONGEST_DELAY * period),
+            _ => None,
+        }
+    }
+}
+
+/// The longest time up to one in s at which the amplifier of a scene is updated; any, where it is so all the time.
+fn last_update(scene: &Scene, time: f64) -> f64 {
+    /// Of a whole number of updates, as decimals have it.
+    const ROUNDING: f64 = 1e-9;
+    let (period, latency) = (scene.timing.period, &scene.latency);
+    if latency.actuator_updates == 0 {
+        return time;
+    }
+    let updates = time / period * f64::from(latency.actuator_updates);
+    latency.delay_at_update((updates * (1.0 + ROUNDING)) as u32, period)
+}

@@ -1,0 +1,336 @@
+//! What can be wrong with a file, as sentences that name the file, the line, the key, the value
+//! and the bound.
+
+use std::fmt;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use thiserror::Error;
+
+use super::key::{Bound, Key};
+use super::tree::Span;
+use crate::chain::NoPassivity;
+use crate::text_width::wrapped;
+
+/// Longest piece of a file that is repeated in a message, in characters.
+const EXCERPT: usize = 60;
+
+/// Longest line of a file that is shown under a message, in bytes.
+const SHOWN_LINE: usize = 160;
+
+/// An error, without the place.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Problem {
+    /// No file was named.
+    #[error("the name of the file is empty; `-` is standard input")]
+    NoName,
+    /// The file could not be read.
+    #[error("the file cannot be read: {0}")]
+    Unreadable(String),
+    /// More bytes than a scene can need.
+    #[error("the file is longer than {bound} bytes, the most that is read")]
+    TooLong {
+        /// Largest length in bytes.
+        bound: u64,
+    },
+    /// Not text.
+    #[error("the file is not UTF-8 text: byte {byte:#04x} at offset {offset}")]
+    NotText {
+        /// The first byte that is not part of a character.
+        byte: u8,
+        /// Its position in the file.
+        offset: usize,
+    },
+    /// Nothing in it.
+    #[error("the file is empty; a scene has `name`, [device], [servo] and [environment]")]
+    Empty,
+    /// Neither valid TOML nor valid JSON.
+    #[error("not valid {format}: {message}")]
+    Syntax {
+        /// The format that was expected.
+        format: &'static str,
+        /// The parser's message.
+        message: String,
+    },
+    /// A key twice in one table.
+    #[error("the key `{key}` is set twice")]
+    Duplicate {
+        /// The key.
+        key: String,
+    },
+    /// A key that must be there is not.
+    #[error("`{key}` is missing; it must be {bound}")]
+    Missing {
+        /// Full name of the key.
+        key: String,
+        /// Its range.
+        bound: String,
+    },
+    /// A key that means nothing here.
+    #[error("`{key}` is not a key of {table}; {advice}")]
+    Unknown {
+        /// Full name of the key.
+        key: String,
+        /// The table it stood in.
+        table: String,
+        /// The key that was probably meant, or all of them.
+        advice: String,
+    },
+    /// A value of another kind.
+    #[error("`{key}` = {value} is {found}; it must be {bound}")]
+    WrongKind {
+        /// Full name of the key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// Kind of the value.
+        found: &'static str,
+        /// Its range.
+        bound: String,
+    },
+    /// A number that the key does not admit.
+    #[error("`{key}` = {value} is out of bounds; it must be {bound}")]
+    OutOfBounds {
+        /// Full name of the key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// Its range.
+        bound: String,
+    },
+    /// A device that no certificate can be taken of.
+    #[error("`{key}` = {value} leaves the device without passivity: {reason}")]
+    NoPassivity {
+        /// Full name of the key.
+        key: &'static str,
+        /// The value as written.
+        value: String,
+        /// Why there is none.
+        reason: NoPassivity,
+    },
+    /// Keys that contradict one another.
+    #[error("`{key}` = {value} {reason}")]
+    Conflict {
+        /// Full name of the key.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// Why it cannot stand beside another key, or alone.
+        reason: String,
+    },
+    /// Shapes that do not add up to a torque profile.
+    #[error("`{key}`: {reason}")]
+    Shapes {
+        /// Full name of the key.
+        key: String,
+        /// Why they do not.
+        reason: String,
+    },
+}
+
+impl Problem {
+    /// A key that is there twice.
+    pub fn duplicate(key: &str) -> Self {
+        Self::Duplicate { key: excerpt(key) }
+    }
+
+    /// A text that the format's grammar does not admit.
+    pub fn syntax(format: &'static str, message: &str) -> Self {
+        Self::Syntax { format, message: excerpt(message) }
+    }
+
+    /// A value of the wrong kind for a key.
+    pub fn wrong_kind(key: &Key, name: &str, value: &str, found: &'static str) -> Self {
+        let bound = key.requirement();
+        let key = if name.is_empty() { "the file" } else { name }.to_owned();
+        Self::WrongKind { key, value: excerpt(value), found, bound }
+    }
+
+    /// Full name of the key that it is about, with the numbers of lists, such as
+    /// `environment.shape[0].torque`; `None` where it is about no key.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Duplicate { key }
+            | Self::Missing { key, .. }
+            | Self::Unknown { key, .. }
+            | Self::WrongKind { key, .. }
+            | Self::OutOfBounds { key, .. }
+            | Self::Conflict { key, .. }
+            | Self::Shapes { key, .. } => Some(key),
+            Self::NoPassivity { key, .. } => Some(key),
+            Self::NoName
+            | Self::Unreadable(_)
+            | Self::TooLong { .. }
+            | Self::NotText { .. }
+            | Self::Empty
+            | Self::Syntax { .. } => None,
+        }
+    }
+
+    /// A number outside its key's bound.
+    pub fn out_of_bounds(path: &str, value: &str, bound: Bound, unit: &str) -> Self {
+        let bound = bound.requirement(unit);
+        Self::OutOfBounds { key: path.to_owned(), value: excerpt(value), bound }
+    }
+}
+
+/// A problem and the bytes of the text that it is about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Where.
+    pub span: Span,
+    /// What.
+    pub problem: Problem,
+}
+
+/// Most problems shown for a file; a text of another kind has one in each line.
+const MOST: usize = 20;
+
+/// A bad file: its name, the place, and the error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileError {
+    /// The file's name as the person gave it.
+    pub file: String,
+    /// Line, counted from 1.
+    pub line: usize,
+    /// Column in characters, counted from 1.
+    pub column: usize,
+    /// The error.
+    pub problem: Box<Problem>,
+    /// The line and the bytes in it that the problem is about, if it is short enough to show.
+    shown: Option<Box<(String, Span)>>,
+    /// The file's other problems, further down.
+    pub rest: Vec<FileError>,
+    /// Number of further errors, not shown.
+    pub untold: usize,
+}
+
+impl FileError {
+    /// Places faults, in their order, in the text that they were found in, whose first line is line
+    /// `first_line` of the file; nothing where there are none.
+    pub fn of(file: &str, text: &str, first_line: usize, faults: Vec<Fault>) -> Option<Self> {
+        let untold = faults.len().saturating_sub(MOST);
+        let mut placed =
+            faults.into_iter().take(MOST).map(|fault| Self::new(file, text, first_line, fault));
+        let first = placed.next()?;
+        Some(Self { rest: placed.collect(), untold, ..first })
+    }
+
+    fn new(file: &str, text: &str, first_line: usize, fault: Fault) -> Self {
+        let start = floor(text, fault.span.start);
+        let before = &text[..start];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let line = text[line_start..line_end].trim_end_matches('\r');
+        let end = floor(text, fault.span.end)
+            .clamp(start, line_start + line.len().max(start - line_start));
+        let printable = line.len() <= SHOWN_LINE && !line.chars().any(is_unprintable);
+        let shown = printable.then(|| (line.to_owned(), start - line_start..end - line_start));
+        Self {
+            file: excerpt_path(file),
+            line: first_line + before.matches('\n').count(),
+            column: 1 + text[line_start..start].chars().count(),
+            problem: Box::new(fault.problem),
+            shown: shown.filter(|(line, _)| !line.trim().is_empty()).map(Box::new),
+            rest: Vec::new(),
+            untold: 0,
+        }
+    }
+
+    /// A problem with a file as a whole, without any of its text.
+    pub fn whole(file: &str, line: usize, column: usize, problem: Problem) -> Self {
+        let (file, problem) = (excerpt_path(file), Box::new(problem));
+        Self { file, line, column, problem, shown: None, rest: Vec::new(), untold: 0 }
+    }
+
+    /// Each message with the line of the file below it, as compilers print it.
+    pub fn report(&self, colour: bool) -> String {
+        self.report_within(colour, None)
+    }
+
+    /// The same, with messages broken to so many columns.
+    pub fn report_within(&self, colour: bool, width: Option<usize>) -> String {
+        let each = std::iter::once(self).chain(&self.rest);
+        let mut parts: Vec<String> = each.map(|error| error.report_alone(colour, width)).collect();
+        parts.extend(self.and_more());
+        parts.join("\n\n")
+    }
+
+    /// Number of problems not shown.
+    fn and_more(&self) -> Option<String> {
+        (self.untold > 0).then(|| format!("{}: and {} more problems", self.file, self.untold))
+    }
+
+    fn report_alone(&self, colour: bool, width: Option<usize>) -> String {
+        // Behind the word in front, under which the other lines are indented.
+        const ERROR: usize = "error: ".len();
+        let room = width.map(|width| width.saturating_sub(ERROR).max(1));
+        let title = wrapped(&self.sentence(), room, 0);
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let group = match self.shown.as_deref() {
+            None => Level::ERROR
+                .primary_title(title.as_str())
+                .elements(std::iter::empty::<Snippet<'_, annotate_snippets::Annotation<'_>>>()),
+            Some((line, span)) => Level::ERROR.primary_title(title.as_str()).element(
+                Snippet::source(line.as_str())
+                    .path(self.file.as_str())
+                    .line_start(self.line)
+                    .annotation(AnnotationKind::Primary.span(span.clone())),
+            ),
+        };
+        renderer.render(&[group]).to_string()
+    }
+}
+
+impl FileError {
+    /// The first problem with its place. A file that could not be read has none.
+    fn sentence(&self) -> String {
+        let Self { file, line, column, problem, .. } = self;
+        match **problem {
+            Problem::NoName => problem.to_string(),
+            Problem::Unreadable(_) if (*line, *column) == (1, 1) => format!("{file}: {problem}"),
+            _ => format!("{file}:{line}:{column}: {problem}"),
+        }
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence())?;
+        for error in &self.rest {
+            write!(f, "\n{}", error.sentence())?;
+        }
+        self.and_more().map_or(Ok(()), |more| write!(f, "\n{more}"))
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// The largest character boundary that is not behind `at`.
+fn floor(text: &str, at: usize) -> usize {
+    text.floor_char_boundary(at)
+}
+
+fn is_unprintable(character: char) -> bool {
+    character.is_control() && character != '\t'
+}
+
+/// An excerpt of foreign text, safe to print: one line, no control characters, bounded.
+pub fn excerpt(text: &str) -> String {
+    let mut short = String::new();
+    for (count, character) in text.trim().chars().enumerate() {
+        if count == EXCERPT {
+            short.push('…');
+            break;
+        }
+        match character {
+            c if c.is_control() => short.extend(c.escape_default()),
+            c => short.push(c),
+        }
+    }
+    short
+}
+
+/// A path is a person's own words and is repeated whole, but printable.
+fn excerpt_path(path: &str) -> String {
+    path.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}

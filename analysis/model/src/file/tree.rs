@@ -1,0 +1,72 @@
+//! A document as a tree of values that remember where they stood, for TOML and JSON alike.
+
+use std::ops::Range;
+
+/// Bytes of the text that a value or a key was written in.
+pub type Span = Range<usize>;
+
+/// A value and where it stood.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Bytes of the value in the text.
+    pub span: Span,
+    /// The value.
+    pub value: Value,
+}
+
+/// A value of either format; TOML's dates are [`Value::Other`], for no key takes one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Integer or decimal number; what the text wrote may be infinite or not a number.
+    Number(f64),
+    /// A string.
+    Text(String),
+    /// `true` or `false`.
+    Boolean(bool),
+    /// Values in a row.
+    List(Vec<Node>),
+    /// A table, or an object.
+    Table(Vec<Entry>),
+    /// Anything that no key takes, by the name of its kind.
+    Other(&'static str),
+}
+
+/// A key with its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The key.
+    pub name: String,
+    /// Bytes of the key in the text.
+    pub span: Span,
+    /// Its value.
+    pub node: Node,
+}
+
+impl Value {
+    /// The value as JSON.
+    pub fn into_json(self) -> serde_json::Value {
+        match self {
+            Self::Number(number) => number.into(),
+            Self::Text(text) => text.into(),
+            Self::Boolean(boolean) => boolean.into(),
+            Self::List(list) => list.into_iter().map(|node| node.value.into_json()).collect(),
+            Self::Table(entries) => entries
+                .into_iter()
+                .map(|entry| (entry.name, entry.node.value.into_json()))
+                .collect(),
+            Self::Other(_) => serde_json::Value::Null,
+        }
+    }
+
+    /// What a person calls this kind of value.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Number(_) => "a number",
+            Self::Text(_) => "a string",
+            Self::Boolean(_) => "true or false",
+            Self::List(_) => "a list",
+            Self::Table(_) => "a table",
+            Self::Other(kind) => kind,
+        }
+    }
+}

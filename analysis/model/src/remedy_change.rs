@@ -1,0 +1,186 @@
+//! What passes instead of a rejected scene, as changes of its file.
+
+use firmware::certificate::Remedy;
+use firmware::environment::Environment;
+use firmware::parameter::Parameter;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::file::{SceneFile, key, scene};
+use crate::verdict::VerdictReport;
+
+/// A remedy, and how the file is changed to have it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RemedyChange {
+    /// The remedy in words, as the report has it.
+    pub sentence: String,
+    /// Keys and their values, null for one that is left out: the value that passes and is nearest to the
+    /// present one. Empty where no key of the file is that number.
+    pub changes: Vec<(&'static str, Value)>,
+}
+
+/// The remedies of a report on a file, in the report's order.
+pub fn remedy_changes(file: &SceneFile, report: &VerdictReport) -> Vec<RemedyChange> {
+    let Some(remedies) = &report.changes else { return Vec::new() };
+    let matched = remedies.matched().map(|words| RemedyChange {
+        sentence: words.to_owned(),
+        changes: vec![
+            (key::COUPLING_TYPE.path, scene::MATCHED.into()),
+            (key::COUPLING_STIFFNESS.path, Value::Null),
+        ],
+    });
+    let numbers = remedies.iter().map(|remedy| RemedyChange {
+        sentence: remedy.to_string(),
+        changes: changes(file, &remedy),
+    });
+    matched.into_iter().chain(numbers).collect()
+}
+
+fn changes(file: &SceneFile, remedy: &Remedy) -> Vec<(&'static str, Value)> {
+    let path = key_of(file, remedy.parameter);
+    let value = nearest(remedy, file.scene.get(remedy.parameter));
+    let value = value
+        .filter(|&value| remedy.parameter != Parameter::Passivity || is_passivity(file, value));
+    let changed = path.zip(value).map(|(path, value)| (path, json!(value)));
+    // A matched coupling takes no stiffness; without a type it is a spring.
+    let is_spring = remedy.parameter == Parameter::CouplingStiffness;
+    let untyped =
+        changed.as_ref().filter(|_| is_spring).map(|_| (key::COUPLING_TYPE.path, Value::Null));
+    untyped.into_iter().chain(changed.clone()).collect()
+}
+
+/// The key of a number; `None` where the file has another one in its place.
+fn key_of(file: &SceneFile, parameter: Parameter) -> Option<&'static str> {
+    let is_chain = file.chain.masses().len() > 1;
+    let is_beside_wall = match &file.scene.environment {
+        Environment::Composed(composed) => composed.wall.is_some(),
+        _ => false,
+    };
+    Some(match parameter {
+        // That of a chain follows from its masses.
+        Parameter::DeviceDamping if is_chain => return None,
+        Parameter::Stiffness if is_beside_wall => key::WALL_STIFFNESS.path,
+        Parameter::Damping if is_beside_wall => key::WALL_DAMPING.path,
+        parameter => parameter.key(),
+    })
+}
+
+/// Whether a device may be said to have that passivity: no more than what its masses have.
+fn is_passivity(file: &SceneFile, value: f64) -> bool {
+    let own = file.chain.as_rigid().ok().map(|own| own.passivity());
+    own.is_none_or(|own| value <= own)
+}
+
+/// The end of the values that pass which is nearer to the present value.
+fn nearest(remedy: &Remedy, present: Option<f64>) -> Option<f64> {
+    let Remedy { lowest, highest, .. } = *remedy;
+    match (lowest, highest, present) {
+        (Some(lowest), Some(_), Some(present)) if present < lowest => Some(lowest),
+        _ => highest.or(lowest),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Format, parse};
+    use crate::verdict::{Verdict, judge};
+
+    const DEVICE: &str = "name = \"a\"\n[device]\ninertia = 2.2e-5\ndamping = 0.022\n";
+    const SERVO: &str = "[servo]\nperiod = 0.001\n";
+
+    fn set(scene: &mut Value, path: &str, value: Value) {
+        let mut place = scene;
+        let (tables, name) = path.rsplit_once('.').unwrap();
+        for table in tables.split('.') {
+            place = &mut place[table];
+            if place.is_null() {
+                *place = json!({});
+            }
+        }
+        let table = place.as_object_mut().unwrap();
+        if value.is_null() {
+            table.remove(name);
+        } else {
+            table.insert(name.to_owned(), value);
+        }
+    }
+
+    /// How many remedies change the file, and how many there are.
+    fn each_certifies(text: &str) -> [usize; 2] {
+        let file = parse("a.toml", Format::Toml, text).unwrap_or_else(|error| panic!("{error}"));
+        let report = judge("a", &file.scene);
+        assert_ne!(report.verdict, Verdict::Certified, "{text}");
+        let found = remedy_changes(&file, &report);
+        let sentences: Vec<_> = found.iter().map(|remedy| remedy.sentence.clone()).collect();
+        assert_eq!(sentences, report.remedies);
+        let mut changing = 0;
+        for remedy in &found {
+            if remedy.changes.is_empty() {
+                continue;
+            }
+            changing += 1;
+            let mut scene = crate::file::as_json("a.toml", Format::Toml, text).unwrap();
+            for (path, value) in &remedy.changes {
+                set(&mut scene, path, value.clone());
+            }
+            let changed = parse("a.json", Format::Json, &scene.to_string());
+            let changed = changed.unwrap_or_else(|error| panic!("{}: {error}", remedy.sentence));
+            let verdict = judge("a", &changed.scene);
+            assert_eq!(verdict.verdict, Verdict::Certified, "{}: {scene}", remedy.sentence);
+        }
+        [changing, found.len()]
+    }
+
+    #[test]
+    fn every_remedy_certifies_where_it_is_applied() {
+        let spring = "[coupling]\nstiffness = 44\n";
+        let wall = "[environment]\ntype = \"damper-wall\"\ndelay = 1\n";
+        let stiff = format!("{wall}stiffness = 60\ndamping = 0.02\n");
+        let detents = "[environment]\ntype = \"profile\"\ndelay = 1\n[[environment.shape]]\n\
+                       type = \"detents\"\ncount = 24\ntorque = 5\n";
+        let stops =
+            "[[environment.shape]]\ntype = \"end_stops\"\nfrom = -1\nto = 1\nstiffness = 300\n";
+        let beside = "[environment.wall]\nstiffness = 60\ndamping = 0.01\ndelay = 1\n";
+        let soft = detents.replace("torque = 5", "torque = 0.05");
+        let cases = [
+            format!("{DEVICE}{SERVO}{spring}{stiff}"),
+            format!("{DEVICE}{SERVO}{stiff}"),
+            format!("{DEVICE}passivity = 0.02\n{SERVO}worst_period = 0.0011\n{stiff}")
+                .replace("60", "8"),
+            format!(
+                "{DEVICE}actuator_lag = [1e-4, 2e-4]\nsensor_lag = 3e-5\n{SERVO}output_delay = 5e-5\n\
+                 [coupling]\nstiffness = 40\n{wall}stiffness = 20\ndamping = 0.005\n"
+            ),
+            format!("{DEVICE}{SERVO}[coupling]\ntype = \"spring\"\nstiffness = 400\n{stiff}"),
+            format!(
+                "{DEVICE}{SERVO}{spring}[environment]\ntype = \"free-mode\"\nresidual = -0.01\n"
+            ),
+            format!("{DEVICE}{SERVO}{spring}{detents}"),
+            format!("{DEVICE}{SERVO}{spring}{soft}{stops}"),
+            format!("{DEVICE}{SERVO}{spring}{soft}{}{beside}", stops.replace("300", "10")),
+        ];
+        let found = cases.each_ref().map(|text| each_certifies(text));
+        for ([changing, all], text) in found.iter().zip(&cases) {
+            assert_eq!(changing, all, "{text}");
+            assert!(*all > 0, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_chain_has_no_more_passivity_than_its_masses() {
+        let masses = "[[device.mass]]\ninertia = 2e-5\ndamping = 0.02\n[[device.mass]]\n\
+                      inertia = 3e-5\ndamping = 0.005\n[[device.link]]\nstiffness = 40\n\
+                      damping = 0.015\n";
+        let chain = |passivity: &str, stiffness: f64| {
+            format!(
+                "name = \"a\"\n[device]\n{passivity}{masses}{SERVO}[environment]\n\
+                 type = \"damper-wall\"\ndelay = 1\nstiffness = {stiffness}\ndamping = 0.008\n"
+            )
+        };
+        let [changing, all] = each_certifies(&chain("passivity = 0.012\n", 8.0));
+        assert_eq!(changing, all);
+        let [changing, all] = each_certifies(&chain("", 20.0));
+        assert!(changing > 0 && changing + 1 == all, "{changing} of {all}");
+    }
+}

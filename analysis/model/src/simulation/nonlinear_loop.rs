@@ -1,0 +1,193 @@
+//! The sampled loop with its non-linear elements: limits, wall face, quantisation, friction.
+
+use std::collections::VecDeque;
+
+use firmware::torque::LimitReason;
+use nalgebra::DVector;
+
+use super::discrete_plant::DiscretePlant;
+use super::error::SimulationError;
+use super::experiment::{Experiment, Integration};
+use super::friction::FrictionPlant;
+use super::kernel::{DEAD, LOOK};
+use super::plant::{POSITION, VELOCITY};
+use super::tick_status::TickStatus;
+use super::torque_signal::TorqueSignal;
+use super::trajectory::Columns;
+use super::unquantized_servo::UnquantizedServo;
+use crate::missed::Missed;
+
+/// A loop in motion.
+#[derive(Debug)]
+pub struct NonlinearLoop {
+    servo: UnquantizedServo,
+    machine: Machine,
+    encoder_step: Option<f64>,
+    missed: Box<dyn Ticks>,
+    torque: f64,
+    k: usize,
+}
+
+/// Whether each tick is missed.
+trait Ticks: Iterator<Item = bool> + std::fmt::Debug {}
+impl<T: Iterator<Item = bool> + std::fmt::Debug> Ticks for T {}
+
+/// The plant with the torques that are still to act on it.
+#[derive(Debug)]
+pub struct Machine {
+    body: Body,
+    measured: usize,
+    whole: usize,
+    /// Motor torques in N m of the ticks before, the newest first.
+    torques: VecDeque<f64>,
+}
+
+/// The plant, with Coulomb friction or without.
+#[derive(Debug)]
+enum Body {
+    /// Without.
+    Smooth(Box<Smooth>),
+    /// With.
+    FrictionPlant(Box<FrictionPlant>),
+}
+
+/// A plant whose ticks are all one matrix.
+#[derive(Debug)]
+struct Smooth {
+    tick: DiscretePlant,
+    period: f64,
+    state: DVector<f64>,
+    next: DVector<f64>,
+}
+
+impl NonlinearLoop {
+    /// Sets an experiment up.
+    ///
+    /// # Errors
+    /// Where the scene has no law that could run.
+    pub fn new(experiment: &Experiment, integration: Integration) -> Result<Self, SimulationError> {
+        Ok(Self {
+            servo: UnquantizedServo::new(&experiment.scene)?,
+            machine: Machine::new(experiment, integration),
+            encoder_step: experiment.encoder_step,
+            missed: ticks(experiment.missed),
+            torque: 0.0,
+            k: 0,
+        })
+    }
+
+    /// The next samples, and what the servo did at each.
+    pub fn fill(
+        &mut self,
+        hand_torque: &TorqueSignal,
+        columns: Columns<'_>,
+        limit: &mut [TickStatus],
+    ) {
+        let Columns { position, velocity, torque } = columns;
+        let samples = position.iter_mut().zip(velocity).zip(torque).zip(limit);
+        for (((position, velocity), torque), status) in samples {
+            let state = self.machine.state();
+            (*position, *velocity) = (state[POSITION], state[VELOCITY]);
+            let measured = self.machine.measured();
+            *status = self.run_servo(measured);
+            *torque = self.torque;
+            self.machine.tick(self.k, hand_torque, -self.torque);
+            self.k += 1;
+        }
+    }
+
+    /// The servo's part in a tick that starts with the encoder at `position` rad.
+    fn run_servo(&mut self, position: f64) -> TickStatus {
+        if self.missed.next().unwrap_or(false) {
+            return TickStatus::Missed;
+        }
+        let (angle, standing_still) = match self.encoder_step {
+            Some(step) => read(position, step),
+            None => (position, LimitReason::None),
+        };
+        let (torque, limit) = self.servo.tick(angle, standing_still);
+        self.torque = torque;
+        TickStatus::Ran(limit)
+    }
+}
+
+/// The angle in rad that an encoder with this step shows, and whether its count was too large for
+/// the servo's 32 bits, where the angle stands still.
+fn read(position: f64, step: f64) -> (f64, LimitReason) {
+    let count = (position / step).floor();
+    let nearest = count.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+    let reason = if nearest == count { LimitReason::None } else { LimitReason::Angle };
+    (nearest * step, reason)
+}
+
+fn ticks(missed: Missed) -> Box<dyn Ticks> {
+    Box::new(missed.ticks())
+}
+
+impl Machine {
+    /// The plant of an experiment at its start.
+    pub fn new(experiment: &Experiment, integration: Integration) -> Self {
+        let (plant, discretization) =
+            (&experiment.machine(), experiment.discretization(integration));
+        let omega = experiment.hand_torque.omega();
+        let state = plant.state_at(experiment.start.position, experiment.start.velocity);
+        let body = if experiment.friction > 0.0 {
+            let friction_plant =
+                FrictionPlant::new(plant, experiment.friction, &discretization, omega, &state);
+            Body::FrictionPlant(Box::new(friction_plant))
+        } else {
+            let tick = DiscretePlant::new(plant, &discretization, omega);
+            let next = state.clone();
+            Body::Smooth(Box::new(Smooth { tick, period: discretization.period, state, next }))
+        };
+        let whole = discretization.whole;
+        let torques = VecDeque::from(vec![0.0; whole + 1]);
+        Self { body, measured: plant.measured(), whole, torques }
+    }
+
+    /// Its states.
+    pub fn state(&self) -> &DVector<f64> {
+        match &self.body {
+            Body::Smooth(smooth) => &smooth.state,
+            Body::FrictionPlant(friction_plant) => friction_plant.state(),
+        }
+    }
+
+    /// The angle in rad that the servo reads.
+    pub fn measured(&self) -> f64 {
+        self.state()[self.measured]
+    }
+
+    /// One tick of whose sample follows this motor torque in N m.
+    pub fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, torque: f64) {
+        self.torques.push_front(torque);
+        let torques = [self.whole + 1, self.whole].map(|age| self.torques[age]);
+        self.torques.pop_back();
+        match &mut self.body {
+            Body::Smooth(smooth) => smooth.tick(k, hand_torque, torques),
+            Body::FrictionPlant(friction_plant) => friction_plant.tick(k, hand_torque, torques),
+        }
+    }
+}
+
+impl Smooth {
+    fn tick(&mut self, k: usize, hand_torque: &TorqueSignal, [before, after]: [f64; 2]) {
+        let Self { tick, state, next, period } = self;
+        next.gemv(1.0, &tick.transition, state, 0.0);
+        next.axpy(after, &tick.motor, 1.0);
+        next.axpy(before, &tick.previous, 1.0);
+        match hand_torque {
+            TorqueSignal::Free => {}
+            TorqueSignal::Held(_) => next.axpy(hand_torque.held(k), &tick.hand, 1.0),
+            TorqueSignal::Sine { .. } => {
+                let [s, c] = hand_torque.sine(k, *period);
+                next.axpy(s, &tick.sine[0], 1.0);
+                next.axpy(c, &tick.sine[1], 1.0);
+            }
+        }
+        std::mem::swap(state, next);
+        if k.is_multiple_of(LOOK) && state.iter().all(|state| state.abs() < DEAD) {
+            state.fill(0.0);
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! What becomes of walls of every stiffness and damping on one device: certified, merely stable, or
+//! neither.
+
+pub mod border;
+pub mod plane;
+pub mod plant;
+pub mod schur_cohn;
+
+use std::ops::Range;
+
+use firmware::certificate::{Answer, PassivityProblem, assess};
+use firmware::environment::{Environment, Wall};
+use firmware::scene::Scene;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::file::SceneFile;
+use crate::limits::{Limit, largest_stiffness};
+use crate::simulation::plant::Plant;
+use crate::simulation::{Experiment, Integration, SimulationError};
+use plant::SampledPlant;
+
+/// Verdicts on a scene, from the worst to the best.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Region {
+    /// Certified, and yet without a hand it does not come to rest: its torque is later than the
+    /// certificate takes it to be.
+    Wrong,
+    /// Even without a hand it does not come to rest.
+    Unstable,
+    /// Rejected: without a hand it comes to rest; some hand may make it oscillate.
+    Rejected,
+    /// Neither certified nor rejected; without a hand it comes to rest.
+    Undecided,
+    /// The exact rule certifies it, the paper's does not.
+    Exact,
+    /// The paper's rule certifies it.
+    Paper,
+}
+
+impl Region {
+    /// All, from the worst to the best.
+    pub const ALL: [Self; 6] =
+        [Self::Wrong, Self::Unstable, Self::Rejected, Self::Undecided, Self::Exact, Self::Paper];
+
+    /// In one word, for tables.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Unstable => "unstable",
+            Self::Rejected => "rejected",
+            Self::Undecided => "undecided",
+            Self::Exact => "certified-exact",
+            Self::Paper => "certified-paper",
+        }
+    }
+
+    /// In words, for a legend.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Paper => "certified by the paper's rule",
+            Self::Exact => "certified by the exact rule only",
+            Self::Undecided => "undecided, stable with no hand",
+            Self::Rejected => "rejected, stable with no hand",
+            Self::Unstable => "unstable with no hand",
+            Self::Wrong => "WRONG: certified, unstable",
+        }
+    }
+}
+
+/// Why there is no map.
+#[derive(Debug, Error)]
+pub enum MapError {
+    /// Nothing of the environment is a stiffness or a damping.
+    #[error(
+        "{scene}: a map shows stiffness and damping of a wall, but this environment has no wall; \
+         it must be a delayed-spring, a damper-wall or a free-mode-wall"
+    )]
+    NoWall {
+        /// Name of the scene.
+        scene: String,
+    },
+    /// The device is beyond the range of numbers.
+    #[error(transparent)]
+    Device(#[from] SimulationError),
+    /// There is nothing to judge between the borders of the map.
+    #[error(
+        "stiffness from {} to {} N m/rad and damping from {} to {} N m s/rad are beyond the range \
+         of a map", stiffness.start, stiffness.end, damping.start, damping.end
+    )]
+    NoRange {
+        /// The stiffness.
+        stiffness: Range<f64>,
+        /// The damping.
+        damping: Range<f64>,
+    },
+}
+
+/// The walls that differ from a scene's in stiffness and damping only.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Family {
+    scene: Scene,
+    plant: SampledPlant,
+    /// Whether the verdict rests on what does not hold: the torque is later than the certificate
+    /// takes it to be.
+    may_be_wrong: bool,
+}
+
+impl Family {
+    /// The walls of a scene file, on its device in no hand.
+    ///
+    /// # Errors
+    /// Where the environment has no wall, or the device's motion is beyond the range of numbers.
+    pub fn of(file: &SceneFile) -> Result<Self, MapError> {
+        let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
+        Self::on(&file.name, alone)
+    }
+
+    /// The walls of a scene that a person calls `name`, on its rigid device in no hand.
+    ///
+    /// # Errors
+    /// Where the environment has no wall, or the device's motion is beyond the range of numbers.
+    pub fn rigid(name: &str, scene: &Scene) -> Result<Self, MapError> {
+        Self::on(name, Experiment::still(scene))
+    }
+
+    fn on(name: &str, alone: Experiment) -> Result<Self, MapError> {
+        if alone.scene.environment.wall().is_none() {
+            return Err(MapError::NoWall { scene: name.to_owned() });
+        }
+        let tick = alone.tick(Integration::default())?;
+        let may_be_wrong = alone.latency > 0.0;
+        Ok(Self { scene: alone.scene, plant: SampledPlant::new(&tick), may_be_wrong })
+    }
+
+    /// The scene that the others differ from.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene with another stiffness (N m/rad) and damping (N m s/rad) of its wall.
+    pub fn member(&self, stiffness: f64, damping: f64) -> Scene {
+        let damped = |wall: Wall| Wall { stiffness, damping, ..wall };
+        let environment = match self.scene.environment {
+            // A spring with a damper is a wall.
+            Environment::DelayedSpring(wall) | Environment::DamperWall(wall) => {
+                Environment::DamperWall(damped(wall))
+            }
+            Environment::FreeModeWall { residual, wall } => {
+                Environment::FreeModeWall { residual, wall: damped(wall) }
+            }
+            other => other,
+        };
+        Scene { environment, ..self.scene }
+    }
+
+    /// The verdict on a wall. Stability comes first, as it is by far the cheapest: no hand at all is
+    /// a passive hand too, so a loop that is unstable without one is not certified, as long as the
+    /// device meets the certificate's assumptions. If it does not, the verdict is computed all the
+    /// same, and may be wrong.
+    pub fn region(&self, stiffness: f64, damping: f64) -> Region {
+        let scene = self.member(stiffness, damping);
+        let is_stable = self.plant.is_stable_under(&scene).unwrap_or(false);
+        judged(&scene, is_stable, self.may_be_wrong)
+    }
+
+    /// Ranges of stiffness and damping that show the borders: nearly twice the stiffest certified spring,
+    /// and damping of both signs about as far as the device's own goes.
+    pub fn usual_ranges(&self) -> (Range<f64>, Range<f64>) {
+        let delta = assess(&self.scene).delta.midpoint();
+        let stiffest = match largest_stiffness(&self.member(0.0, 0.0)) {
+            Limit::RoundUp3(stiffness) => stiffness,
+            Limit::Any | Limit::Nothing => 2.0 * delta / self.scene.timing.period,
+        };
+        (0.0..1.8 * stiffest, -0.6 * delta..1.25 * delta)
+    }
+}
+
+/// What becomes of a scene that is stable without a hand or not.
+fn judged(scene: &Scene, is_stable: bool, may_be_wrong: bool) -> Region {
+    if !is_stable && !may_be_wrong {
+        return Region::Unstable;
+    }
+    match (is_stable, verdict(scene)) {
+        (false, Region::Exact | Region::Paper) => Region::Wrong,
+        (false, _) => Region::Unstable,
+        (true, verdict) => verdict,
+    }
+}
+
+/// The middle of one of so many equal parts of a range.
+pub fn middle(range: &Range<f64>, index: usize, parts: usize) -> f64 {
+    range.start + (range.end - range.start) * (index as f64 + 0.5) / parts as f64
+}
+
+/// The certificate's verdict on a scene.
+fn verdict(scene: &Scene) -> Region {
+    let posed = match PassivityProblem::of(scene) {
+        Ok(posed) => posed,
+        Err(rejection) if rejection.is_undecided() => return Region::Undecided,
+        Err(_) => return Region::Rejected,
+    };
+    // The paper's rule is stricter than the exact one, and cheaper.
+    if posed.passes_paper() {
+        return Region::Paper;
+    }
+    match posed.answer() {
+        Answer::Pass => Region::Exact,
+        Answer::Fail => Region::Rejected,
+        Answer::Undecided => Region::Undecided,
+    }
+}
+
+/// A grid of scenes, judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// From the lowest to the highest stiffness, in N m/rad.
+    pub stiffness: Range<f64>,
+    /// From the lowest to the highest damping, in N m s/rad.
+    pub damping: Range<f64>,
+    /// Cells along the stiffness.
+    pub columns: usize,
+    /// Cells along the damping.
+    pub rows: usize,
+    regions: Vec<Region>,
+}
+
+impl Map {
+    /// Computes the middle of each of `side` times `side` cells, on all cores. Calls `progress` on
+    /// each row.
+    pub fn new(
+        family: &Family,
+        stiffness: Range<f64>,
+        damping: Range<f64>,
+        side: usize,
+        progress: impl Fn() + Sync,
+    ) -> Self {
+        let row = |row: usize| {
+            let damping = middle(&damping, row, side);
+            let region = |column| family.region(middle(&stiffness, column, side), damping);
+            let regions: Vec<Region> = (0..side).map(region).collect();
+            progress();
+            regions
+        };
+        let regions = (0..side).into_par_iter().flat_map_iter(row).collect();
+        Self { stiffness, damping, columns: side, rows: side, regions }
+    }
+
+    /// The verdict on a cell.
+    pub fn at(&self, column: usize, row: usize) -> Region {
+        self.regions[row * self.columns + column]
+    }
+
+    /// Each cell, by rising damping and then stiffness: stiffness (N m/rad) and damping
+    /// (N m s/rad) of its middle, and the verdict on it.
+    pub fn cells(self) -> impl Iterator<Item = (f64, f64, Region)> {
+        let Self { stiffness, damping, columns, rows, regions } = self;
+        regions.into_iter().enumerate().map(move |(index, region)| {
+            let (column, row) = (index % columns, index / columns);
+            (middle(&stiffness, column, columns), middle(&damping, row, rows), region)
+        })
+    }
+
+    /// The part of the cells that a region has, from 0 to 1.
+    pub fn share(&self, region: Region) -> f64 {
+        let count = self.regions.iter().filter(|&&found| found == region).count();
+        count as f64 / self.regions.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests;

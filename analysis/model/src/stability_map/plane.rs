@@ -1,0 +1,310 @@
+//! What becomes of scenes that differ in two of their numbers: of a wall its stiffness and damping, of a
+//! torque profile its torque and number of repetitions, of any scene two that a person chooses.
+
+use std::ops::Range;
+
+use firmware::certificate::assess;
+use firmware::environment::Environment;
+use firmware::parameter::Parameter;
+use firmware::scene::Scene;
+use thiserror::Error;
+
+use super::plant::SampledPlant;
+use super::{Family, MapError, Region, judged};
+use crate::design::{Answer, Choice, Quantity, Terms, largest};
+use crate::file::SceneFile;
+use crate::simulation::plant::Plant;
+use crate::simulation::{Experiment, Integration, SimulationError};
+
+/// How far an axis goes beyond the scene's own number.
+const BEYOND: f64 = 2.5;
+/// Least period on an axis, as a part of the scene's own: a period of zero is none.
+const SHORTEST: f64 = 0.05;
+
+/// The numbers that may be an axis: those that the verdict rests on, but for those of the device's chain, and
+/// for what is counted in few steps.
+const CHOICE: [Parameter; 14] = [
+    Parameter::Stiffness,
+    Parameter::Damping,
+    Parameter::Filter,
+    Parameter::Residual,
+    Parameter::Count,
+    Parameter::ProfileTorque,
+    Parameter::StatedIndex,
+    Parameter::StatedGain,
+    Parameter::CouplingStiffness,
+    Parameter::Period,
+    Parameter::OutputDelay,
+    Parameter::ActuatorLag,
+    Parameter::SensorLag,
+    Parameter::TorqueLimit,
+];
+
+/// Why there is no such plane.
+#[derive(Debug, Error)]
+pub enum PlaneError {
+    /// The scene has no such number.
+    #[error("{scene}: a map cannot go along `{}`; it can go along {choice}", parameter.key())]
+    NoSuchNumber {
+        /// Name of the scene.
+        scene: String,
+        /// The number.
+        parameter: Parameter,
+        /// The keys of those that there are.
+        choice: String,
+    },
+    /// Both axes are the same.
+    #[error("{scene}: both axes of a map are `{}`; they must differ", parameter.key())]
+    Twice {
+        /// Name of the scene.
+        scene: String,
+        /// The number.
+        parameter: Parameter,
+    },
+    /// The walls cannot be judged.
+    #[error(transparent)]
+    Walls(#[from] MapError),
+    /// The device is beyond the range of numbers.
+    #[error(transparent)]
+    Device(#[from] SimulationError),
+}
+
+/// The scenes that differ from a file's in two numbers only.
+#[derive(Clone, Debug)]
+pub struct Plane {
+    axes: [Parameter; 2],
+    alone: Experiment,
+    judge: Judge,
+}
+
+/// What a member is judged by.
+#[derive(Clone, Debug)]
+enum Judge {
+    /// A wall of another stiffness and damping.
+    Walls(Box<Family>),
+    /// A scene on a device that no axis changes.
+    OnePlant(SampledPlant),
+    /// One whose axes are times of the loop.
+    ManyPlants,
+    /// One that has no transfer function: by its certificate alone.
+    Certificate,
+}
+
+impl Plane {
+    /// The numbers of a scene that an axis may go along.
+    pub fn choice(scene: &Scene) -> Vec<Parameter> {
+        let is_sum = matches!(scene.environment, Environment::Composed(_));
+        let is_wall = is_family(scene);
+        let has = |parameter: &Parameter| match parameter {
+            Parameter::Stiffness | Parameter::Damping => is_wall,
+            // A filter without damping filters nothing, and a sum's keys have other names.
+            Parameter::Filter if is_sum => false,
+            Parameter::Count => scene.environment.profile().is_some_and(|p| p.outline().wraps),
+            _ => scene.get(*parameter).is_some(),
+        };
+        CHOICE.into_iter().filter(has).collect()
+    }
+
+    /// The two that say most about a scene.
+    pub fn usual_axes(scene: &Scene) -> [Parameter; 2] {
+        const ORDER: [Parameter; 9] = [
+            Parameter::Stiffness,
+            Parameter::Damping,
+            Parameter::Count,
+            Parameter::ProfileTorque,
+            Parameter::Residual,
+            Parameter::StatedIndex,
+            Parameter::Period,
+            Parameter::CouplingStiffness,
+            Parameter::OutputDelay,
+        ];
+        let choice = Self::choice(scene);
+        let mut best = ORDER.into_iter().filter(|parameter| choice.contains(parameter));
+        // Every scene has a period and an output delay.
+        let first = best.next().unwrap_or(Parameter::Period);
+        [first, best.next().unwrap_or(Parameter::OutputDelay)]
+    }
+
+    /// The scenes of a file along two axes, the horizontal one first.
+    ///
+    /// # Errors
+    /// Where the scene has no such numbers, or the device's motion is beyond the range of numbers.
+    pub fn of(file: &SceneFile, axes: [Parameter; 2]) -> Result<Self, PlaneError> {
+        let choice = Self::choice(&file.scene);
+        if let Some(&parameter) = axes.iter().find(|axis| !choice.contains(axis)) {
+            let keys: Vec<_> = choice.iter().map(|parameter| parameter.key()).collect();
+            let (scene, choice) = (file.name.clone(), keys.join(", "));
+            return Err(PlaneError::NoSuchNumber { scene, parameter, choice });
+        }
+        if axes[0] == axes[1] {
+            return Err(PlaneError::Twice { scene: file.name.clone(), parameter: axes[0] });
+        }
+        let alone = Experiment { plant: Plant::of(&file.chain), ..Experiment::at_rest(file) };
+        let of_loop = |axis: &Parameter| {
+            matches!(
+                axis,
+                Parameter::Period
+                    | Parameter::OutputDelay
+                    | Parameter::ActuatorLag
+                    | Parameter::SensorLag
+            )
+        };
+        let judge = if axes == [Parameter::Stiffness, Parameter::Damping] {
+            Judge::Walls(Box::new(Family::of(file)?))
+        } else if !has_transfer(&file.scene) {
+            Judge::Certificate
+        } else if axes.iter().any(of_loop) {
+            Judge::ManyPlants
+        } else {
+            Judge::OnePlant(SampledPlant::new(&alone.tick(Integration::default())?))
+        };
+        Ok(Self { axes, alone, judge })
+    }
+
+    /// Its axes, the horizontal one first.
+    pub fn axes(&self) -> [Parameter; 2] {
+        self.axes
+    }
+
+    /// Whether a region says what becomes of the scene without a hand, beside its certificate.
+    pub fn says_stability(&self) -> bool {
+        !matches!(self.judge, Judge::Certificate)
+    }
+
+    /// The scene's own two numbers.
+    pub fn own(&self) -> [f64; 2] {
+        self.axes.map(|axis| own_number(&self.alone.scene, axis))
+    }
+
+    /// The scene with other numbers along the axes; `None` where it can have no such numbers.
+    pub fn member(&self, x: f64, y: f64) -> Option<Scene> {
+        if let Judge::Walls(family) = &self.judge {
+            return Some(family.member(x, y));
+        }
+        let [along, up] = self.axes;
+        let [x, y] = [nearest(along, x), nearest(up, y)];
+        if !along.range().admits(x) || !up.range().admits(y) {
+            return None;
+        }
+        self.alone.scene.with(along, x)?.with(up, y)
+    }
+
+    /// The verdict on a member; what cannot be is rejected.
+    pub fn region(&self, x: f64, y: f64) -> Region {
+        if let Judge::Walls(family) = &self.judge {
+            return family.region(x, y);
+        }
+        let Some(scene) = self.member(x, y) else { return Region::Rejected };
+        let is_stable = match &self.judge {
+            Judge::OnePlant(plant) => plant.comes_to_rest_under(&scene),
+            Judge::ManyPlants => {
+                let experiment = Experiment { scene, ..self.alone.clone() };
+                let Ok(tick) = experiment.tick(Integration::default()) else {
+                    return Region::Rejected;
+                };
+                SampledPlant::new(&tick).comes_to_rest_under(&scene)
+            }
+            _ => return by_certificate(&scene),
+        };
+        judged(&scene, is_stable.unwrap_or(false), self.alone.latency > 0.0)
+    }
+
+    /// Ranges of the two axes that show the borders around the scene.
+    pub fn usual_ranges(&self) -> [Range<f64>; 2] {
+        let usual = match &self.judge {
+            Judge::Walls(family) => family.usual_ranges().into(),
+            _ => self.axes.map(|axis| usual_range(&self.alone.scene, axis)),
+        };
+        let mut own = self.own().into_iter();
+        usual.map(|range| with_room(range, own.next().unwrap_or(0.0)))
+    }
+}
+
+/// The certificate's verdict on a scene that may have no transfer function.
+fn by_certificate(scene: &Scene) -> Region {
+    let assessment = assess(scene);
+    match assessment.outcome {
+        Ok(()) if assessment.paper == firmware::certificate::Answer::Pass => Region::Paper,
+        Ok(()) => Region::Exact,
+        Err(rejection) if rejection.is_undecided() => Region::Undecided,
+        Err(_) => Region::Rejected,
+    }
+}
+
+/// The nearest value that a number may have: a turn has a whole number of repetitions.
+pub fn nearest(axis: Parameter, value: f64) -> f64 {
+    if axis == Parameter::Count { value.round().max(1.0) } else { value }
+}
+
+/// Whether the scene is a wall of the family that differs in stiffness and damping.
+fn is_family(scene: &Scene) -> bool {
+    matches!(
+        scene.environment,
+        Environment::DelayedSpring(_)
+            | Environment::DamperWall(_)
+            | Environment::FreeModeWall { .. }
+    )
+}
+
+fn has_transfer(scene: &Scene) -> bool {
+    crate::simulation::closed_loop::transfers(scene).is_ok()
+}
+
+fn own_number(scene: &Scene, axis: Parameter) -> f64 {
+    match (axis, scene.environment.wall().filter(|_| is_family(scene))) {
+        (Parameter::Stiffness, Some(wall)) => wall.stiffness,
+        (Parameter::Damping, Some(wall)) => wall.damping,
+        _ => scene.get(axis).unwrap_or(0.0),
+    }
+}
+
+/// From nothing, or a little, to some times the scene's own number or to what is usual where that is zero.
+fn usual_range(scene: &Scene, axis: Parameter) -> Range<f64> {
+    /// The design's answer with everything else as it is.
+    const AS_IT_IS: Terms = Terms { safety: 1.0, coupling: Choice::Kept };
+    let own = own_number(scene, axis);
+    let delta = assess(scene).delta.midpoint();
+    let to = |usual: f64| if own > 0.0 { BEYOND * own } else { usual };
+    match axis {
+        Parameter::Period => SHORTEST * own..BEYOND * own,
+        Parameter::Stiffness | Parameter::CouplingStiffness => {
+            0.0..to(2.0 * delta / scene.timing.period)
+        }
+        Parameter::Damping => -0.6 * delta..1.25 * delta,
+        Parameter::Residual => -0.25 * delta..1.5 * delta,
+        Parameter::Filter => 0.0..1.0,
+        Parameter::Count => 0.0..(BEYOND * own).max(8.0).ceil(),
+        Parameter::ProfileTorque => match largest(scene, Quantity::Torque, &AS_IT_IS) {
+            // About twice what certifies.
+            Answer::Limit(torque, _) => 0.0..2.0 * torque.max(own),
+            _ => 0.0..to(1.0),
+        },
+        Parameter::StatedIndex | Parameter::StatedGain => 0.0..to(2.0 * delta),
+        Parameter::OutputDelay | Parameter::ActuatorLag | Parameter::SensorLag => {
+            0.0..to(scene.timing.period)
+        }
+        _ => 0.0..to(1.0),
+    }
+}
+
+/// A range that a value is well inside of, as far as the parameter's range lets it.
+fn with_room(range: Range<f64>, value: f64) -> Range<f64> {
+    /// Part of the range on the other side of the value.
+    const ROOM: f64 = 0.15;
+    if !value.is_finite() {
+        return range;
+    }
+    let (mut start, mut end) = (range.start, range.end);
+    if value >= end - 0.05 * (end - start) {
+        end = value + ROOM * (value - start).abs().max(end - start);
+    }
+    if value < start {
+        start = value - ROOM * (end - value);
+    }
+    start..end
+}
+
+/// The number of a key such as `environment.stiffness`; `None` where an axis cannot go along it.
+pub fn parameter_of(key: &str) -> Option<Parameter> {
+    CHOICE.into_iter().find(|parameter| parameter.key() == key)
+}

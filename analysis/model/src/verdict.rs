@@ -1,0 +1,346 @@
+//! What the certificate says about a scene, as the fields that people and programs read.
+
+use std::fmt;
+
+use firmware::certificate::{
+    Answer, Assessment, AssumptionStatus, Assumptions, LoopTransfers, QuantizationBound, Rejection,
+    Remedies, Resolution, Rule, assess_in, certify_in,
+};
+use firmware::number::Format;
+use firmware::passivity::interval::Interval;
+use firmware::scene::{Coupling, Scene};
+use firmware::servo::OutputTiming;
+use serde::Serialize;
+
+use crate::line_search::minimizing_angle;
+use crate::quantity::significant;
+use crate::response::Response;
+
+/// The answer to "is this scene safe".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Proved passive: safe in every hand.
+    Certified,
+    /// Proved not to satisfy the rule.
+    Rejected,
+    /// Neither; never means yes.
+    Undecided,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Certified => "certified",
+            Self::Rejected => "rejected",
+            Self::Undecided => "undecided",
+        })
+    }
+}
+
+/// The answer of one rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RuleAnswer {
+    /// Proved.
+    Pass,
+    /// Disproved.
+    Fail,
+    /// Neither.
+    Undecided,
+}
+
+/// Both rules' answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Rules {
+    /// Equations 17 to 19 (theory, section 4).
+    pub paper: RuleAnswer,
+    /// The exact rule (theory, section 4.1).
+    pub exact: RuleAnswer,
+}
+
+/// An enclosure in N m s/rad; both ends are `None` where the value does not exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Enclosure {
+    /// Lower end.
+    pub lo: Option<f64>,
+    /// Upper end.
+    pub hi: Option<f64>,
+}
+
+/// Torque errors at rest by encoder, numbers and DAC, in N m.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AtRest {
+    /// Bound for the encoder's step; `None`: not stated.
+    pub encoder: Option<f64>,
+    /// Bound for the rounding of numbers.
+    pub numbers: f64,
+    /// Bound for the DAC's step; `None`: not stated.
+    pub converter: Option<f64>,
+    /// Bound for the steps of a current loop; absent: there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub current: Option<f64>,
+    /// What is to be added where the torque changes its sign; absent: nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing: Option<f64>,
+    /// The sum: bound on the limit cycle, and the friction that prevents it.
+    pub hum: f64,
+    /// Declared friction of the device; `None`: not stated.
+    pub friction: Option<f64>,
+    /// Whether that is enough; `None` where it cannot be said.
+    pub comes_to_rest: Option<bool>,
+    /// Whether the steps do no more than that in any motion. Otherwise they do where it moves through
+    /// a face.
+    pub in_any_motion: bool,
+}
+
+impl AtRest {
+    /// Of the certificate's bound.
+    pub fn of(rest: &QuantizationBound) -> Self {
+        let QuantizationBound {
+            encoder,
+            numbers,
+            converter,
+            current,
+            crossing,
+            friction,
+            in_any_motion,
+        } = *rest;
+        let (hum, comes_to_rest) = (rest.hum(), rest.comes_to_rest());
+        Self {
+            encoder,
+            numbers,
+            converter,
+            current,
+            crossing,
+            hum,
+            friction,
+            comes_to_rest,
+            in_any_motion,
+        }
+    }
+}
+
+/// A judged scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VerdictReport {
+    /// What the person calls the scene.
+    pub name: String,
+    /// The answer.
+    pub verdict: Verdict,
+    /// What each rule says.
+    pub rules: Rules,
+    /// `ok`, or the code of the reason.
+    pub reason: &'static str,
+    /// Index of the environment alone.
+    pub alpha: Enclosure,
+    /// Index of `E'` (theory, section 4.1).
+    pub alpha_coupled: Enclosure,
+    /// Index at the device's port with delay, lag and sensor (theory, section 13): only of a scene that
+    /// has them, or a matched coupling.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alpha_port: Option<Enclosure>,
+    /// The bound that decided in place of the linear index: one-sided and limited scenes only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<Enclosure>,
+    /// Passivity of the device in N m s/rad, scaled to the worst period; the certificate compares
+    /// with the lower end of an enclosure of it.
+    pub delta: f64,
+    /// Damping in N m s/rad that the device may lose with everything else as it runs; negative: what
+    /// it lacks.
+    pub margin: Option<f64>,
+    /// The same where the torque is limited as on a board; `None` where no board renders the scene.
+    #[serde(skip)]
+    pub margin_on_board: Option<f64>,
+    /// Whether the margin is a result: no loss of damping is known to be allowed, and the margin is 0, where
+    /// torques lag and a bound decides.
+    #[serde(skip)]
+    pub is_margin_known: bool,
+    /// The same of the margin on a board, where the bound decides for every scene.
+    #[serde(skip)]
+    pub is_margin_known_on_board: bool,
+    /// Angle on the unit circle in rad where the deciding index is reached; 0 is rest, pi the
+    /// Nyquist frequency.
+    pub theta: Option<f64>,
+    /// Number format of the coefficients that were judged; `None`: as they were written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    /// What steps do at rest, where the scene is certified and they were stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rest: Option<AtRest>,
+    /// Why no board renders a scene that is certified; `None` where one does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub board: Option<String>,
+    /// What the verdict rests on.
+    pub assumptions: Vec<String>,
+    /// Those of the assumptions that do not hold.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// The answer as a sentence.
+    pub message: String,
+    /// Changes of one number each that would make a rejected scene pass.
+    pub remedies: Vec<String>,
+    /// The same as numbers; `None` where the scene is certified.
+    #[serde(skip)]
+    pub changes: Option<Remedies>,
+}
+
+/// Judges a scene as it was written, of a machine of which nothing more is known.
+pub fn judge(name: &str, scene: &Scene) -> VerdictReport {
+    judge_in(name, scene, Format::F64, &Resolution::default())
+}
+
+/// Judges the coefficients of a scene as a number format rounds them, and its assumptions by what
+/// is known of the machine.
+pub fn judge_in(name: &str, scene: &Scene, format: Format, steps: &Resolution) -> VerdictReport {
+    let (assessment, rejection) = match certify_in(scene, format) {
+        // The verdict leaves the index at the port out.
+        Ok(_) if has_port_index(scene) => (assess_in(scene, format), None),
+        Ok(assessment) => (assessment, None),
+        Err(rejection) => (assess_in(scene, format), Some(rejection)),
+    };
+    reported(name, scene, format, steps, &assessment, rejection)
+}
+
+/// The same without the search for remedies, which takes many times as long where times are known to lie in
+/// ranges.
+pub fn judge_without_remedies(name: &str, scene: &Scene, steps: &Resolution) -> VerdictReport {
+    let assessment = assess_in(scene, Format::F64);
+    reported(name, scene, Format::F64, steps, &assessment, assessment.outcome.err())
+}
+
+fn reported(
+    name: &str,
+    scene: &Scene,
+    format: Format,
+    steps: &Resolution,
+    assessment: &Assessment,
+    rejection: Option<Rejection>,
+) -> VerdictReport {
+    let verdict = match &rejection {
+        None => Verdict::Certified,
+        Some(rejection) if rejection.is_undecided() => Verdict::Undecided,
+        Some(_) => Verdict::Rejected,
+    };
+    let delta = assessment.delta.midpoint();
+    let margin = assessment.margin(scene);
+    let lags = has_port_index(scene);
+    let is_margin_known = !(lags && assessment.rule == Rule::Nonlinear);
+    let is_margin_known_on_board = !lags;
+    let margin_on_board = assessment.outcome.ok().and_then(|()| assessment.margin_on_board(scene));
+    let remedies = rejection.map(|rejection| rejection.remedies());
+    let assumptions = Assumptions::of(scene, assessment, steps);
+    let failing = assumptions.iter().filter(|one| one.standing() == AssumptionStatus::Fails);
+    let message = match rejection {
+        None => passed(margin.filter(|_| is_margin_known), assumptions.rest()),
+        Some(rejection) => rejection.sentence_in(format).as_str().to_owned(),
+    };
+    VerdictReport {
+        name: name.to_owned(),
+        verdict,
+        rules: Rules { paper: answer(assessment.paper), exact: answer(assessment.exact) },
+        reason: rejection.as_ref().map_or("ok", |rejection| rejection.reason()),
+        alpha: enclosure(assessment.alpha),
+        alpha_coupled: enclosure(assessment.alpha_coupled),
+        alpha_port: has_port_index(scene).then(|| enclosure(assessment.alpha_port)),
+        bound: assessment.bound.map(|bound| enclosure(Some(bound))),
+        delta,
+        margin,
+        margin_on_board,
+        is_margin_known,
+        is_margin_known_on_board,
+        theta: minimum_angle(scene, assessment),
+        format: (format != Format::F64).then(|| format.to_string()),
+        rest: assumptions.rest().map(AtRest::of),
+        board: assessment
+            .outcome
+            .ok()
+            .and_then(|()| assessment.renders_at(scene, timing_on_a_board(scene)).err())
+            .map(|error| error.to_string()),
+        warnings: failing.map(ToString::to_string).collect(),
+        assumptions: assumptions.iter().map(ToString::to_string).collect(),
+        message,
+        remedies: remedies.as_ref().map_or_else(Vec::new, in_sentences),
+        changes: remedies,
+    }
+}
+
+/// One sentence each.
+fn in_sentences(remedies: &Remedies) -> Vec<String> {
+    let matched = remedies.matched().map(ToOwned::to_owned);
+    matched.into_iter().chain(remedies.iter().map(|remedy| remedy.to_string())).collect()
+}
+
+impl VerdictReport {
+    /// The margin in words; `None` where there is none.
+    pub fn margin_in_words(&self) -> Option<String> {
+        Some(in_words(self.margin?, self.is_margin_known))
+    }
+
+    /// The margin on a board in words; `None` where no board renders the scene.
+    pub fn margin_on_board_in_words(&self) -> Option<String> {
+        Some(in_words(self.margin_on_board?, self.is_margin_known_on_board))
+    }
+}
+
+fn in_words(margin: f64, is_known: bool) -> String {
+    if is_known { format!("{} N m s/rad", significant(margin, 6)) } else { NO_MARGIN.to_owned() }
+}
+
+/// In place of a margin.
+const NO_MARGIN: &str = "none is known: where torques lag, and a limit or a face has them judged by a \
+                         bound, the coupling is made for this passivity of the device and for no less";
+
+/// When a board would put the scene's torques out.
+fn timing_on_a_board(scene: &Scene) -> OutputTiming {
+    OutputTiming::of_delay(scene.latency.code_delay(scene.timing.period))
+}
+
+/// Whether the index at the port is another one than that of `E'`.
+fn has_port_index(scene: &Scene) -> bool {
+    !scene.latency.is_none() || scene.coupling == Coupling::Matched
+}
+
+fn passed(margin: Option<f64>, rest: Option<&QuantizationBound>) -> String {
+    let to_spare = margin.map_or_else(String::new, |margin| {
+        let margin = significant(margin, 4);
+        format!(
+            "; the device may lose {margin} N m s/rad of its damping with everything else \
+                 unchanged"
+        )
+    });
+    let rest = rest.map_or_else(String::new, |rest| format!("; at rest {rest}"));
+    format!("certified: no passive hand can make it oscillate{to_spare}{rest}")
+}
+
+fn answer(answer: Answer) -> RuleAnswer {
+    match answer {
+        Answer::Pass => RuleAnswer::Pass,
+        Answer::Fail => RuleAnswer::Fail,
+        Answer::Undecided => RuleAnswer::Undecided,
+    }
+}
+
+fn enclosure(interval: Option<Interval>) -> Enclosure {
+    Enclosure { lo: interval.map(Interval::lo), hi: interval.map(Interval::hi) }
+}
+
+/// Angle in rad at which the linear index is reached: looked for in the part of the circle that the
+/// certificate has enclosed. None where the real part is the same all around.
+fn minimum_angle(scene: &Scene, assessment: &Assessment) -> Option<f64> {
+    let cosine = assessment.cos_theta?;
+    if assessment.rule == Rule::Exact && has_port_index(scene) {
+        // What is smallest there depends on delta; the enclosure of its place is narrow.
+        let is_known = cosine.lo() > -1.0 || cosine.hi() < 1.0;
+        return is_known.then(|| libm::acos(cosine.midpoint().clamp(-1.0, 1.0)));
+    }
+    let transfers = LoopTransfers::in_format(scene, assessment.format).ok()?;
+    let judged = match assessment.rule {
+        Rule::Exact => transfers.equivalent,
+        Rule::Nonlinear => transfers.environment,
+    };
+    let velocity = Response::new(judged).from_velocity(scene.timing.period);
+    let real = |theta: f64| velocity.at_angle(theta).re;
+    let angle = |cosine: f64| libm::acos(cosine.clamp(-1.0, 1.0));
+    minimizing_angle(real, angle(cosine.hi()), angle(cosine.lo()))
+}

@@ -1,0 +1,62 @@
+//! `haptic serve`: a board for a page in a browser that cannot open its port.
+
+use std::io::{self, Write};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use super::explore;
+use super::status::{CommandError, CommandStatus};
+use crate::link::Address;
+use crate::serve::{Port, Server};
+
+/// Arguments of `haptic serve`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file, TOML or JSON, that the page starts with; `-` is standard input. Without it the page
+    /// starts with the damper wall of the paper
+    #[arg(value_name = "FILE")]
+    pub scene: Option<String>,
+    /// Address of the board: /dev/ttyACM0 (@BAUD), tcp://HOST:PORT, unix:PATH
+    #[arg(long, value_name = "PORT")]
+    pub port: Address,
+    /// Address of this machine to listen on; port 0 is any free one
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:0", value_parser = address)]
+    pub listen: SocketAddr,
+}
+
+/// Longest time between two looks at whether it is over.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse()
+        .map_err(|_| format!("`{text}` is not an address with a port: expected 127.0.0.1:8080"))
+}
+
+/// Serves the page and the board's wire until Ctrl-C, or it is told to end.
+pub fn run(arguments: &Arguments) -> Result<CommandStatus, CommandError> {
+    let over = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, over.clone())?;
+    }
+    Server::check(arguments.listen)?;
+    // First, for a port that is not there is known at once, and a page takes a while.
+    let port = Port::open(&arguments.port).map_err(CommandError::Link)?;
+    let page = explore::page(arguments.scene.as_deref())?;
+    let report = |sentence: &str| {
+        // A terminal that is gone needs to know nothing.
+        let _ = writeln!(io::stderr(), "{sentence}");
+    };
+    let server = Server::start(port, arguments.listen, page, Box::new(report))?;
+    writeln!(io::stdout(), "{}", server.url())?;
+    io::stdout().flush()?;
+    while !over.load(Ordering::Relaxed) {
+        thread::sleep(POLL_INTERVAL);
+    }
+    Ok(CommandStatus::Success)
+}

@@ -1,0 +1,122 @@
+//! Who may have the page, and the wire.
+
+use std::fmt;
+use std::hint::black_box;
+use std::net::SocketAddr;
+
+use super::PageRefusal;
+use super::http::{Answer, Head};
+
+/// Bytes of a token: nobody guesses 128 bit.
+const BYTES: usize = 16;
+
+/// A secret of one run of the server.
+#[derive(Clone)]
+pub struct Token(String);
+
+impl Token {
+    /// A new one, of the system's random numbers.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn random() -> Result<Self, getrandom::Error> {
+        let mut bytes = [0; BYTES];
+        getrandom::fill(&mut bytes)?;
+        Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
+    }
+
+    /// Whether it is this one, in a time that does not tell how much of it is right.
+    fn is(&self, given: &str) -> bool {
+        let (ours, given) = (self.0.as_bytes(), given.as_bytes());
+        let differences = ours.iter().zip(given).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
+        differences == 0 && ours.len() == given.len()
+    }
+}
+
+impl fmt::Display for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// What a request must show.
+pub struct Access {
+    token: Token,
+    /// The names under which this machine is asked for.
+    hosts: Vec<String>,
+}
+
+impl Access {
+    /// Of a server at this address.
+    pub fn new(address: SocketAddr, token: Token) -> Self {
+        let hosts = vec![address.to_string(), format!("localhost:{}", address.port())];
+        Self { token, hosts }
+    }
+
+    /// That this machine was asked for by its own address: a name of someone else may point here.
+    ///
+    /// # Errors
+    /// The answer.
+    pub fn check_host(&self, head: &Head) -> Result<(), Answer> {
+        let host = head.header("host")?.unwrap_or_default();
+        if self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)) {
+            return Ok(());
+        }
+        let (host, own) = (host.to_owned(), self.hosts[0].clone());
+        Err(PageRefusal::Host { host, own }.into())
+    }
+
+    /// That the page that asks, where it is a page, is this server's or one from a file.
+    ///
+    /// # Errors
+    /// The answer.
+    pub fn check_origin(&self, head: &Head) -> Result<(), Answer> {
+        let is_own = |origin: &str| {
+            origin
+                .strip_prefix("http://")
+                .is_some_and(|host| self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)))
+        };
+        match head.header("origin")? {
+            // A browser says so of a page from a file.
+            Some("null") => Ok(()),
+            Some(origin) if is_own(origin) => Ok(()),
+            // A browser names the page that opens a socket, always.
+            None if head.path() != "/wire" => Ok(()),
+            origin => {
+                let origin = origin.unwrap_or("nobody").to_owned();
+                Err(PageRefusal::Origin { origin }.into())
+            }
+        }
+    }
+
+    /// That the one who asks was told the token.
+    ///
+    /// # Errors
+    /// The answer.
+    pub fn check_token(&self, head: &Head) -> Result<(), Answer> {
+        if head.query("token").is_some_and(|given| self.token.is(given)) {
+            return Ok(());
+        }
+        Err(PageRefusal::Token.into())
+    }
+}
+
+impl From<PageRefusal> for Answer {
+    fn from(refusal: PageRefusal) -> Self {
+        Self::refusal(refusal.code(), refusal.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_is_itself_alone() {
+        let [token, other] = [(); 2].map(|()| Token::random().unwrap());
+        let text = token.to_string();
+        assert_eq!(text.len(), 2 * BYTES);
+        assert!(token.is(&text) && !token.is(&other.to_string()));
+        assert!(!token.is("") && !token.is(&text[1..]) && !token.is(&format!("{text}0")));
+    }
+}

@@ -1,0 +1,192 @@
+//! The socket of a page: the wire's bytes as they are in binary messages, and what happens to the port in
+//! texts, as JSON: `{"port": "open"}`, and `{"port": "lost", "why": ..}`.
+
+use std::net::TcpStream;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::TryRecvError;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use tungstenite::handshake::derive_accept_key;
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
+use tungstenite::{Message, WebSocket};
+
+use super::http::{Answer, Head};
+use super::port::{News, Seat};
+use super::{PageRefusal, Shared};
+use crate::link::is_timeout;
+
+/// Longest time that bytes to a page wait.
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
+/// Longest message of a page, in bytes: more than what a page says at a time.
+const LONGEST: usize = 4096;
+/// Most bytes that wait in the socket of a page; with more of them it is too slow.
+const WAITING: usize = 1 << 20;
+/// Time after which a second page is refused. Until then the first may turn out to have left: a page that is
+/// loaded again.
+const QUEUE_TIMEOUT: Duration = Duration::from_millis(500);
+/// Time in which a page that is refused may say that it has understood.
+const GOODBYE: Duration = Duration::from_secs(1);
+
+/// That a socket is asked for, as browsers do; the key that they are answered with.
+pub fn check_upgrade(head: &Head) -> Result<String, Answer> {
+    let has = |name, word: &str| {
+        let value = head.header(name)?.unwrap_or_default();
+        Ok::<_, Answer>(value.split(',').any(|part| part.trim().eq_ignore_ascii_case(word)))
+    };
+    if !has("upgrade", "websocket")? || !has("connection", "upgrade")? {
+        let why = "/wire is a WebSocket: ask for an upgrade".to_owned();
+        return Err(Answer::refusal(426, why).with("Upgrade: websocket"));
+    }
+    match head.header("sec-websocket-version")? {
+        Some("13") => {}
+        version => {
+            let version = version.unwrap_or_default();
+            let why = format!("version `{version}` of WebSocket is not served here: 13 is");
+            return Err(Answer::refusal(426, why).with("Sec-WebSocket-Version: 13"));
+        }
+    }
+    match head.header("sec-websocket-key")? {
+        Some(key) if !key.is_empty() => Ok(derive_accept_key(key.as_bytes())),
+        _ => Err(Answer::refusal(400, "the header sec-websocket-key is missing".to_owned())),
+    }
+}
+
+/// Carries the wire of a page until one of both ends it.
+pub(super) fn carry(mut stream: &TcpStream, rest: Vec<u8>, key: &str, shared: &Shared) {
+    let accepted = format!(
+        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
+         Sec-WebSocket-Accept: {key}\r\n\r\n"
+    );
+    let is_open = std::io::Write::write_all(&mut stream, accepted.as_bytes()).is_ok()
+        && stream.set_read_timeout(Some(POLL_INTERVAL)).is_ok();
+    if !is_open {
+        return;
+    }
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(LONGEST))
+        .max_frame_size(Some(LONGEST))
+        .max_write_buffer_size(WAITING);
+    let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
+    let Some(seat) = seat(shared) else {
+        return close(&mut socket, &PageRefusal::InUse.into());
+    };
+    (shared.report)("a page is connected");
+    let end = Page { socket: &mut socket, seat, shared }.carry();
+    (shared.report)("the page is gone");
+    if let Some(frame) = end {
+        close(&mut socket, &frame);
+    }
+}
+
+/// The port, as soon as no other page has it.
+fn seat(shared: &Shared) -> Option<Seat> {
+    let end = Instant::now() + QUEUE_TIMEOUT;
+    loop {
+        let seat = shared.seats.take();
+        if seat.is_some() || Instant::now() > end {
+            return seat;
+        }
+        thread::sleep(POLL_INTERVAL);
+    }
+}
+
+/// A page that has the port.
+struct Page<'p, 's> {
+    socket: &'p mut WebSocket<&'s TcpStream>,
+    seat: Seat,
+    shared: &'s Shared,
+}
+
+/// Why a page is sent away.
+type End = Option<CloseFrame>;
+
+impl From<PageRefusal> for CloseFrame {
+    fn from(refusal: PageRefusal) -> Self {
+        Self { code: refusal.code().into(), reason: refusal.to_string().into() }
+    }
+}
+
+fn frame(code: CloseCode, reason: &'static str) -> CloseFrame {
+    CloseFrame { code, reason: reason.into() }
+}
+
+impl Page<'_, '_> {
+    fn carry(&mut self) -> End {
+        let mut waiting = None;
+        loop {
+            if self.shared.over.load(Ordering::Relaxed) {
+                return Some(frame(CloseCode::Away, "haptic serve was ended"));
+            }
+            if let Err(end) = self.pass_news() {
+                return end;
+            }
+            if let Some(bytes) = waiting.take() {
+                waiting = self.seat.send(bytes).err();
+            }
+            if waiting.is_some() {
+                // A page that says more than the port takes is read no faster.
+                thread::sleep(POLL_INTERVAL);
+                continue;
+            }
+            match self.socket.read() {
+                Ok(Message::Binary(bytes)) => waiting = Some(bytes.to_vec()),
+                Ok(Message::Text(_)) => {
+                    let why = "the wire's bytes are binary messages";
+                    return Some(frame(CloseCode::Unsupported, why));
+                }
+                Ok(_) => {}
+                Err(tungstenite::Error::Io(error)) if is_timeout(&error) => {}
+                Err(_) => return None,
+            }
+        }
+    }
+
+    /// Passes on what is new of the port.
+    fn pass_news(&mut self) -> Result<(), End> {
+        let mut bytes = Vec::new();
+        loop {
+            let text = match self.seat.news() {
+                Ok(News::Bytes(more)) => {
+                    bytes.extend(more);
+                    continue;
+                }
+                Ok(News::Open) => Some(json!({ "port": "open" })),
+                Ok(News::Lost(why)) => Some(json!({ "port": "lost", "why": why })),
+                Err(TryRecvError::Empty) => None,
+                Err(TryRecvError::Disconnected) => {
+                    return Err(Some(PageRefusal::TooSlow.into()));
+                }
+            };
+            if !bytes.is_empty() {
+                self.write(Message::binary(std::mem::take(&mut bytes)))?;
+            }
+            match text {
+                Some(text) => self.write(Message::text(text.to_string()))?,
+                None => break,
+            }
+        }
+        self.socket.flush().map_err(|_| None)
+    }
+
+    fn write(&mut self, message: Message) -> Result<(), End> {
+        self.socket.write(message).map_err(|_| None)
+    }
+}
+
+/// Closes a socket, and waits a little for the page to have read why.
+fn close(socket: &mut WebSocket<&TcpStream>, frame: &CloseFrame) {
+    if socket.close(Some(frame.clone())).is_err() {
+        return;
+    }
+    let end = Instant::now() + GOODBYE;
+    while Instant::now() < end {
+        match socket.read() {
+            Ok(_) => {}
+            Err(tungstenite::Error::Io(error)) if is_timeout(&error) => {}
+            Err(_) => return,
+        }
+    }
+}

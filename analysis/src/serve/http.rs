@@ -1,0 +1,194 @@
+//! Requests and answers of HTTP, as few as a page and its socket take: one a connection.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::link::is_timeout;
+
+/// Longest head of a request, in bytes: a browser's has one.
+const LONGEST: usize = 16_384;
+/// Most lines of it.
+const HEADERS: usize = 100;
+/// Longest time that a request or its answer may take.
+pub const TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest time between two looks at whether it is over.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// The head of a request.
+#[derive(Debug)]
+pub struct Head {
+    /// Its method.
+    pub method: String,
+    target: String,
+    headers: Vec<(String, String)>,
+    /// Bytes that came behind it.
+    pub rest: Vec<u8>,
+}
+
+impl Head {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// The answer to what is none.
+    pub fn read(mut stream: &TcpStream, over: &AtomicBool) -> Result<Self, Answer> {
+        let (mut bytes, mut chunk) = (Vec::new(), [0; 4096]);
+        let end = Instant::now() + TIMEOUT;
+        let cut_off = || Answer::refusal(400, "the request ends in its head".to_owned());
+        stream.set_read_timeout(Some(POLL_INTERVAL)).map_err(|_| cut_off())?;
+        loop {
+            if let Some(head) = Self::parse(&bytes)? {
+                return Ok(head);
+            }
+            if bytes.len() > LONGEST {
+                let why = format!("the head of the request is longer than {LONGEST} bytes");
+                return Err(Answer::refusal(431, why));
+            }
+            if Instant::now() > end || over.load(Ordering::Relaxed) {
+                let why = format!("the request has not ended within {} s", TIMEOUT.as_secs());
+                return Err(Answer::refusal(408, why));
+            }
+            match stream.read(&mut chunk) {
+                Ok(0) => return Err(cut_off()),
+                Ok(read) => bytes.extend_from_slice(&chunk[..read]),
+                Err(error) if is_timeout(&error) => {}
+                Err(_) => return Err(cut_off()),
+            }
+        }
+    }
+
+    /// The head that these bytes begin with; `None` where it goes on.
+    fn parse(bytes: &[u8]) -> Result<Option<Self>, Answer> {
+        let mut headers = [httparse::EMPTY_HEADER; HEADERS];
+        let mut request = httparse::Request::new(&mut headers);
+        let length = match request.parse(bytes) {
+            Ok(httparse::Status::Complete(length)) => length,
+            Ok(httparse::Status::Partial) => return Ok(None),
+            Err(error) => {
+                let status = if error == httparse::Error::TooManyHeaders { 431 } else { 400 };
+                return Err(Answer::refusal(status, format!("this is no request: {error}")));
+            }
+        };
+        let header = |header: &httparse::Header<'_>| {
+            (header.name.to_ascii_lowercase(), String::from_utf8_lossy(header.value).into_owned())
+        };
+        Ok(Some(Self {
+            method: request.method.unwrap_or_default().to_owned(),
+            target: request.path.unwrap_or_default().to_owned(),
+            headers: request.headers.iter().map(header).collect(),
+            rest: bytes.get(length..).unwrap_or_default().to_vec(),
+        }))
+    }
+
+    /// The path, without what is behind the question mark.
+    pub fn path(&self) -> &str {
+        self.target.split('?').next().unwrap_or_default()
+    }
+
+    /// A value behind the question mark.
+    pub fn query(&self, name: &str) -> Option<&str> {
+        let (_, query) = self.target.split_once('?')?;
+        let mut each = query.split('&').filter_map(|pair| pair.split_once('='));
+        each.find(|(given, _)| *given == name).map(|(_, value)| value)
+    }
+
+    /// A header by its name in small letters.
+    ///
+    /// # Errors
+    /// The answer where it is there twice: one reader may take the first, and another one the last.
+    pub fn header(&self, name: &str) -> Result<Option<&str>, Answer> {
+        let mut all = self.headers.iter().filter(|(given, _)| given == name);
+        match (all.next(), all.next()) {
+            (_, Some(_)) => Err(Answer::refusal(400, format!("the header {name} is there twice"))),
+            (one, None) => Ok(one.map(|(_, value)| value.trim())),
+        }
+    }
+}
+
+/// An answer, after which the connection is closed.
+#[derive(Debug)]
+pub struct Answer {
+    status: u16,
+    headers: Vec<String>,
+    kind: &'static str,
+    body: String,
+}
+
+impl Answer {
+    /// A sentence.
+    pub fn refusal(status: u16, sentence: String) -> Self {
+        let (headers, kind) = (Vec::new(), "text/plain; charset=utf-8");
+        Self { status, headers, kind, body: sentence + "\n" }
+    }
+
+    /// A page, which no other page may show inside of itself, and whose address nobody is told.
+    pub fn page(page: &str) -> Self {
+        let headers = ["Content-Security-Policy: frame-ancestors 'none'", "X-Frame-Options: DENY"];
+        let (headers, kind) = (headers.map(str::to_owned).into(), "text/html; charset=utf-8");
+        Self { status: 200, headers, kind, body: page.to_owned() }
+    }
+
+    /// Nothing.
+    pub fn nothing() -> Self {
+        let kind = "text/plain; charset=utf-8";
+        Self { status: 204, headers: Vec::new(), kind, body: String::new() }
+    }
+
+    /// With one more header.
+    pub fn with(mut self, header: &str) -> Self {
+        self.headers.push(header.to_owned());
+        self
+    }
+
+    /// Sends it. Whoever does not take it has gone.
+    pub fn send(&self, mut stream: &TcpStream) {
+        let Self { status, headers, kind, body } = self;
+        let mut text = format!("HTTP/1.1 {status} {}\r\n", reason(*status));
+        for header in headers {
+            text += &format!("{header}\r\n");
+        }
+        text += &format!(
+            "Content-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+             Referrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+            body.len()
+        );
+        let sent =
+            stream.write_all(text.as_bytes()).and_then(|()| stream.write_all(body.as_bytes()));
+        // Closing with bytes unread would reset the connection, and the answer with it.
+        if sent.is_ok() && stream.shutdown(std::net::Shutdown::Write).is_ok() {
+            drain(stream);
+        }
+    }
+}
+
+/// Reads what still comes, for a while.
+fn drain(mut stream: &TcpStream) {
+    let (end, mut chunk) = (Instant::now() + 4 * POLL_INTERVAL, [0; 4096]);
+    if stream.set_read_timeout(Some(POLL_INTERVAL)).is_err() {
+        return;
+    }
+    while Instant::now() < end {
+        match stream.read(&mut chunk) {
+            Ok(1..) => {}
+            Err(error) if is_timeout(&error) && error.kind() != ErrorKind::Interrupted => {}
+            _ => return,
+        }
+    }
+}
+
+const fn reason(status: u16) -> &'static str {
+    match status {
+        200 => "OK",
+        204 => "No Content",
+        400 => "Bad Request",
+        403 => "Forbidden",
+        404 => "Not Found",
+        405 => "Method Not Allowed",
+        408 => "Request Timeout",
+        426 => "Upgrade Required",
+        431 => "Request Header Fields Too Large",
+        503 => "Service Unavailable",
+        _ => "Refused",
+    }
+}

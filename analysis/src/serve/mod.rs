@@ -1,0 +1,237 @@
+//! A board's wire for a page in a browser: a server on this machine alone, which gives out the page and
+//! carries the bytes of the port to it and back, unchanged.
+//!
+//! Any page of any site can ask a server of this machine, and a name can be made to point at it. So whoever
+//! asks must know the token, which only the one who started the server has seen; must have asked for this
+//! machine by its own address; and must be the page of this server, or one from a file.
+
+mod access;
+mod client;
+mod http;
+mod port;
+mod refusal;
+
+use std::io;
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use thiserror::Error;
+
+use self::access::{Access, Token};
+use self::http::{Answer, Head};
+pub use self::port::Port;
+use self::port::Seats;
+pub use self::refusal::PageRefusal;
+
+/// Connections at a time: a page takes two, and a browser opens some in advance.
+const CONNECTIONS: usize = 16;
+/// Longest time between two looks at whether it is over.
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
+
+/// Why there is no server.
+#[derive(Debug, Error)]
+pub enum ServeError {
+    /// Others would reach the motor.
+    #[error(
+        "--listen {address} can be reached from other machines, and who reaches it can arm a motor: name an \
+         address of this machine alone, such as 127.0.0.1:0; for another machine, forward the port with \
+         `ssh -L`"
+    )]
+    NotLoopback {
+        /// The address.
+        address: SocketAddr,
+    },
+    /// The address is taken.
+    #[error("cannot listen on {address}: {source}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is no secret.
+    #[error("the system has no random numbers: {0}")]
+    Random(#[from] getrandom::Error),
+}
+
+/// What happens, in a sentence, for the one who started the server.
+pub type Report = Box<dyn Fn(&str) + Send + Sync>;
+
+/// A running server; ends when dropped.
+pub struct Server {
+    address: SocketAddr,
+    token: Token,
+    over: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+/// What every connection needs.
+struct Shared {
+    access: Access,
+    page: String,
+    seats: Seats,
+    over: Arc<AtomicBool>,
+    connections: AtomicUsize,
+    report: Report,
+}
+
+impl Server {
+    /// That an address is of this machine alone.
+    ///
+    /// # Errors
+    /// Where it is not.
+    pub fn check(listen: SocketAddr) -> Result<(), ServeError> {
+        if listen.ip().is_loopback() {
+            Ok(())
+        } else {
+            Err(ServeError::NotLoopback { address: listen })
+        }
+    }
+
+    /// Listens at an address of this machine, for a page and its socket to this port.
+    ///
+    /// # Errors
+    /// Where the address is not of this machine alone, or taken, or there are no random numbers.
+    pub fn start(
+        port: Port,
+        listen: SocketAddr,
+        page: String,
+        report: Report,
+    ) -> Result<Self, ServeError> {
+        Self::check(listen)?;
+        let cannot = |source| ServeError::Listen { address: listen, source };
+        let listener = TcpListener::bind(listen).map_err(cannot)?;
+        listener.set_nonblocking(true).map_err(cannot)?;
+        let address = listener.local_addr().map_err(cannot)?;
+        let token = Token::random()?;
+        let over = Arc::new(AtomicBool::new(false));
+        let (seats, wire) = port::seats();
+        let shared = Arc::new(Shared {
+            access: Access::new(address, token.clone()),
+            page,
+            seats: seats.clone(),
+            over: over.clone(),
+            connections: AtomicUsize::new(0),
+            report,
+        });
+        let (of_port, of_listener) = (shared.clone(), shared);
+        let carry = move || port.carry(&seats, &wire, &of_port.over, &of_port.report);
+        let threads =
+            vec![thread::spawn(carry), thread::spawn(move || listen_at(&listener, &of_listener))];
+        Ok(Self { address, token, over, threads })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The address of the page, with the token.
+    pub fn url(&self) -> String {
+        format!("http://{}/?token={}", self.address, self.token)
+    }
+
+    /// The token.
+    pub fn token(&self) -> String {
+        self.token.to_string()
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        for thread in self.threads.drain(..) {
+            // A panic in a thread has been printed; there is nothing left to do about it.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Takes connections until it is over, and waits for those that there are.
+fn listen_at(listener: &TcpListener, shared: &Arc<Shared>) {
+    let mut threads: Vec<JoinHandle<()>> = Vec::new();
+    while !shared.over.load(Ordering::Relaxed) {
+        threads.retain(|thread| !thread.is_finished());
+        match listener.accept() {
+            Ok((stream, _)) => threads.extend(connection(stream, shared)),
+            Err(_) => thread::sleep(POLL_INTERVAL),
+        }
+    }
+    for thread in threads {
+        // As above.
+        let _ = thread.join();
+    }
+}
+
+/// Serves a connection on a thread of its own, where there are not too many.
+fn connection(stream: TcpStream, shared: &Arc<Shared>) -> Option<JoinHandle<()>> {
+    // Whoever does not read is not waited for.
+    let is_ready = stream.set_nonblocking(false).is_ok()
+        && stream.set_write_timeout(Some(http::TIMEOUT)).is_ok()
+        && stream.set_nodelay(true).is_ok();
+    if !is_ready {
+        return None;
+    }
+    if shared.connections.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS {
+        shared.connections.fetch_sub(1, Ordering::Relaxed);
+        let busy = format!(
+            "there are {CONNECTIONS} connections already: close other pages of this server"
+        );
+        Answer::refusal(503, busy).send(&stream);
+        return None;
+    }
+    let shared = shared.clone();
+    let serve = move || {
+        serve(&stream, &shared);
+        shared.connections.fetch_sub(1, Ordering::Relaxed);
+    };
+    Some(thread::spawn(serve))
+}
+
+/// Answers one request, or carries the wire of one page.
+fn serve(stream: &TcpStream, shared: &Shared) {
+    let head = match Head::read(stream, &shared.over) {
+        Ok(head) => head,
+        Err(answer) => return answer.send(stream),
+    };
+    match route(&head, shared) {
+        Ok(Route::Page) => Answer::page(&shared.page).send(stream),
+        Ok(Route::Nothing) => Answer::nothing().send(stream),
+        Ok(Route::Wire { key }) => client::carry(stream, head.rest, &key, shared),
+        Err(answer) => answer.send(stream),
+    }
+}
+
+/// What is asked for.
+enum Route {
+    /// The page.
+    Page,
+    /// The picture that browsers ask every server for.
+    Nothing,
+    /// The wire.
+    Wire {
+        /// What the page's browser shall see in the answer.
+        key: String,
+    },
+}
+
+fn route(head: &Head, shared: &Shared) -> Result<Route, Answer> {
+    if head.method != "GET" {
+        let why = format!("{} is not served here: GET is", head.method);
+        return Err(Answer::refusal(405, why).with("Allow: GET"));
+    }
+    shared.access.check_host(head)?;
+    shared.access.check_origin(head)?;
+    match head.path() {
+        "/" => shared.access.check_token(head).map(|()| Route::Page),
+        "/wire" => {
+            shared.access.check_token(head)?;
+            client::check_upgrade(head).map(|key| Route::Wire { key })
+        }
+        "/favicon.ico" => Ok(Route::Nothing),
+        path => Err(Answer::refusal(404, format!("there is no {path} here: / is the page"))),
+    }
+}

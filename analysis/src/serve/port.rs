@@ -1,0 +1,218 @@
+//! The port of a board, read all the time, and the one page that has it.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use haptic_model::board::timing::RETRY;
+
+use super::Report;
+use crate::link::{Address, LinkError, Transport, is_timeout, open};
+
+/// Longest time that bytes to the board wait.
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
+/// Bytes that are read at a time.
+const BYTES: usize = 4096;
+/// Reads that wait for a page; with more of them it is too slow.
+const READS: usize = 256;
+/// Messages of a page that wait for the port.
+const MESSAGES: usize = 64;
+
+/// The port of a board.
+pub struct Port {
+    address: Address,
+    transport: Box<dyn Transport>,
+}
+
+/// News for a page.
+#[derive(Debug)]
+pub enum News {
+    /// The board has sent bytes.
+    Bytes(Vec<u8>),
+    /// The port is lost, and is tried again.
+    Lost(String),
+    /// The port is open.
+    Open,
+}
+
+/// Who has the port: one page at a time.
+#[derive(Clone)]
+pub struct Seats {
+    shared: Arc<Mutex<State>>,
+    to_board: SyncSender<Vec<u8>>,
+}
+
+struct State {
+    /// The number of a seat, and what the page that has it is told by.
+    client: Option<(u64, SyncSender<News>)>,
+    /// Seats that were taken so far.
+    taken: u64,
+    /// Why the port is not open.
+    lost: Option<String>,
+}
+
+/// The page that has the port; gives it back when dropped.
+pub struct Seat {
+    seats: Seats,
+    number: u64,
+    news: Receiver<News>,
+}
+
+/// Seats, and what those who have one say to the board.
+pub fn seats() -> (Seats, Receiver<Vec<u8>>) {
+    let (to_board, wire) = sync_channel(MESSAGES);
+    let shared = Arc::new(Mutex::new(State { client: None, taken: 0, lost: None }));
+    (Seats { shared, to_board }, wire)
+}
+
+impl Seats {
+    /// Takes the port, if no page has it.
+    pub fn take(&self) -> Option<Seat> {
+        self.with(|state| {
+            if state.client.is_some() {
+                return None;
+            }
+            let (client, news) = sync_channel(READS);
+            let first = state.lost.clone().map_or(News::Open, News::Lost);
+            // There is room for one.
+            let _ = client.try_send(first);
+            state.taken += 1;
+            state.client = Some((state.taken, client));
+            Some(Seat { seats: self.clone(), number: state.taken, news })
+        })
+    }
+
+    /// Tells the page that has the port. One that is too slow loses it: the port is not.
+    fn tell(&self, news: News) {
+        self.with(|state| {
+            if let Some((_, client)) = &state.client
+                && client.try_send(news).is_err()
+            {
+                state.client = None;
+            }
+        });
+    }
+
+    fn with<T>(&self, of: impl FnOnce(&mut State) -> T) -> T {
+        // Nothing that is done with it is done by halves.
+        of(&mut self.shared.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Seat {
+    /// What is new; `Disconnected` where the page has lost the port.
+    ///
+    /// # Errors
+    /// Where nothing is.
+    pub fn news(&self) -> Result<News, TryRecvError> {
+        self.news.try_recv()
+    }
+
+    /// Sends to the board.
+    ///
+    /// # Errors
+    /// The bytes, where too many wait already.
+    pub fn send(&self, bytes: Vec<u8>) -> Result<(), Vec<u8>> {
+        match self.seats.to_board.try_send(bytes) {
+            Err(TrySendError::Full(bytes)) => Err(bytes),
+            // Without the port's thread it is over.
+            Ok(()) | Err(TrySendError::Disconnected(_)) => Ok(()),
+        }
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        // A page that lost the port must not take it from the next one.
+        self.seats.with(|state| {
+            state.client.take_if(|(number, _)| *number == self.number);
+        });
+    }
+}
+
+impl Port {
+    /// Opens the port.
+    ///
+    /// # Errors
+    /// Where it cannot be opened.
+    pub fn open(address: &Address) -> Result<Self, LinkError> {
+        let address = address.clone();
+        match open(&address) {
+            Ok(transport) => Ok(Self { address, transport }),
+            Err(source) => Err(LinkError::Open { address, source }),
+        }
+    }
+
+    /// Carries bytes until it is over, and opens the port again where it is lost.
+    pub(super) fn carry(
+        self,
+        seats: &Seats,
+        wire: &Receiver<Vec<u8>>,
+        over: &AtomicBool,
+        report: &Report,
+    ) {
+        let Self { address, transport } = self;
+        let mut transport = Some(transport);
+        while !over.load(Ordering::Relaxed) {
+            let lost = match &mut transport {
+                Some(transport) => match carry(transport.as_mut(), seats, wire, over) {
+                    Ok(()) => return,
+                    Err(source) => LinkError::Lost { address: address.clone(), source },
+                },
+                None => match Self::open(&address) {
+                    Ok(port) => {
+                        transport = Some(port.transport);
+                        report(&format!("{address} is open again"));
+                        seats.with(|state| state.lost = None);
+                        seats.tell(News::Open);
+                        continue;
+                    }
+                    Err(error) => error,
+                },
+            };
+            // Closed, so that it can be opened again.
+            if transport.take().is_some() {
+                report(&format!("{lost}; trying again"));
+            }
+            seats.with(|state| state.lost = Some(lost.to_string()));
+            seats.tell(News::Lost(lost.to_string()));
+            wait(wire, over);
+        }
+    }
+}
+
+/// Waits before the next try. What a page says meanwhile is lost, as on a line without a board.
+fn wait(wire: &Receiver<Vec<u8>>, over: &AtomicBool) {
+    let end = Instant::now() + RETRY;
+    while !over.load(Ordering::Relaxed) && Instant::now() < end {
+        while wire.try_recv().is_ok() {}
+        thread::sleep(POLL_INTERVAL);
+    }
+}
+
+/// Carries bytes both ways until it is over, or the port is lost.
+fn carry(
+    transport: &mut dyn Transport,
+    seats: &Seats,
+    wire: &Receiver<Vec<u8>>,
+    over: &AtomicBool,
+) -> io::Result<()> {
+    let mut bytes = [0; BYTES];
+    transport.wait_at_most(POLL_INTERVAL)?;
+    while !over.load(Ordering::Relaxed) {
+        while let Ok(bytes) = wire.try_recv() {
+            transport.write_all(&bytes)?;
+            transport.flush()?;
+        }
+        match transport.read(&mut bytes) {
+            Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+            Ok(read) => seats.tell(News::Bytes(bytes[..read].to_vec())),
+            Err(error) if is_timeout(&error) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,58 @@
+//! What programs are built for besides this machine.
+
+use std::fmt;
+
+/// What a program is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The boards: Cortex-M4 with its single-precision unit.
+    Board,
+    /// A page in a browser: WebAssembly.
+    Browser,
+}
+
+impl Target {
+    /// Its name for the compiler.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Board => super::TARGET,
+            Self::Browser => "wasm32-unknown-unknown",
+        }
+    }
+
+    /// What of Rust's own libraries is built with a program where the compiler has none for the target.
+    pub(super) const fn libraries(self) -> [&'static str; 2] {
+        match self {
+            Self::Board => ["-Zbuild-std=core", "-Zbuild-std-features=compiler-builtins-mem"],
+            Self::Browser => {
+                ["-Zbuild-std=std,panic_abort", "-Zbuild-std-features=optimize_for_size"]
+            }
+        }
+    }
+
+    /// The variable of the compiler's flags, and what they are where these libraries are built, too: a page has no
+    /// words for a panic.
+    pub(super) const fn flags(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Board => None,
+            Self::Browser => Some((
+                "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
+                "-Zunstable-options -Cpanic=immediate-abort -Zlocation-detail=none",
+            )),
+        }
+    }
+
+    /// The variable that names cargo the linker, and the one of Debian's.
+    pub(super) const fn linker(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Board => ("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld"),
+            Self::Browser => ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", "wasm-ld"),
+        }
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}

@@ -1,0 +1,96 @@
+//! The handle of the page in a browser: its codes are those of `haptic run`, to the bit.
+
+use serde_json::Value;
+
+use crate::common::{WALL, haptic};
+use crate::devtools::Page;
+use crate::explore::explore;
+
+const DRAWING: &str = "#handle-drawing";
+
+fn numbers(list: &Value) -> Vec<i64> {
+    list.as_array().unwrap().iter().map(|number| number.as_f64().unwrap() as i64).collect()
+}
+
+/// Drags the handle to the right by so many pixels, and keeps it there.
+fn drag(page: &mut Page, pixels: f64) {
+    let [x, y] = page.middle(DRAWING);
+    page.mouse("mouseMoved", [x, y]);
+    page.mouse("mousePressed", [x, y]);
+    for step in 1..=10 {
+        page.mouse("mouseMoved", [x + pixels * f64::from(step) / 10.0, y]);
+    }
+}
+
+pub fn the_handle_of_the_page_runs_the_servo_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut page = Page::start(1280);
+    page.open_file(&explore(folder.path(), WALL));
+    drag(&mut page, 120.0);
+    page.wait_for("Math.min(...window.haptic.dragged().codes) < 2000");
+    let [x, y] = page.middle(DRAWING);
+    page.mouse("mouseReleased", [x, y]);
+    page.wait_for("document.getElementById('handle-hold').textContent === 'Hold'");
+    for key in ["ArrowRight", "ArrowRight", "ArrowLeft"] {
+        page.value("document.getElementById('handle-drawing').focus()");
+        page.key(key);
+    }
+    page.wait_for("document.getElementById('handle-hold').textContent === 'Let go'");
+
+    let dragged = page.value("window.haptic.dragged()");
+    let (counts, codes) = (numbers(&dragged["counts"]), numbers(&dragged["codes"]));
+    assert_eq!(counts.len(), codes.len());
+    let [scene, replay] = ["dragged.json", "counts.csv"].map(|name| folder.path().join(name));
+    std::fs::write(&scene, dragged["scene"].as_str().unwrap()).unwrap();
+    let lines = counts.iter().map(|count| format!("{count}\n")).collect::<String>();
+    std::fs::write(&replay, format!("count\n{lines}")).unwrap();
+    let [scene, replay] = [&scene, &replay].map(|path| path.to_str().unwrap());
+    let run = haptic(&["run", scene, "--replay", replay, "--csv"]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let printed = String::from_utf8(run.stdout).unwrap();
+    let of_program: Vec<i64> = printed
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').nth(4).unwrap().parse().unwrap())
+        .collect();
+    assert_eq!(of_program, codes);
+    let again = page.value(&format!(
+        "(() => {{ const d = window.haptic.dragged(); \
+         return window.haptic.handle(d.scene, d.counts.slice(0, {}), d.countsPerTurn); }})()",
+        counts.len()
+    ));
+    assert_eq!(numbers(&again), codes);
+    assert_eq!(page.complaints, Vec::<String>::new());
+}
+
+pub fn a_refused_handle_has_no_torque_until_the_check_is_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut page = Page::start(360);
+    let stiff = WALL.replace("stiffness = 22.0", "stiffness = 120.0");
+    page.open_file(&explore(folder.path(), &stiff));
+    let rendering =
+        |page: &mut Page| page.value("document.getElementById('handle').dataset.rendering");
+    let said = |page: &mut Page| page.value("document.getElementById('handle-state').textContent");
+    assert_eq!(rendering(&mut page), "off");
+    assert!(
+        said(&mut page)
+            .as_str()
+            .unwrap()
+            .contains("No torque. Rejected: the environment needs alpha")
+    );
+    drag(&mut page, 60.0);
+    page.wait_for("window.haptic.dragged().counts.at(-1) > 10");
+    assert_eq!(page.value("window.haptic.dragged().codes.every((code) => code === 2048)"), true);
+    let [x, y] = page.middle(DRAWING);
+    page.mouse("mouseReleased", [x, y]);
+
+    page.click("#handle-check");
+    page.wait_for("document.getElementById('handle').dataset.rendering === 'unchecked'");
+    assert!(said(&mut page).as_str().unwrap().contains("simulation only"));
+    page.click("#handle-stays");
+    drag(&mut page, 40.0);
+    page.wait_for("document.getElementById('handle').dataset.oscillates === 'true'");
+    let words = page.value("document.getElementById('handle-oscillation').textContent");
+    assert!(words.as_str().unwrap().starts_with("Oscillates: "), "{words}");
+    assert_eq!(page.complaints, Vec::<String>::new());
+}
