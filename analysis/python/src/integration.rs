@@ -1,0 +1,40 @@
+//! The method of integration and its steps, by name and number.
+
+use haptic_model::simulation::Integration;
+use haptic_model::simulation::method::Method;
+
+use crate::refusal::Refusal;
+
+/// Most steps in a tick.
+const MOST: i64 = 1_000_000;
+
+/// The names of all methods.
+pub fn names() -> Vec<&'static str> {
+    Method::ALL.map(Method::as_str).to_vec()
+}
+
+/// What two arguments ask for.
+///
+/// # Errors
+/// Where one of them is out of its bound.
+pub fn integration(method: &str, substeps: i64) -> Result<Integration, Refusal> {
+    let out_of_bounds = |name: &str, value: String, bound: String| Refusal::Argument {
+        name: name.to_owned(),
+        value,
+        bound,
+    };
+    let found = Method::ALL.into_iter().find(|one| one.as_str() == method);
+    let found = found.ok_or_else(|| {
+        let bound = format!("it must be one of {}", names().join(", "));
+        out_of_bounds("method", format!("{method:?}"), bound)
+    })?;
+    match u32::try_from(substeps) {
+        Ok(substeps @ 1..) if i64::from(substeps) <= MOST => {
+            Ok(Integration { method: found, substeps })
+        }
+        _ => {
+            let bound = format!("it must be a whole number from 1 to {MOST}");
+            Err(out_of_bounds("substeps", substeps.to_string(), bound))
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! What the Python package `haptic` calls: scenes as texts in, JSON and the bytes of arrays out.
+//! `haptic/__init__.py` makes dictionaries and NumPy arrays of them, and has the documentation of the
+//! interface.
+//!
+//! A function lets other threads of Python run while it computes. Those that may take long look for a signal
+//! every now and then, so that Ctrl-C ends them.
+
+mod arrays;
+mod certificate;
+mod integration;
+mod map;
+mod motion;
+mod refusal;
+mod source;
+mod transfer;
+
+use pyo3::prelude::*;
+
+/// The functions, by the names that `haptic/__init__.py` calls them.
+#[pymodule(gil_used = false)]
+mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::certificate::{certify, certify_many, index};
+    #[pymodule_export]
+    use crate::map::stability_map;
+    #[pymodule_export]
+    use crate::motion::{simulate, stability};
+    #[pymodule_export]
+    use crate::refusal::SceneError;
+    #[pymodule_export]
+    use crate::source::load;
+    #[pymodule_export]
+    use crate::transfer::response;
+
+    #[pymodule_init]
+    fn words(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("METHODS", crate::integration::names())?;
+        module.add("REGIONS", crate::map::names())?;
+        module.add("TICK_STATUSES", crate::motion::tick_statuses())
+    }
+}
+
+/// Ends a computation if Python has got a signal: Ctrl-C raises `KeyboardInterrupt`.
+fn check_signals() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
