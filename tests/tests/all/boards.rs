@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use analysis::studies::tick_parts::{Part, Share, TickParts};
 use analysis::toolchain::{
-    Board, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
+    Board, BuildError, NumberFormat, Program, Toolchain, Tools, TorqueOutput, prepare, probe,
 };
 
 /// What a debug probe calls a board's chip (the names are those of the chips' data sheets).
@@ -88,8 +88,15 @@ fn the_plain_command_builds_a_program_that_fits() {
 /// They run by hand only, but shall not rot.
 #[test]
 fn the_tests_on_a_board_build() {
-    let built = toolchain().try_tests(Board::NucleoG474re);
-    built.unwrap_or_else(|error| panic!("{error}"));
+    let toolchain = toolchain();
+    for (board, output) in
+        [(Board::NucleoG474re, TorqueOutput::Dac), (Board::BG431bEsc1, TorqueOutput::Bridge)]
+    {
+        let built = toolchain.build_tests(board, output).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(probe::chip(&std::fs::read(built).unwrap()).unwrap(), chip(board));
+    }
+    let none = toolchain.build_tests(Board::NucleoG474re, TorqueOutput::Bridge);
+    assert!(matches!(none, Err(BuildError::NoBridge { .. })), "{none:?}");
 }
 
 fn toolchain() -> Toolchain {

@@ -60,6 +60,7 @@ fn every_field_of_every_message_is_there_in_order() {
         (MESSAGES, "ActiveParameters"),
         (MESSAGES, "Status"),
         ("firmware/src/power_reading.rs", "PowerReading"),
+        ("firmware/src/current/encoder_index.rs", "IndexOffset"),
         (MESSAGES, "FaultCode"),
         (MESSAGES, "PreviousFault"),
         ("firmware/src/wire/decoder.rs", "Discarded"),

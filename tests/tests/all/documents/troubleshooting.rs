@@ -7,7 +7,7 @@ use super::{read, regex, sources};
 const DOCUMENT: &str = "firmware/TROUBLESHOOTING.md";
 
 /// The kinds of refusals, and where they are.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 9] = [
     ("Rejection", "firmware/src/certificate/rejection.rs"),
     ("UndecidedReason", "firmware/src/passivity/poles.rs"),
     ("TimingError", "firmware/src/certificate/timed/mod.rs"),
@@ -15,6 +15,8 @@ const KINDS: [(&str, &str); 7] = [
     ("TuningError", "firmware/src/tuning/error.rs"),
     ("Refusal", "firmware/src/wire/message.rs"),
     ("LinkError", "analysis/src/link/error.rs"),
+    ("ServeError", "analysis/src/serve/mod.rs"),
+    ("PageRefusal", "analysis/src/serve/refusal.rs"),
 ];
 
 /// A section: its name, the words of the program, and the rest.
@@ -61,7 +63,9 @@ fn every_section_has_a_cause_and_what_to_do() {
 fn the_words_that_are_quoted_are_those_of_the_program() {
     let continued = regex(r"\\\n\s+");
     let mut all = sources("firmware/src");
-    all.extend(sources("analysis/src/link"));
+    for folder in ["analysis/src/link", "analysis/src/serve", "analysis/model/src/board"] {
+        all.extend(sources(folder));
+    }
     let all: Vec<_> = all.iter().map(|(_, text)| continued.replace_all(text, "")).collect();
     for (name, words, _) in sections(&read(DOCUMENT)) {
         assert!(all.iter().any(|text| text.contains(&words)), "{name}: nothing says `{words}`");
